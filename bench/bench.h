@@ -46,6 +46,8 @@ typedef struct bench {
     const char *data;               /* the folder that has data/ with the larger cities, or NULL */
     const char *program, *tool;     /* paths of camber_bench and camber */
     uint32_t fly_width, fly_height; /* px, of the fly-through */
+    bool avx2_only;                 /* nothing that is compiled as it runs may need more than AVX2 */
+    double country_millions;        /* points of the country that is read; 0: by the size */
     uint8_t *picture, *pictured;    /* a square each, RGBA: camber's, a peer's */
     bench_scene scenes[BENCH_SCENES_MAX];
     size_t scene_count;
@@ -111,6 +113,16 @@ typedef struct bench_yardstick {
 
 bench_yardstick bench_yardstick_measure(bench *b);
 
+/* The peer's frame in b->pictured: milliseconds, below 0 where it failed. */
+double bench_peer_draw(const bench *b, const bench_peer *peer, const camber_lines *lines, float width_px);
+
+/* ---- machine.c ---- */
+
+/* Whether the kernels are compiled for a processor with AVX2 and no more; says it where they are not. */
+bool bench_is_avx2_only(const bench *b);
+/* Processor, cores, instructions, compiler, and what of the environment changes them. */
+json_t *bench_machine_describe(const bench *b);
+
 /* ---- scenes.c ---- */
 
 /* All that can be made here, or the one of that key. false: none. */
@@ -120,6 +132,9 @@ void bench_scenes_free(bench *b);
 const bench_scene *bench_scene_find(const bench *b, const char *key);
 /* Where the scene's map lies. false: it has none here. */
 bool bench_scene_path(const bench *b, const char *key, char *path, size_t size);
+/* Lays cities side by side to so many million points, in a file of its own at path, which the caller removes. ending:
+ * .osm.pbf or .fgb. false: it cannot be made here. */
+bool bench_country_make(const bench *b, double millions, const char *ending, char *path, size_t size);
 
 /* ---- child.c: other processes ---- */
 
@@ -145,7 +160,8 @@ typedef struct bench_section {
 extern const bench_section *const bench_sections[]; /* NULL behind the last */
 
 extern const bench_section bench_section_stages, bench_section_network, bench_section_frames, bench_section_zooms,
-    bench_section_mosaic, bench_section_fly, bench_section_textures, bench_section_growth, bench_section_start;
+    bench_section_mosaic, bench_section_fly, bench_section_textures, bench_section_growth, bench_section_start,
+    bench_section_encode, bench_section_read, bench_section_tiles;
 
 json_t *bench_result_new(void);
 typedef camber_status bench_scene_fn(bench *b, const bench_scene *scene, void *user, json_t *result);
@@ -172,7 +188,10 @@ json_t *bench_ms(double ms);
 double bench_number(const json_t *row, const char *key);
 const char *bench_text(const json_t *row, const char *key);
 
-/* The fastest of a library's ways to draw, by the row's "peers", of those whose picture is like camber's; 0: none. */
+/* The key of the fastest of a library's ways to draw, by the row's "peers", of those whose picture is like camber's;
+ * "": none. */
+const char *bench_best_way(const json_t *peers, const char *library);
+/* Its milliseconds; 0: none. */
 double bench_best_peer(const json_t *peers, const char *library);
 
 /* One child's part of the mosaic; prints its row. Gives the exit status. */
@@ -180,6 +199,8 @@ int bench_mosaic_child(bench *b, size_t points);
 
 /* ---- The document ---- */
 
+/* NULL: it cannot be read; the reason is printed. */
+json_t *bench_document_load(const char *path);
 /* Every section measured, or the one of that name, and what on; each is printed as it comes. */
 json_t *bench_document_make(bench *b, const char *section);
 void bench_document_print(const json_t *document, FILE *to);
@@ -188,7 +209,8 @@ bool bench_plot_mosaic(const json_t *document, const char *path);
 /* Measures again what looks like a loss against old. Gives the losses that stay; -1: the two cannot be compared. */
 int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to);
 /* Rewrites the numbers between the markers of a document at path: README.md has the table of frames,
- * docs/performance.md the rest. false: it has no such markers, or cannot be written; the reason is printed. */
-bool bench_readme_write(const json_t *document, const char *json_path, const char *path);
+ * docs/performance.md the rest. results: JSON files, each of one kind of processor. false: the document has no such
+ * markers, or something cannot be read or written; the reason is printed. */
+bool bench_readme_write(char *const *results, size_t count, const char *path);
 
 #endif

@@ -10,16 +10,26 @@
 #include "camber_map.h"
 #endif
 
-const bench_section *const bench_sections[] = {
-    &bench_section_stages, &bench_section_network,  &bench_section_frames, &bench_section_zooms, &bench_section_mosaic,
-    &bench_section_fly,    &bench_section_textures, &bench_section_growth, &bench_section_start, NULL};
+const bench_section *const bench_sections[] = {&bench_section_stages,
+                                               &bench_section_network,
+                                               &bench_section_frames,
+                                               &bench_section_zooms,
+                                               &bench_section_mosaic,
+                                               &bench_section_fly,
+                                               &bench_section_textures,
+                                               &bench_section_growth,
+                                               &bench_section_start,
+                                               &bench_section_encode,
+                                               &bench_section_read,
+                                               &bench_section_tiles,
+                                               NULL};
 
 static json_t *describe_peers(void) {
     json_t *peers = json_object();
     for (size_t i = 0; i < bench_peer_count; i++)
-        json_object_set_new(
-            peers, bench_peers[i]->key,
-            json_pack("{s:s, s:s}", "name", bench_peers[i]->name, "version", bench_peers[i]->version()));
+        json_object_set_new(peers, bench_peers[i]->key,
+                            json_pack("{s:s, s:s, s:s, s:s}", "name", bench_peers[i]->name, "way", bench_peers[i]->way,
+                                      "version", bench_peers[i]->version(), "build", bench_peers[i]->build()));
     return peers;
 }
 
@@ -42,6 +52,7 @@ static json_t *describe(const bench *b) {
                   "units", (json_int_t)device.compute_units, "gl", "backend", surface.backend, "renderer",
                   surface.renderer, "version", surface.version, "software", surface.software, "sharing",
                   camber_sharing_get_name(camber_renderer_get_sharing(b->renderer)), "peers", describe_peers());
+    json_object_set_new(document, "machine", bench_machine_describe(b));
 #ifdef CAMBER_MAP
     json_object_set_new(document, "gdal", json_string(camber_gdal_get_version()));
 #endif
@@ -50,16 +61,21 @@ static json_t *describe(const bench *b) {
 
 static void print_head(const json_t *document, FILE *to) {
     const json_t *device = json_object_get(document, "device"), *gl = json_object_get(document, "gl");
+    const json_t *machine = json_object_get(document, "machine");
     fprintf(to, "camber %s, %s: %s (%s %s), %.0f units; %s, %s; sharing: %s\n", bench_text(document, "camber"),
             bench_text(document, "date"), bench_text(device, "name"), bench_text(device, "platform"),
             bench_text(device, "driver"), bench_number(device, "units"), bench_text(gl, "renderer"),
             bench_text(gl, "version"), bench_text(document, "sharing"));
+    fprintf(to, "%s, %.0f cores, %s; code made as it runs is for %s; camber by %s\n", bench_text(machine, "processor"),
+            bench_number(machine, "cores"), bench_text(machine, "vectors"), bench_text(machine, "code"),
+            bench_text(machine, "compiler"));
     fprintf(to, "Peers:");
     const char *key;
     json_t *peer;
     json_object_foreach(json_object_get(document, "peers"), key, peer) if (!strchr(key, '_'))
-        fprintf(to, " %s %s;", bench_text(peer, "name"), bench_text(peer, "version"));
-    fprintf(to, " one thread each. Medians of %.0f runs, in turn.\n", bench_number(document, "runs"));
+        fprintf(to, " %s %s (%s);", bench_text(peer, "name"), bench_text(peer, "version"), bench_text(peer, "build"));
+    fprintf(to, " one thread each, but where it says threads. Medians of %.0f runs, in turn.\n",
+            bench_number(document, "runs"));
 }
 
 static void print_section(const json_t *document, const bench_section *section, FILE *to) {
@@ -102,5 +118,13 @@ json_t *bench_document_make(bench *b, const char *section) {
     }
     json_object_set_new(document, "seconds", json_integer((json_int_t)((camber_now_ms() - begin) / 1e3)));
     printf("\n%.0f s\n", bench_number(document, "seconds"));
+    return document;
+}
+
+json_t *bench_document_load(const char *path) {
+    json_error_t error;
+    json_t *document = json_load_file(path, 0, &error);
+    if (!document)
+        fprintf(stderr, "camber_bench: %s: %s\n", path, error.text);
     return document;
 }

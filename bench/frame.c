@@ -174,6 +174,14 @@ double bench_series_median(const bench_series *series) {
     return sorted.count ? camber_statistics_median(sorted.values, sorted.count) : 0;
 }
 
+/* ---- Peers ---- */
+
+double bench_peer_draw(const bench *b, const bench_peer *peer, const camber_lines *lines, float width_px) {
+    const bench_peer_frame frame = {
+        .lines = lines, .width_px = width_px, .avx2_only = b->avx2_only, .rgba = b->pictured};
+    return peer->draw(&frame);
+}
+
 /* ---- The yardstick ---- */
 
 bench_yardstick bench_yardstick_measure(bench *b) {
@@ -183,7 +191,7 @@ bench_yardstick bench_yardstick_measure(bench *b) {
         return (bench_yardstick){"memcpy of 1 GB", 2e3 / bench_copy_gb_s(b)};
     bench_series series = {.count = 0};
     for (int run = 0; run < RUNS; run++)
-        bench_series_add(&series, bench_peers[0]->draw(&walks->lines, walks->width_px, b->pictured));
+        bench_series_add(&series, bench_peer_draw(b, bench_peers[0], &walks->lines, walks->width_px));
     return (bench_yardstick){strcmp(bench_peers[0]->key, "cairo") == 0 ? "Cairo's long walks"
                                                                        : "the first peer's long walks",
                              bench_series_median(&series)};

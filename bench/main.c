@@ -9,12 +9,15 @@ typedef struct request {
     long mosaic; /* points of the one mosaic that this process is a child for */
     bench_size size;
     unsigned fly_width, fly_height;
+    bool avx2_only;
+    double country_millions;
 } request;
 
 static int usage(void) {
-    fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--plot OUT.svg] [--against OLD.json]\n"
-                    "                    [--section NAME] [--fly WIDTHxHEIGHT]\n"
-                    "       camber_bench --readme RESULTS.json FILE...\n");
+    fprintf(stderr,
+            "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--plot OUT.svg] [--against OLD.json]\n"
+            "                    [--section NAME] [--fly WIDTHxHEIGHT] [--country MILLIONS] [--cpu-features avx2]\n"
+            "       camber_bench --readme RESULTS.json... FILE...\n");
     return 2;
 }
 
@@ -43,6 +46,10 @@ static bool parse(int argc, char **argv, request *r) {
             }
         if (next && strcmp(argv[i], "--fly") == 0)
             known = parse_size(next, r);
+        if (next && strcmp(argv[i], "--cpu-features") == 0)
+            known = r->avx2_only = strcmp(next, "avx2") == 0;
+        if (next && strcmp(argv[i], "--country") == 0)
+            known = (r->country_millions = strtod(next, NULL)) > 0;
         if (next && strcmp(argv[i], "--mosaic") == 0)
             known = (r->mosaic = strtol(next, NULL, 10)) > 0;
         i += known;
@@ -56,20 +63,16 @@ static bool parse(int argc, char **argv, request *r) {
     return true;
 }
 
-static json_t *load(const char *path) {
-    json_error_t error;
-    json_t *document = json_load_file(path, 0, &error);
-    if (!document)
-        fprintf(stderr, "camber_bench: %s: %s\n", path, error.text);
-    return document;
-}
-
-static int publish(const char *json_path, char **paths, int count) {
-    json_t *document = load(json_path);
-    bool done = document != NULL;
-    for (int i = 0; i < count && done; i++)
-        done = bench_readme_write(document, json_path, paths[i]);
-    json_decref(document);
+/* Results come first, and end with .json; documents follow. */
+static int publish(char **paths, int count) {
+    int results = 0;
+    while (results < count && strstr(paths[results], ".json"))
+        results++;
+    bool done = results > 0 && results < count;
+    if (!done)
+        return usage();
+    for (int i = results; i < count && done; i++)
+        done = bench_readme_write(paths, (size_t)results, paths[i]);
     return done ? 0 : 1;
 }
 
@@ -86,7 +89,7 @@ static int keep(const json_t *document, const request *r) {
 static int measure_all(bench *b, const request *r) {
     json_t *old = NULL, *document = NULL;
     int status = 1;
-    if (r->against && !(old = load(r->against)))
+    if (r->against && !(old = bench_document_load(r->against)))
         return 66;
     if (bench_scenes_make(b, NULL))
         document = bench_document_make(b, r->section);
@@ -105,7 +108,7 @@ int main(int argc, char **argv) {
     static const size_t runs[] = {7, 3, 3};
     request r = {.fly_width = 1280, .fly_height = 720};
     if (argc >= 4 && strcmp(argv[1], "--readme") == 0)
-        return publish(argv[2], argv + 3, argc - 3);
+        return publish(argv + 2, argc - 2);
     if (!parse(argc, argv, &r))
         return usage();
     /* As the tool does: a core for each of PoCL's threads, and one build of each kernel. */
@@ -119,8 +122,10 @@ int main(int argc, char **argv) {
                .tool = CAMBER_TOOL,
                .fly_width = r.fly_width,
                .fly_height = r.fly_height,
+               .avx2_only = r.avx2_only,
+               .country_millions = r.country_millions,
                .data = data && *data ? data : NULL};
-    int status = bench_open(&b) ? 0 : 69;
+    int status = bench_open(&b) && (!b.avx2_only || bench_is_avx2_only(&b)) ? 0 : 69;
     if (status == 0)
         status = r.mosaic ? bench_mosaic_child(&b, (size_t)r.mosaic) : measure_all(&b, &r);
     bench_scenes_free(&b);

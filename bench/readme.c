@@ -1,8 +1,9 @@
 /* The numbers of README.md and docs/performance.md, so that nobody types them.
  *
- * Input: the JSON document of a benchmark. Output: a text file, rewritten between pairs of markers. There are two
- * blocks: "frames" is the one table of README.md, "measured" is everything else. A file may hold either or both. Prose
- * is wrapped at LINE_COLUMNS columns, as all documents are. */
+ * Input: JSON documents of benchmarks, each of another kind of processor. Output: a text file, rewritten between pairs
+ * of markers. There are two blocks: "frames" is the one table of README.md, "measured" is everything else. A file may
+ * hold either or both. What depends most on the processor stands side by side, a group of columns a document; all else
+ * is the first document's. Prose is wrapped at LINE_COLUMNS columns, as all documents are. */
 #include "bench.h"
 
 #include "base/base.h"
@@ -10,67 +11,123 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIBRARIES_MAX = 8, LINE_COLUMNS = 118 };
+enum { LIBRARIES_MAX = 8, RUNS_MAX = 4, WAYS_MAX = 8, LINE_COLUMNS = 118 };
+
+typedef struct run {
+    json_t *document;
+    const json_t *sections, *peers, *machine, *device;
+    char results[512]; /* path of the document without its ending, from the repository's root */
+} run;
 
 typedef struct page {
-    const json_t *document, *sections, *peers;
+    run runs[RUNS_MAX];
+    size_t run_count;
     const char *libraries[LIBRARIES_MAX]; /* keys of peers, the first of each library */
     size_t library_count;
-    const char *results; /* path of the document without its ending, from the repository's root */
     FILE *to;
 } page;
 
-static const json_t *rows_of(const page *p, const char *section) {
-    return bench_result_rows(json_object_get(p->sections, section));
+static const json_t *rows_of(const run *r, const char *section) {
+    return bench_result_rows(json_object_get(r->sections, section));
+}
+
+static const json_t *find_row(const run *r, const char *section, const char *scene) {
+    size_t i;
+    const json_t *row;
+    json_array_foreach(rows_of(r, section), i, row) {
+        if (strcmp(bench_text(row, "key"), scene) == 0)
+            return row;
+    }
+    return NULL;
 }
 
 /* From culling to emit: the row of a scene with every point. */
-static const json_t *find_network(const page *p, const char *key) {
+static const json_t *find_network(const run *r, const char *scene) {
     size_t i;
     const json_t *row;
-    json_array_foreach(rows_of(p, "network"), i, row) {
-        if (strcmp(bench_text(row, "key"), key) == 0 && bench_number(row, "simplify_px") <= 0)
+    json_array_foreach(rows_of(r, "network"), i, row) {
+        if (strcmp(bench_text(row, "key"), scene) == 0 && bench_number(row, "simplify_px") <= 0)
             return row;
     }
     return NULL;
 }
 
 /* The row of a scene's strip at a width. */
-static const json_t *find_stages(const page *p, const char *key, double width_px) {
+static const json_t *find_stages(const run *r, const char *scene, double width_px) {
     size_t i;
     const json_t *row;
-    json_array_foreach(rows_of(p, "stages"), i, row) {
+    json_array_foreach(rows_of(r, "stages"), i, row) {
         const bool strip = strcmp(bench_text(row, "method"), "strip") == 0 && bench_number(row, "width_px") == width_px;
-        if (strip && strcmp(bench_text(row, "key"), key) == 0)
+        if (strip && strcmp(bench_text(row, "key"), scene) == 0)
             return row;
     }
     return NULL;
 }
 
-static void put_head(const page *p) {
-    const json_t *device = json_object_get(p->document, "device"), *gl = json_object_get(p->document, "gl");
-    fprintf(p->to,
-            "One run of `./dev bench` on %.10s: %s, %.0f units, %s %s; %s, %s; buffers: %s. Medians of %.0f runs in "
-            "turn.\n\n",
-            bench_text(p->document, "date"), bench_text(device, "name"), bench_number(device, "units"),
-            bench_text(device, "platform"), bench_text(device, "driver"), bench_text(gl, "renderer"),
-            bench_text(gl, "version"), bench_text(p->document, "sharing"), bench_number(p->document, "runs"));
+/* The instructions that a run is of: "AVX2". */
+static const char *code_of(const run *r) {
+    return bench_text(r->machine, "code");
+}
+
+/* A dash where nothing was measured. */
+static void put_number(double value, int digits, FILE *to) {
+    if (value > 0)
+        fprintf(to, " %.*f |", digits, value);
+    else
+        fputs(" - |", to);
+}
+
+/* The line under a table's head. */
+static void put_rule(size_t columns, FILE *to) {
+    fputs("\n|", to);
+    for (size_t i = 0; i < columns; i++)
+        fputs("---|", to);
+    fputs("\n", to);
+}
+
+/* The frames' day, which may be later than the document's. */
+static const char *frames_date(const run *r) {
+    const char *own = bench_text(json_object_get(r->sections, "frames"), "date");
+    return *own ? own : bench_text(r->document, "date");
+}
+
+/* "AVX2: AVX2 code (haswell) on that processor, ...": never as if it were a processor that has no more. */
+static void put_machine(const page *p, const run *r) {
+    const char *processor = bench_text(r->machine, "processor"), *compiler = bench_text(r->machine, "compiler");
+    fprintf(p->to, "%s: ", code_of(r));
+    if (strcmp(code_of(r), bench_text(r->machine, "vectors")) != 0)
+        fprintf(p->to, "%s code (%s) on ", code_of(r), bench_text(r->machine, "kernels_for"));
+    if (r != p->runs && strcmp(processor, bench_text(p->runs->machine, "processor")) == 0)
+        fputs("that processor", p->to);
+    else
+        fprintf(p->to, "%s, %.0f cores", processor, bench_number(r->machine, "cores"));
+    fprintf(p->to, ", PoCL %s%s%s", bench_text(r->device, "driver"), *compiler ? ", " : "", compiler);
+}
+
+static void put_head(const page *p, const run *r) {
+    const json_t *gl = json_object_get(r->document, "gl");
+    put_machine(p, r);
+    if (r == p->runs)
+        fprintf(p->to, "; %s, %s; buffers: %s", bench_text(gl, "renderer"), bench_text(gl, "version"),
+                bench_text(r->document, "sharing"));
+    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn.", bench_text(r->document, "date"),
+            bench_number(r->document, "runs"));
 }
 
 /* A document may be put together: says which sections were measured on another day. */
-static void put_dates(const page *p) {
+static void put_dates(const page *p, const run *r) {
     const size_t day = strlen("2026-01-01");
-    const char *date = bench_text(p->document, "date");
-    const char *key, *before = "Measured on another day, on the same machine: ";
+    const char *date = bench_text(r->document, "date");
+    const char *key, *before = " Measured on another day: ";
     json_t *section;
-    json_object_foreach((json_t *)p->sections, key, section) {
+    json_object_foreach((json_t *)r->sections, key, section) {
         const char *own = bench_text(section, "date");
         if (!*own || strncmp(own, date, day) == 0)
             continue;
         fprintf(p->to, "%s`%s` (%.10s)", before, key, own);
         before = ", ";
     }
-    fputs(*before == ',' ? ".\n\n" : "", p->to);
+    fputs(*before == ',' ? ".\n\n" : "\n\n", p->to);
 }
 
 /* "1,103,969 |" */
@@ -86,68 +143,149 @@ static void put_count(double count, FILE *to) {
 
 /* ---- Frames: the table of README.md ---- */
 
-/* The day on which the frames were measured, which may be later than the document's. */
-static const char *frames_date(const page *p) {
-    const char *own = bench_text(json_object_get(p->sections, "frames"), "date");
-    return *own ? own : bench_text(p->document, "date");
-}
-
+/* A scene drawn in one run: camber's milliseconds, and how many times each peer's better way takes those. */
 static void put_frame(const page *p, const json_t *row) {
     const double frame_ms = bench_number(row, "cl_frame_ms");
-    fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
-    put_count(bench_number(row, "segments"), p->to);
-    fprintf(p->to, " %.1f | %.1f |", frame_ms, bench_number(row, "frame_ms"));
-    for (size_t k = 0; k < p->library_count; k++) {
-        const double ms = bench_best_peer(json_object_get(row, "peers"), p->libraries[k]);
-        if (ms > 0)
-            fprintf(p->to, " %.*f (%.1f) |", ms < 1000 ? 1 : 0, ms, ms / frame_ms);
-        else
-            fputs(" - |", p->to);
+    put_number(frame_ms, 1, p->to);
+    for (size_t k = 0; k < p->library_count; k++)
+        put_number(row ? bench_best_peer(json_object_get(row, "peers"), p->libraries[k]) / frame_ms : 0, 1, p->to);
+}
+
+/* A peer's name and version, and how it was built where the next was built otherwise. */
+static void put_peer(const page *p, const run *r, size_t k) {
+    const json_t *peer = json_object_get(r->peers, p->libraries[k]);
+    const json_t *next = k + 1 < p->library_count ? json_object_get(r->peers, p->libraries[k + 1]) : NULL;
+    if (!peer)
+        return;
+    fprintf(p->to, " %s %s", bench_text(peer, "name"), bench_text(peer, "version"));
+    if (*bench_text(peer, "build") && strcmp(bench_text(peer, "build"), bench_text(next, "build")) != 0)
+        fprintf(p->to, " (%s)", bench_text(peer, "build"));
+    fputs(next ? "," : ".", p->to);
+}
+
+/* ---- Better ways ---- */
+
+typedef struct way {
+    const char *key;
+    size_t scenes; /* that it is the fastest on */
+} way;
+
+/* A library's ways that are the fastest on some scene; gives how many. The first is so on the most scenes. */
+static size_t find_ways(const run *r, const char *library, way *ways) {
+    size_t i, count = 0;
+    const json_t *row;
+    json_array_foreach(rows_of(r, "frames"), i, row) {
+        const char *key = bench_best_way(json_object_get(row, "peers"), library);
+        size_t k = 0;
+        while (k < count && strcmp(ways[k].key, key) != 0)
+            k++;
+        if (!*key || k == WAYS_MAX)
+            continue;
+        if (k == count)
+            ways[count++] = (way){key, 0};
+        if (++ways[k].scenes > ways[0].scenes) {
+            const way most = ways[k];
+            ways[k] = ways[0];
+            ways[0] = most;
+        }
     }
-    fputs("\n", p->to);
+    return count;
+}
+
+static void put_scenes(const page *p, const run *r, const char *library, const char *key) {
+    const char *before = " on ";
+    size_t i;
+    const json_t *row;
+    json_array_foreach(rows_of(r, "frames"), i, row) {
+        if (strcmp(bench_best_way(json_object_get(row, "peers"), library), key) != 0)
+            continue;
+        fprintf(p->to, "%s%s", before, bench_text(row, "scene"));
+        before = ", ";
+    }
+}
+
+/* "Blend2D: threads, one path, but one thread, one path on New York." false: it has one way. */
+static bool put_ways(const page *p, const run *r, const char *library, const char *before) {
+    way ways[WAYS_MAX];
+    const size_t count = find_ways(r, library, ways);
+    if (count == 0 || !*bench_text(json_object_get(r->peers, ways[0].key), "way"))
+        return false;
+    fprintf(p->to, "%s%s: ", before, bench_text(json_object_get(r->peers, library), "name"));
+    for (size_t k = 0; k < count; k++) {
+        fprintf(p->to, "%s%s", k ? ", but " : "", bench_text(json_object_get(r->peers, ways[k].key), "way"));
+        if (k > 0)
+            put_scenes(p, r, library, ways[k].key);
+    }
+    return true;
+}
+
+static void put_better_ways(const page *p, const run *r) {
+    const char *before = " Better ways of ";
+    for (size_t k = 0; k < p->library_count; k++)
+        if (put_ways(p, r, p->libraries[k], before))
+            before = "; ";
+    fputs(*before == ';' ? "." : "", p->to);
+}
+
+static void put_frames_head(const page *p) {
+    fputs("| scene |", p->to);
+    for (size_t i = 0; i < p->run_count; i++) {
+        fprintf(p->to, " %s: ms |", code_of(p->runs + i));
+        for (size_t k = 0; k < p->library_count; k++)
+            fprintf(p->to, " %s |", bench_text(json_object_get(p->runs[0].peers, p->libraries[k]), "name"));
+    }
+    put_rule(1 + p->run_count * (1 + p->library_count), p->to);
 }
 
 static void put_frames(const page *p) {
-    const json_t *device = json_object_get(p->document, "device");
     size_t i;
     const json_t *row;
-    fputs("| scene | segments | camber | in GL |", p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %s |", bench_text(json_object_get(p->peers, p->libraries[k]), "name"));
-    fputs("\n|---|---|---|---|", p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        fputs("---|", p->to);
-    fputs("\n", p->to);
-    json_array_foreach(rows_of(p, "frames"), i, row) put_frame(p, row);
-    fprintf(
-        p->to,
-        "\nMilliseconds a frame of %d x %d px, from lines in memory to pixels in memory; in brackets how many times "
-        "camber's first figure. camber: OpenCL kernels on a CPU; in GL: GLES on %s. Peers:",
-        BENCH_SIDE_PX, BENCH_SIDE_PX, bench_text(json_object_get(p->document, "gl"), "renderer"));
-    for (size_t k = 0; k < p->library_count; k++) {
-        const json_t *peer = json_object_get(p->peers, p->libraries[k]);
-        fprintf(p->to, "%s %s %s", k ? "," : "", bench_text(peer, "name"), bench_text(peer, "version"));
+    put_frames_head(p);
+    json_array_foreach(rows_of(p->runs, "frames"), i, row) {
+        fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
+        for (size_t k = 0; k < p->run_count; k++)
+            put_frame(p, find_row(p->runs + k, "frames", bench_text(row, "key")));
+        fputs("\n", p->to);
     }
     fprintf(
         p->to,
-        "; one thread each, but where it says threads. Measured on %.10s: %s, %.0f units, %s %s, medians of %.0f runs "
-        "in turn.\n",
-        frames_date(p), bench_text(device, "name"), bench_number(device, "units"), bench_text(device, "platform"),
-        bench_text(device, "driver"), bench_number(p->document, "runs"));
+        "\nms: camber's, a frame of %d x %d px, every point, from lines to pixels in memory, in OpenCL on all cores. "
+        "Peers: how many times as long, in their [better way](docs/performance.md), Blend2D and ThorVG on as many "
+        "threads, the others on one; AGG's templates are compiled like camber.\n",
+        BENCH_SIDE_PX, BENCH_SIDE_PX);
+    for (i = 0; i < p->run_count; i++) {
+        const run *r = p->runs + i;
+        fputs("\n", p->to);
+        put_machine(p, r);
+        fprintf(p->to, ", %.10s.", frames_date(r));
+        for (size_t k = 0; k < p->library_count; k++)
+            put_peer(p, r, k);
+        fputs("\n", p->to);
+    }
 }
 
 /* ---- Frames with fewer points ---- */
 
+static void put_pair(const page *p, const json_t *row, const char *all, const char *simple) {
+    put_number(bench_number(row, all), 1, p->to);
+    put_number(bench_number(row, simple), 1, p->to);
+}
+
 static void put_simplified(const page *p) {
     size_t i;
     const json_t *row;
-    fputs("### Frames with fewer points\n\n| whole frames, ms | OpenCL | at 0.1 px | GL | at 0.1 px "
-          "|\n|---|---|---|---|---|\n",
-          p->to);
-    json_array_foreach(rows_of(p, "frames"), i, row) fprintf(
-        p->to, "| %s, %g px | %.1f | %.1f | %.1f | %.1f |\n", bench_text(row, "scene"), bench_number(row, "width_px"),
-        bench_number(row, "cl_frame_ms"), bench_number(row, "cl_simple_frame_ms"), bench_number(row, "frame_ms"),
-        bench_number(row, "simple_frame_ms"));
+    fputs("### Frames with fewer points\n\n| whole frames, ms |", p->to);
+    for (size_t k = 0; k < p->run_count; k++)
+        fprintf(p->to, " %s: OpenCL | at 0.1 px |", code_of(p->runs + k));
+    fprintf(p->to, " %s: GL | at 0.1 px |", code_of(p->runs));
+    put_rule(2 * p->run_count + 3, p->to);
+    json_array_foreach(rows_of(p->runs, "frames"), i, row) {
+        fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
+        for (size_t k = 0; k < p->run_count; k++)
+            put_pair(p, find_row(p->runs + k, "frames", bench_text(row, "key")), "cl_frame_ms", "cl_simple_frame_ms");
+        put_pair(p, row, "frame_ms", "simple_frame_ms");
+        fputs("\n", p->to);
+    }
     fprintf(p->to,
             "\nEvery point, and what is left when points that lie closer than %g px to the line are dropped, which is "
             "the tool's default. %d x %d px, round joins, butt caps, black on white.\n\n",
@@ -156,28 +294,41 @@ static void put_simplified(const page *p) {
 
 /* ---- Tessellation ---- */
 
+/* Segments, the share of memcpy's bytes, and points from culling to emit: of a scene in a run. */
+static void put_speeds(const page *p, const run *r, const char *scene) {
+    const json_t *wide = find_stages(r, scene, 8), *all = json_object_get(wide, "all");
+    put_number(bench_number(wide, "m_segments_s"), 0, p->to);
+    fprintf(p->to, " %.1f, %.0f %% |", bench_number(all, "gb_s"), 100 * bench_number(all, "share"));
+    put_number(bench_number(find_network(r, scene), "m_points_s"), 0, p->to);
+}
+
 static void put_tessellation(const page *p) {
     size_t i;
     const json_t *row;
-    fputs(
-        "### Tessellation\n\n| strip, 8 px wide | M segments/s | GB/s | share of memcpy's | bytes a segment | at 2 px "
-        "| cull to emit, M points/s |\n|---|---|---|---|---|---|---|\n",
-        p->to);
-    json_array_foreach(rows_of(p, "frames"), i, row) {
-        const json_t *wide = find_stages(p, bench_text(row, "key"), 8),
-                     *thin = find_stages(p, bench_text(row, "key"), 2);
-        const json_t *all = json_object_get(wide, "all");
-        fprintf(p->to, "| %s | %.0f | %.1f | %.0f %% | %.1f | %.1f | %.0f |\n", bench_text(row, "scene"),
-                bench_number(wide, "m_segments_s"), bench_number(all, "gb_s"), 100 * bench_number(all, "share"),
-                bench_number(wide, "bytes_a_segment"), bench_number(thin, "bytes_a_segment"),
-                bench_number(find_network(p, bench_text(row, "key")), "m_points_s"));
+    fputs("### Tessellation\n\n| strip, 8 px | bytes a segment | at 2 px |", p->to);
+    for (size_t k = 0; k < p->run_count; k++)
+        fprintf(p->to, " %s: M/s | GB/s | cull to emit |", code_of(p->runs + k));
+    put_rule(3 * p->run_count + 3, p->to);
+    json_array_foreach(rows_of(p->runs, "frames"), i, row) {
+        const char *scene = bench_text(row, "key");
+        fprintf(p->to, "| %s |", bench_text(row, "scene"));
+        put_number(bench_number(find_stages(p->runs, scene, 8), "bytes_a_segment"), 1, p->to);
+        put_number(bench_number(find_stages(p->runs, scene, 2), "bytes_a_segment"), 1, p->to);
+        for (size_t k = 0; k < p->run_count; k++)
+            put_speeds(p, p->runs + k, scene);
+        fputs("\n", p->to);
     }
-    fprintf(
-        p->to,
-        "\nclassify, scan and emit with input and output on the device. GB/s: bytes read and written; memcpy of 16 "
-        "MB on as many threads reaches %.1f GB/s in the same run. Bytes: the whole mesh. Cull to emit: points of the "
-        "network, every point kept, at the scene's width, the host's work included.\n\n",
-        bench_number(json_array_get(rows_of(p, "stages"), 0), "memcpy_gb_s"));
+    fputs("\nclassify, scan and emit with input and output on the device. M/s: million segments a second. GB/s: bytes "
+          "read and written, and their "
+          "share of what memcpy of 16 MB on as many threads reaches in the same run,",
+          p->to);
+    for (size_t k = 0; k < p->run_count; k++)
+        fprintf(p->to, "%s %.1f", k ? " and" : "",
+                bench_number(json_array_get(rows_of(p->runs + k, "stages"), 0), "memcpy_gb_s"));
+    fputs(". Bytes: the whole mesh. Cull to emit: million points a second of the network, every point kept, at the "
+          "scene's width, "
+          "the host's work included.\n\n",
+          p->to);
 }
 
 /* ---- The rest ---- */
@@ -189,20 +340,20 @@ static double median_of(const json_t *row, const char *step) {
 static void put_fly(const page *p) {
     size_t i;
     const json_t *row;
-    if (json_array_size(rows_of(p, "fly")) == 0)
+    if (json_array_size(rows_of(p->runs, "fly")) == 0)
         return;
     fputs("### A fly-through\n\n| drawn by | median, ms | 99 of 100 within | scene | tessellate | draw | read "
           "back |\n"
           "|---|---|---|---|---|---|---|\n",
           p->to);
-    json_array_foreach(rows_of(p, "fly"), i, row) {
+    json_array_foreach(rows_of(p->runs, "fly"), i, row) {
         const json_t *frame = json_object_get(row, "frame");
         fprintf(p->to, "| %s | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f |\n",
                 strcmp(bench_text(row, "by"), "cl") == 0 ? "OpenCL" : "GL", bench_number(frame, "p50_ms"),
                 bench_number(frame, "p99_ms"), median_of(row, "scene"), median_of(row, "tessellate"),
                 median_of(row, "draw"), median_of(row, "read"));
     }
-    row = json_array_get(rows_of(p, "fly"), 0);
+    row = json_array_get(rows_of(p->runs, "fly"), 0);
     fprintf(
         p->to,
         "\n%s in the built-in style, %.0f frames of %.0f x %.0f px, pan and zoom. The last four columns are medians "
@@ -213,12 +364,12 @@ static void put_fly(const page *p) {
 static void put_textures(const page *p) {
     size_t i;
     const json_t *row;
-    if (json_array_size(rows_of(p, "textures")) == 0)
+    if (json_array_size(rows_of(p->runs, "textures")) == 0)
         return;
     fputs("### Frames into textures\n\n| ms | rows, no GL | texture, zero copy | texture, copy | drawn by GL |\n"
           "|---|---|---|---|---|\n",
           p->to);
-    json_array_foreach(rows_of(p, "textures"), i, row)
+    json_array_foreach(rows_of(p->runs, "textures"), i, row)
         fprintf(p->to, "| %s, %g px | %.1f | %.1f | %.1f | %.1f |\n", bench_text(row, "scene"),
                 bench_number(row, "width_px"), bench_number(row, "rows_ms"), bench_number(row, "zero_copy_ms"),
                 bench_number(row, "copy_ms"), bench_number(row, "gl_ms"));
@@ -242,12 +393,12 @@ static const char *growth_of(const char *key) {
 static void put_growth(const page *p) {
     size_t i;
     const json_t *row;
-    if (json_array_size(rows_of(p, "growth")) == 0)
+    if (json_array_size(rows_of(p->runs, "growth")) == 0)
         return;
     fputs("### Growth in OpenCL\n\n| what grows | points | side, px | ms a frame | ns each | cores at work |\n"
           "|---|---|---|---|---|---|\n",
           p->to);
-    json_array_foreach(rows_of(p, "growth"), i, row) {
+    json_array_foreach(rows_of(p->runs, "growth"), i, row) {
         fprintf(p->to, "| %s |", growth_of(bench_text(row, "key")));
         put_count(bench_number(row, "points"), p->to);
         fprintf(p->to, " %.0f | %.1f | %.1f | %.1f |\n", bench_number(row, "side_px"), bench_number(row, "frame_ms"),
@@ -258,7 +409,7 @@ static void put_growth(const page *p) {
 }
 
 static void put_mosaic(const page *p) {
-    const json_t *result = json_object_get(p->sections, "mosaic"), *rows = bench_result_rows(result);
+    const json_t *result = json_object_get(p->runs->sections, "mosaic"), *rows = bench_result_rows(result);
     const json_t *last = json_array_get(rows, json_array_size(rows) - 1);
     if (!last)
         return;
@@ -274,14 +425,14 @@ static void put_mosaic(const page *p) {
             bench_number(json_object_get(last, "simple"), "frame_ms") / 1e3,
             bench_number(json_object_get(last, "everything"), "frame_ms") / 1e3, bench_number(last, "peak_bytes") / 1e9,
             bench_number(last, "everything_peak_bytes") / 1e9, bench_number(json_array_get(rows, 0), "points"),
-            bench_number(result, "simple_growth"), bench_number(result, "everything_growth"), p->results);
+            bench_number(result, "simple_growth"), bench_number(result, "everything_growth"), p->runs->results);
 }
 
 static void put_start(const page *p) {
     size_t i;
     const json_t *row;
     const char *before = "Wall time of the whole program, first with empty caches and then with warm ones: ";
-    json_array_foreach(rows_of(p, "start"), i, row) {
+    json_array_foreach(rows_of(p->runs, "start"), i, row) {
         const char *name = bench_text(row, "name");
         if (*name)
             fprintf(p->to, "%s%s %.2f s, %.3f s", before, name + strspn(name, " "), bench_number(row, "cold_ms") / 1e3,
@@ -292,14 +443,22 @@ static void put_start(const page *p) {
                     bench_number(row, "ogr_ms") / 1e3);
         before = "; ";
     }
-    fprintf(p->to, ".\n\nEverything measured: [`%s.json`](../%s.json).\n", p->results, p->results);
+    before = ".\n\nEverything measured: ";
+    for (i = 0; i < p->run_count; i++, before = ", ")
+        fprintf(p->to, "%s[`%s.json`](../%s.json)", before, p->runs[i].results, p->runs[i].results);
+    fputs(".\n", p->to);
 }
 
 static void put_measured(const page *p) {
-    put_head(p);
-    put_dates(p);
+    for (size_t i = 0; i < p->run_count; i++) {
+        put_head(p, p->runs + i);
+        put_better_ways(p, p->runs + i);
+        put_dates(p, p->runs + i);
+    }
     put_simplified(p);
     put_tessellation(p);
+    if (p->run_count > 1)
+        fprintf(p->to, "All that follows: %s.\n\n", code_of(p->runs));
     put_fly(p);
     put_textures(p);
     put_growth(p);
@@ -307,10 +466,11 @@ static void put_measured(const page *p) {
     put_start(p);
 }
 
-static void read_peers(page *p) {
+/* Libraries of the first run, whose peers' columns the others share. */
+static void read_libraries(page *p) {
     const char *key;
     json_t *peer;
-    json_object_foreach((json_t *)p->peers, key, peer) if (!strchr(key, '_') && p->library_count < LIBRARIES_MAX)
+    json_object_foreach((json_t *)p->runs->peers, key, peer) if (!strchr(key, '_') && p->library_count < LIBRARIES_MAX)
         p->libraries[p->library_count++] = key;
 }
 
@@ -403,27 +563,45 @@ static bool rewrite(page *p, const char *text, const char *path) {
     return file && done;
 }
 
-bool bench_readme_write(const json_t *document, const char *json_path, const char *path) {
+/* false: a document cannot be read. */
+static bool read_runs(page *p, char *const *results, size_t count) {
+    for (; p->run_count < count && p->run_count < RUNS_MAX; p->run_count++) {
+        run *r = p->runs + p->run_count;
+        if (!(r->document = bench_document_load(results[p->run_count])))
+            return false;
+        r->sections = json_object_get(r->document, "sections");
+        r->peers = json_object_get(r->document, "peers");
+        r->machine = json_object_get(r->document, "machine");
+        r->device = json_object_get(r->document, "device");
+        snprintf(r->results, sizeof r->results, "%s", results[p->run_count]);
+        char *ending = strstr(r->results, ".json");
+        if (ending)
+            *ending = 0;
+    }
+    read_libraries(p);
+    return true;
+}
+
+static bool rewrite_file(page *p, const char *path) {
     camber_context *context = NULL;
-    char results[512], *text = NULL;
+    char *text = NULL;
     size_t size = 0;
-    snprintf(results, sizeof results, "%s", json_path);
-    char *ending = strstr(results, ".json");
-    if (ending)
-        *ending = 0;
-    page p = {.document = document,
-              .sections = json_object_get(document, "sections"),
-              .peers = json_object_get(document, "peers"),
-              .results = results};
-    read_peers(&p);
     const bool done = camber_context_create(NULL, &context) == CAMBER_OK &&
                       camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &text, &size) == CAMBER_OK &&
-                      rewrite(&p, text, path);
+                      rewrite(p, text, path);
     if (!done)
         fprintf(stderr, "camber_bench: %s: cannot be written, or lacks one of the lines\n%s%s", path, blocks[0].begin,
                 blocks[1].begin);
     if (context)
         camber_free(context, text);
     camber_context_destroy(context);
+    return done;
+}
+
+bool bench_readme_write(char *const *results, size_t count, const char *path) {
+    page p = {.run_count = 0};
+    const bool done = read_runs(&p, results, count) && rewrite_file(&p, path);
+    for (size_t i = 0; i < RUNS_MAX; i++)
+        json_decref(p.runs[i].document);
     return done;
 }

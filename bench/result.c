@@ -49,16 +49,20 @@ const char *bench_text(const json_t *row, const char *key) {
     return text ? text : "";
 }
 
-double bench_best_peer(const json_t *peers, const char *library) {
+const char *bench_best_way(const json_t *peers, const char *library) {
     const size_t length = strcspn(library, "_");
-    double best = 0;
-    const char *key;
+    const char *key, *best = "";
     json_t *peer;
     json_object_foreach((json_t *)peers, key, peer) {
         const double ms = bench_number(peer, "ms");
         const bool counts = json_is_true(json_object_get(peer, "alike")) && ms > 0;
-        if (counts && strcspn(key, "_") == length && strncmp(key, library, length) == 0)
-            best = best > 0 ? fmin(best, ms) : ms;
+        if (counts && strcspn(key, "_") == length && strncmp(key, library, length) == 0 &&
+            (!*best || ms < bench_number(json_object_get(peers, best), "ms")))
+            best = key;
     }
     return best;
+}
+
+double bench_best_peer(const json_t *peers, const char *library) {
+    return bench_number(json_object_get(peers, bench_best_way(peers, library)), "ms");
 }

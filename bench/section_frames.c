@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PEERS_MAX = 8 };
+enum { PEERS_MAX = 16 };
 /* A peer whose picture is farther from camber's than this draws something else, and counts for nothing: mean
  * difference, 255ths, over the pixels that either draws on. On Porto those that draw line over line come to 1.3, those
  * that unite all lines to 3.9; an empty picture, of lines 2 px wide or more, comes to more than 100. */
@@ -73,7 +73,7 @@ static camber_status draw_ours(trial *t, bool counts) {
 
 static void draw_peers(trial *t, bool counts) {
     for (size_t i = 0; i < bench_peer_count && i < PEERS_MAX; i++) {
-        const double ms = bench_peers[i]->draw(&t->scene->lines, t->scene->width_px, t->b->pictured);
+        const double ms = bench_peer_draw(t->b, bench_peers[i], &t->scene->lines, t->scene->width_px);
         if (!counts)
             t->differences[i] = ms > 0 ? difference_of(t->b->picture, t->b->pictured) : -1;
         else if (ms > 0)
@@ -109,7 +109,7 @@ static void report(const trial *t, json_t *result) {
         const bool alike = difference >= 0 && difference <= DIFFERENCE_MAX;
         if (!alike)
             fprintf(stderr, "camber_bench: %s on %s does not count: its picture differs by %.0f of 255\n",
-                    bench_peers[i]->name, t->scene->name, difference);
+                    bench_peers[i]->key, t->scene->name, difference);
         json_object_set_new(peers, bench_peers[i]->key,
                             json_pack("{s:o, s:f, s:b}", "ms", bench_ms(bench_series_median(t->peers + i)),
                                       "difference", difference, "alike", alike));
@@ -137,11 +137,19 @@ static json_t *measure(bench *b, const char *only) {
     return bench_measure_scenes(b, only, measure_scene, NULL);
 }
 
-static void print_ratio(double peer_ms, double ours_ms, bool alike, FILE *to) {
-    if (alike && peer_ms > 0 && ours_ms > 0)
-        fprintf(to, " %9.1f %5.2f", peer_ms, peer_ms / ours_ms);
+/* A peer's column is as wide as its key, and never narrower than its two numbers. */
+static int width_of(const char *key) {
+    enum { NUMBERS = 15 };
+    const int length = (int)strlen(key);
+    return length > NUMBERS ? length : NUMBERS;
+}
+
+static void print_ratio(const char *key, const json_t *peer, double ours_ms, FILE *to) {
+    const double peer_ms = bench_number(peer, "ms");
+    if (json_is_true(json_object_get(peer, "alike")) && peer_ms > 0 && ours_ms > 0)
+        fprintf(to, " %*.1f %5.2f", width_of(key) - 6, peer_ms, peer_ms / ours_ms);
     else
-        fprintf(to, " %9s %5s", "-", "-");
+        fprintf(to, " %*s", width_of(key), "-");
 }
 
 /* Every scene's row: what of camber comes first, and how often the one that counts fits into each peer. */
@@ -153,7 +161,7 @@ static void print_table(const json_t *result, const int *columns, int counting, 
     fprintf(to, "%-12s %3s %9s", "scene", "px", "segments");
     for (const int *k = columns; *k < OURS; k++)
         fprintf(to, " %8s", ours[*k].heading);
-    json_object_foreach(first, key, peer) fprintf(to, " %15s", key);
+    json_object_foreach(first, key, peer) fprintf(to, " %*s", width_of(key), key);
     fprintf(to, "\n");
     json_array_foreach(bench_result_rows(result), i, row) {
         fprintf(to, "%-12s %3g %9.0f", bench_text(row, "scene"), bench_number(row, "width_px"),
@@ -161,8 +169,7 @@ static void print_table(const json_t *result, const int *columns, int counting, 
         for (const int *k = columns; *k < OURS; k++)
             fprintf(to, " %8.1f", bench_number(row, ours[*k].key));
         json_object_foreach(json_object_get(row, "peers"), key, peer)
-            print_ratio(bench_number(peer, "ms"), bench_number(row, ours[counting].key),
-                        json_is_true(json_object_get(peer, "alike")), to);
+            print_ratio(key, peer, bench_number(row, ours[counting].key), to);
         fprintf(to, "\n");
     }
 }

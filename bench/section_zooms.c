@@ -68,7 +68,7 @@ static camber_status measure_view(const trial *t, int zoom, float width_px, json
     for (int run = -1; run < RUNS && status == CAMBER_OK; run++) {
         bench_frame_times times = {0};
         status = bench_frame(b, &desc, &times);
-        const double peer_ms = bench_peer_count ? bench_peers[0]->draw(&t->seen, width_px, b->pictured) : 0;
+        const double peer_ms = bench_peer_count ? bench_peer_draw(b, bench_peers[0], &t->seen, width_px) : 0;
         if (run < 0)
             continue;
         bench_series_add(&draw, times.draw_ms);

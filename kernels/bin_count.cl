@@ -1,9 +1,18 @@
 /* bin_count: counts for each chunk of segments how many of them each tile has. A work-item takes a chunk.
- * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]. Writes counts[chunks * tiles].
- * bin_gpu.cl writes the same counts, with a work-item for each segment. */
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]. Writes counts[chunks * tiles]. */
 #include "segment.h"
 
-#if CAMBER_LANES == 16
+/* Counts a segment in each tile of its box that it touches. A function of its own, so that the loop over segments, most
+ * of which lie in one tile, keeps its numbers in registers. */
+static __attribute__((noinline)) void count_in_tiles(global const float *segment, camber_u32 box, camber_tile_grid of,
+                                                     global camber_u32 *own) {
+    for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
+        const camber_u32 span = camber_tile_span(segment, box, y, &of);
+        for (camber_u32 x = span & 255u; x <= span >> 8; x++)
+            own[y * of.columns + x]++;
+    }
+}
+
 CAMBER_KERNEL(1, bin_count,
               (global const float *restrict segments, global const camber_u32 *restrict boxes,
                global camber_u32 *restrict counts, const camber_bin_args c),
@@ -22,11 +31,6 @@ CAMBER_KERNEL(1, bin_count,
             own[CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box)]++;
             continue;
         }
-        for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
-            const camber_u32 span = camber_tile_span(segments + CAMBER_SEGMENT_WORDS * i, box, y, &of);
-            for (camber_u32 x = span & 255u; x <= span >> 8; x++)
-                own[y * of.columns + x]++;
-        }
+        count_in_tiles(segments + CAMBER_SEGMENT_WORDS * i, box, of, own);
     }
 }
-#endif

@@ -3,7 +3,6 @@
  * totals up to the starts of the tiles' lists. */
 #include "segment.h"
 
-#if CAMBER_LANES == 16
 CAMBER_KERNEL(1, bin_scan,
               (global camber_u32 *restrict counts, global camber_u32 *restrict totals, const camber_u32 tiles,
                const camber_u32 chunks),
@@ -18,4 +17,3 @@ CAMBER_KERNEL(1, bin_scan,
     }
     vstore16(sum, at, totals);
 }
-#endif

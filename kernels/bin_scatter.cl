@@ -4,7 +4,19 @@
  * counts[chunks * tiles] to each chunk's end. Writes lists[starts[tiles]]. */
 #include "segment.h"
 
-#if CAMBER_LANES == 16
+/* Puts segment i into the list of each tile of its box that it touches. */
+static __attribute__((noinline)) void put_in_tiles(global const float *segment, camber_u32 box, camber_tile_grid of,
+                                                   global const camber_u32 *starts, global camber_u32 *own,
+                                                   global camber_u32 *lists, camber_u32 i) {
+    for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
+        const camber_u32 span = camber_tile_span(segment, box, y, &of);
+        for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
+            const camber_u32 tile = y * of.columns + x;
+            lists[starts[tile] + own[tile]++] = i;
+        }
+    }
+}
+
 CAMBER_KERNEL(1, bin_scatter,
               (global const float *restrict segments, global const camber_u32 *restrict boxes,
                global const camber_u32 *restrict starts, global camber_u32 *restrict counts,
@@ -23,13 +35,6 @@ CAMBER_KERNEL(1, bin_scatter,
             lists[starts[tile] + own[tile]++] = (camber_u32)i;
             continue;
         }
-        for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
-            const camber_u32 span = camber_tile_span(segments + CAMBER_SEGMENT_WORDS * i, box, y, &of);
-            for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
-                const camber_u32 tile = y * of.columns + x;
-                lists[starts[tile] + own[tile]++] = (camber_u32)i;
-            }
-        }
+        put_in_tiles(segments + CAMBER_SEGMENT_WORDS * i, box, of, starts, own, lists, (camber_u32)i);
     }
 }
-#endif

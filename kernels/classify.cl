@@ -1,13 +1,69 @@
 /* classify: per point, which join it is.
  * Reads x, y, info[n + 2] (one sentinel before and after the n points), rows; writes joins[n + 2], of which the first
  * and the last stay 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are set by the build. A
- * work-group's items take its points by turns; where one takes them all, it is the loop that is vectorised, in
- * registers as wide as there are: that leaves more points in flight than the vectoriser would by itself. x_before,
- * x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie together,
- * it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
+ * work-group's items take its points by turns; where one takes them all, its loops are vectorised.
+ *
+ *     rows    mostly all points have one, which is read once: gathers are slow, and AVX2's are taken apart
+ *     turns   roots and divisions that wait for each other: the shorter the loop, the more points are in flight
+ *     words   from both
+ *
+ * x_before, x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie
+ * together, it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
+
+/* The rows of a work-item's points: an array a field, so that they are loaded as vectors. */
+typedef struct point_rows {
+    float reach_px[CAMBER_POINT_CHUNK], miter_limit[CAMBER_POINT_CHUNK], round_cos[CAMBER_POINT_CHUNK];
+    float fan_cos[CAMBER_POINT_CHUNK], fan_sin[CAMBER_POINT_CHUNK];
+    camber_u32 join[CAMBER_POINT_CHUNK], cap[CAMBER_POINT_CHUNK];
+} point_rows;
+
+static inline void put_row(point_rows *to, size_t n, camber_row row) {
+    to->reach_px[n] = row.reach_px;
+    to->miter_limit[n] = row.miter_limit;
+    to->join[n] = row.join;
+    to->cap[n] = row.cap;
+    if (CAMBER_ROUND_LIMITS)
+        to->round_cos[n] = row.round_cos;
+    if (CAMBER_METHOD == CAMBER_FAN) {
+        to->fan_cos[n] = row.fan_cos;
+        to->fan_sin[n] = row.fan_sin;
+    }
+}
+
+static inline camber_row row_of(const point_rows *from, size_t n) {
+    camber_row row = {
+        .reach_px = from->reach_px[n], .miter_limit = from->miter_limit[n], .join = from->join[n], .cap = from->cap[n]};
+    if (CAMBER_ROUND_LIMITS)
+        row.round_cos = from->round_cos[n];
+    if (CAMBER_METHOD == CAMBER_FAN) {
+        row.fan_cos = from->fan_cos[n];
+        row.fan_sin = from->fan_sin[n];
+    }
+    return row;
+}
+
+/* Reads the rows of the points first, first + LANES and so on. */
+static inline void read_rows(global const camber_u32 *info, global const camber_row *rows, size_t first,
+                             point_rows *to) {
+    camber_u32 any = 0, all = ~0u; /* the bits that any point has, and that all have; sentinels have no row */
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
+        const camber_u32 point = info[first + n * LANES];
+        any |= point;
+        all &= point & CAMBER_POINT_REAL ? point : ~0u;
+    }
+    if (((any ^ all) & CAMBER_ROW_BITS) == 0u) {
+        const camber_row row = rows[any >> CAMBER_POINT_ROW_SHIFT];
+        for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++)
+            put_row(to, n, row);
+        return;
+    }
+#pragma clang loop vectorize(disable) unroll(disable)
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++)
+        put_row(to, n, rows[info[first + n * LANES] >> CAMBER_POINT_ROW_SHIFT]);
+}
 
 CAMBER_KERNEL(LANES, classify,
               (global const float *restrict x, global const float *restrict y, global const float *restrict x_before,
@@ -17,19 +73,31 @@ CAMBER_KERNEL(LANES, classify,
                global const camber_row *restrict rows, global camber_u32 *restrict joins),
               (x, y, x_before, y_before, x_after, y_after, info, info_before, info_after, rows, joins)) {
     const size_t first = CAMBER_WORK_ITEM / LANES * CAMBER_BLOCK + CAMBER_WORK_ITEM % LANES + 1;
+    point_rows r;
+    read_rows(info, rows, first, &r);
+    float c[CAMBER_POINT_CHUNK], s[CAMBER_POINT_CHUNK], dot[CAMBER_POINT_CHUNK], half_shorter[CAMBER_POINT_CHUNK];
 #pragma clang loop vectorize_width(16)
-    for (size_t n = 0; n < CAMBER_BLOCK; n += LANES) {
-        const size_t i = first + n;
-        const camber_u32 point = info[i];
-        global const camber_row *row = rows + (point >> CAMBER_POINT_ROW_SHIFT);
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
+        const size_t i = first + n * LANES;
         const camber_turn turn = camber_turn_between(x[i] - x_before[i - 1], y[i] - y_before[i - 1],
                                                      x_after[i + 1] - x[i], y_after[i + 1] - y[i]);
+        c[n] = turn.c;
+        s[n] = turn.s;
+        dot[n] = turn.dot;
+        half_shorter[n] = turn.half_shorter;
+    }
+#pragma clang loop vectorize_width(16)
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
+        const size_t i = first + n * LANES;
+        const camber_u32 point = info[i];
+        const camber_turn turn = {c[n], s[n], dot[n], half_shorter[n]};
+        const camber_row row = row_of(&r, n);
         const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
-        const camber_u32 dot = ends == (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
-        const camber_u32 cap = ends != 0u && (point & CAMBER_POINT_RING) == 0u;
+        const camber_u32 is_dot = ends == (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+        const camber_u32 is_cap = ends != 0u && (point & CAMBER_POINT_RING) == 0u;
         const camber_u32 line_ends = camber_line_ends(info_before[i - 1], info_after[i + 1]);
         const camber_u32 word =
-            cap ? camber_cap_word(row->cap, dot) : camber_join_word(turn, row, CAMBER_METHOD) | line_ends;
+            is_cap ? camber_cap_word(row.cap, is_dot) : camber_join_word(turn, &row, CAMBER_METHOD) | line_ends;
         joins[i] = point & CAMBER_POINT_REAL ? word : 0u;
     }
 }

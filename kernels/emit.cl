@@ -16,12 +16,12 @@ static inline void put_record(global camber_u32 *records, size_t k, float x, flo
 }
 
 #if CAMBER_HAS_ARC_LENGTH
-/* The records [k, k + count) lie as far along their line as point i. */
-static inline void put_arc_lengths(global camber_u32 *records, size_t k, size_t count, global const float *arc_lengths,
+/* All count records lie as far along their line as point i. */
+static inline void put_arc_lengths(global camber_u32 *records, size_t count, global const float *arc_lengths,
                                    size_t i) {
     const camber_u32 along = as_uint(arc_lengths[2 * i]), in_all = as_uint(arc_lengths[2 * i + 1]);
     for (size_t r = 0; r < count; r++)
-        vstore4((uint4)(along, in_all, 0u, 0u), 2 * (k + r) + 1, records);
+        vstore4((uint4)(along, in_all, 0u, 0u), 2 * r + 1, records);
 }
 #endif
 
@@ -34,48 +34,42 @@ static inline camber_u32 is_rare(camber_u32 join, camber_u32 point) {
            ((point & ring_begins) == ring_begins ? 1u : 0u);
 }
 
-/* All records of any point; gives how many. */
+/* All records of any point, from the first of these on; gives how many. */
 static inline size_t put_any(global const float *x, global const float *y, size_t i, camber_u32 join, camber_u32 point,
-                             global camber_u32 *records, size_t k) {
+                             global camber_u32 *records) {
     const camber_u32 kind = camber_join_kind(join), begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
     const camber_u32 inside = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
     const camber_u32 breaks = CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS);
     if (kind == CAMBER_KIND_SENTINEL)
         return 0;
-    put_record(records, k + begins, x[i], y[i], join, point);
+    put_record(records, begins, x[i], y[i], join, point);
     if (begins) { /* a ring's first segment comes in from a sentinel; an open line begins with itself */
         const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
-        put_record(records, k, x[from], y[from], 0, breaks);
+        put_record(records, 0, x[from], y[from], 0, breaks);
     }
     if (kind == CAMBER_KIND_DOT)
-        put_record(records, k + 2, x[i], y[i], join, point & ~CAMBER_POINT_FIRST);
+        put_record(records, 2, x[i], y[i], join, point & ~CAMBER_POINT_FIRST);
     if (kind == CAMBER_KIND_TIGHT && inside)
-        put_record(records, k + 1, x[i], y[i], join, point | CAMBER_RECORD_START);
+        put_record(records, 1, x[i], y[i], join, point | CAMBER_RECORD_START);
     if (kind == CAMBER_KIND_SPLIT && inside) {
-        put_record(records, k + 1, x[i - 1], y[i - 1], 0, breaks);
-        put_record(records, k + 2, x[i], y[i], join, point | CAMBER_RECORD_START);
+        put_record(records, 1, x[i - 1], y[i - 1], 0, breaks);
+        put_record(records, 2, x[i], y[i], join, point | CAMBER_RECORD_START);
     }
     return camber_strip_records(kind, point);
 }
 
-/* The bits that a second record takes from its point's first, and those that it has besides: for one that goes on at a
- * tight join, and of the break before a polyline. */
-constant camber_u32 SAME[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
-constant camber_u32 ADDED[8] = {0u, 0u, 0u, CAMBER_RECORD_START, 0u, 0u, 0u, CAMBER_RECORD_BREAK};
-
 /* The one or two records of most points, in an order that no processor foresees. So two are stored for each: what may
- * be the second one first, and where there is none, the only one in its place. */
-static inline __attribute__((always_inline)) size_t put_two(camber_u32 join, camber_u32 point, uint4 record,
-                                                            global camber_u32 *records, size_t k) {
-    const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
-    const camber_u32 begins = point / CAMBER_POINT_FIRST & 1u;
-    const camber_u32 goes_on = ((camber_join_kind(join) ^ CAMBER_KIND_TIGHT) | ends) == 0u ? 1u : 0u;
-    vstore4((record & vload4(begins, SAME)) | vload4(begins, ADDED), k + goes_on, records);
-    vstore4(record, k + begins, records);
-    return 1u + begins + goes_on;
+ * be the second one first, and where there is none, the only one in its place. begins and goes_on are a record's words
+ * where the other one comes before it, or behind it, and else 0. Gives where the next point's records go. */
+static inline __attribute__((always_inline)) global camber_u32 *put_two(global camber_u32 *to, uint4 record,
+                                                                        uint4 other, camber_u32 begins,
+                                                                        camber_u32 goes_on) {
+    vstore4(other, 0, to + goes_on);
+    vstore4(record, 0, to + begins);
+    return to + CAMBER_RECORD_WORDS + begins + goes_on;
 }
 
-/* Four points at a time: their words become records in registers. */
+/* First which records each point has, in vectors as wide as there are; then the records, four points at a time. */
 CAMBER_KERNEL(LANES, emit,
               (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
                global const camber_row *restrict rows, global const camber_u32 *restrict joins,
@@ -83,30 +77,47 @@ CAMBER_KERNEL(LANES, emit,
                global camber_u32 *restrict records, global camber_u32 *restrict indices,
                global const float *restrict arc_lengths),
               (x, y, info, rows, joins, offsets, bases, records, indices, arc_lengths)) {
-    const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
+    const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1,
+                 words = (1 + CAMBER_HAS_ARC_LENGTH) * CAMBER_RECORD_WORDS;
+    camber_u32 rare[CAMBER_POINT_CHUNK], begins[CAMBER_POINT_CHUNK], goes_on[CAMBER_POINT_CHUNK];
+    camber_u32 other_join[CAMBER_POINT_CHUNK], other_last[CAMBER_POINT_CHUNK];
+#pragma clang loop vectorize_width(16)
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
+        const camber_u32 join = joins[first + n], point = info[first + n], is_first = point & CAMBER_POINT_FIRST;
+        const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+        rare[n] = is_rare(join, point);
+        begins[n] = is_first ? CAMBER_RECORD_WORDS : 0u;
+        goes_on[n] = ((camber_join_kind(join) ^ CAMBER_KIND_TIGHT) | ends) == 0u ? CAMBER_RECORD_WORDS : 0u;
+        other_join[n] = is_first ? 0u : join;
+        other_last[n] = is_first ? CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS) : CAMBER_RECORD_START | point;
+    }
     /* two indices a record */
-    size_t k = ((size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16)) / 2;
-    for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i += 4) {
-        if (CAMBER_HAS_ARC_LENGTH | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) |
-            is_rare(joins[i + 2], info[i + 2]) | is_rare(joins[i + 3], info[i + 3])) {
-            for (size_t n = i; n < i + 4; n++) {
-                const size_t count = put_any(x, y, n, joins[n], info[n], records, k);
+    const size_t k = ((size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16)) / 2;
+    global camber_u32 *to = records + words * k;
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n += 4) {
+        const size_t i = first + n;
+        if (CAMBER_HAS_ARC_LENGTH | rare[n] | rare[n + 1] | rare[n + 2] | rare[n + 3]) {
+            for (size_t p = i; p < i + 4; p++) {
+                const size_t count = put_any(x, y, p, joins[p], info[p], to);
 #if CAMBER_HAS_ARC_LENGTH
-                put_arc_lengths(records, k, count, arc_lengths, n - 1);
+                put_arc_lengths(to, count, arc_lengths, p - 1);
 #endif
-                k += count;
+                to += words * count;
             }
             continue;
         }
         const uint4 px = as_uint4(vload4(0, x + i)), py = as_uint4(vload4(0, y + i));
-        const uint4 join = vload4(0, joins + i), last = vload4(0, info + i);
         const uint4 xy_low = (uint4)(px.s0, py.s0, px.s1, py.s1), xy_high = (uint4)(px.s2, py.s2, px.s3, py.s3);
-        const uint4 low = (uint4)(join.s0, last.s0, join.s1, last.s1),
-                    high = (uint4)(join.s2, last.s2, join.s3, last.s3);
-        k += put_two(joins[i], info[i], (uint4)(xy_low.lo, low.lo), records, k);
-        k += put_two(joins[i + 1], info[i + 1], (uint4)(xy_low.hi, low.hi), records, k);
-        k += put_two(joins[i + 2], info[i + 2], (uint4)(xy_high.lo, high.lo), records, k);
-        k += put_two(joins[i + 3], info[i + 3], (uint4)(xy_high.hi, high.hi), records, k);
+        const uint4 join = vload4(0, joins + i), last = vload4(0, info + i);
+        const uint4 low = (uint4)(join.s0, last.s0, join.s1, last.s1);
+        const uint4 high = (uint4)(join.s2, last.s2, join.s3, last.s3);
+        const uint4 join_2 = vload4(0, other_join + n), last_2 = vload4(0, other_last + n);
+        const uint4 low_2 = (uint4)(join_2.s0, last_2.s0, join_2.s1, last_2.s1);
+        const uint4 high_2 = (uint4)(join_2.s2, last_2.s2, join_2.s3, last_2.s3);
+        to = put_two(to, (uint4)(xy_low.lo, low.lo), (uint4)(xy_low.lo, low_2.lo), begins[n], goes_on[n]);
+        to = put_two(to, (uint4)(xy_low.hi, low.hi), (uint4)(xy_low.hi, low_2.hi), begins[n + 1], goes_on[n + 1]);
+        to = put_two(to, (uint4)(xy_high.lo, high.lo), (uint4)(xy_high.lo, high_2.lo), begins[n + 2], goes_on[n + 2]);
+        to = put_two(to, (uint4)(xy_high.hi, high.hi), (uint4)(xy_high.hi, high_2.hi), begins[n + 3], goes_on[n + 3]);
     }
 }
 
@@ -216,7 +227,7 @@ CAMBER_KERNEL(LANES, emit,
     for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i++) {
         at += put_point(x, y, info, joins, i, records, indices + at);
 #if CAMBER_HAS_ARC_LENGTH
-        put_arc_lengths(records, i - 1, 1, arc_lengths, i - 1);
+        put_arc_lengths(records + 2 * CAMBER_RECORD_WORDS * (i - 1), 1, arc_lengths, i - 1);
 #endif
     }
 }

@@ -139,7 +139,7 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
  *     its side of the bisector
  */
-CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camber_row *row, camber_u32 method) {
+CAMBER_FN camber_u32 camber_join_word(camber_turn turn, const camber_row *row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
 #if CAMBER_ROUND_LIMITS
     const camber_u32 asked = turn.c > row->round_cos ? CAMBER_JOINS_MITER : row->join;

@@ -1,28 +1,13 @@
-/* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect:
- * CAMBER_DEVICE is defined for OpenCL C. Sizes are asserted on both sides. */
+/* Layouts that host, device and shaders share. Sizes are asserted on both sides. */
 #ifndef CAMBER_KERNELS_LAYOUT_H
 #define CAMBER_KERNELS_LAYOUT_H
 
-#ifdef CAMBER_DEVICE
-#pragma OPENCL FP_CONTRACT OFF
-typedef uint camber_u32;
-typedef int camber_i32;
-typedef ulong camber_u64;
-#define CAMBER_FN static inline
-#define CAMBER_GLOBAL global
-#define CAMBER_SQRT(x) sqrt(x)
-#define CAMBER_FABS(x) fabs(x)
+#include "dialect.h"
+
+#if defined(CAMBER_DEVICE) || defined(CAMBER_GLSL)
 #define CAMBER_PAD_PX 0.75f
 #else
 #include "camber_proof.h"
-#include <math.h>
-typedef uint32_t camber_u32;
-typedef int32_t camber_i32;
-typedef uint64_t camber_u64;
-#define CAMBER_FN static inline
-#define CAMBER_GLOBAL
-#define CAMBER_SQRT(x) sqrtf(x)
-#define CAMBER_FABS(x) fabsf(x)
 #endif
 
 /* Points a work-group, and the block of the scan. Point arrays are padded with sentinels to a multiple of it, so
@@ -37,13 +22,15 @@ typedef uint64_t camber_u64;
 
 /* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_WORK_ITEM. On a CPU the
  * body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and compiles its
- * loop over work-items around each, which takes twice as long and runs no faster. */
+ * loop over work-items around each, which takes twice as long and runs no faster. min_vector_width: LLVM halves
+ * AVX-512's vectors unless a function asks for them whole; processors without such take no notice. */
 #ifdef CAMBER_DEVICE
 #define CAMBER_LIST(...) __VA_ARGS__
 #if CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define CAMBER_WORK_ITEM item_id
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
-    static void name##_item(const size_t item_id, CAMBER_LIST parameters) __attribute__((noinline));                   \
+    static void name##_item(const size_t item_id, CAMBER_LIST parameters)                                              \
+        __attribute__((noinline, min_vector_width(512)));                                                              \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters {                                    \
         name##_item(get_global_id(0), CAMBER_LIST arguments);                                                          \
     }                                                                                                                  \
@@ -65,6 +52,7 @@ typedef uint64_t camber_u64;
 #define CAMBER_POINT_ROW_SHIFT 8
 #define CAMBER_ROW_BITS 0xffffff00u
 
+#ifndef CAMBER_GLSL
 /* A row of the style table as the kernels read it. */
 typedef struct camber_row {
     float reach_px;    /* half the width + CAMBER_PAD_PX: the unit of extrusion at the widest */
@@ -76,6 +64,7 @@ typedef struct camber_row {
     camber_u32 cap;  /* camber_cap */
     float fan_step;  /* the angle */
 } camber_row;
+#endif
 
 /* Words of a record: see camber_record in camber_proof.h. A mesh with arc lengths has as many again behind them, of
  * which the first two are camber_arc_length. */
@@ -136,7 +125,7 @@ typedef struct camber_row {
 #define CAMBER_CAPS_BUTT 0u
 #define CAMBER_CAPS_ROUND 1u
 #define CAMBER_CAPS_SQUARE 2u
-/* camber_end: how a segment ends. stroke.vert and stroke.frag have the same names without the prefix. */
+/* camber_end: how a segment ends. */
 #define CAMBER_ENDS_ROUND 0u
 #define CAMBER_ENDS_BUTT 1u
 #define CAMBER_ENDS_SQUARE 2u
@@ -148,9 +137,9 @@ typedef struct camber_row {
 
 #define CAMBER_NO_LIMIT_PX 3.0e38f
 
-#ifdef CAMBER_DEVICE
+#if defined(CAMBER_DEVICE)
 typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];
-#else
+#elif !defined(CAMBER_GLSL)
 _Static_assert(sizeof(camber_row) == 32, "the device reads rows of 32 bytes");
 _Static_assert(sizeof(camber_record) == 4 * CAMBER_RECORD_WORDS, "the device writes records of 16 bytes");
 _Static_assert(CAMBER_METHOD_STRIP == CAMBER_STRIP && CAMBER_METHOD_KITE == CAMBER_KITE &&

@@ -10,7 +10,8 @@
 #ifndef CAMBER_KERNELS_PITCH_SEGMENT_H
 #define CAMBER_KERNELS_PITCH_SEGMENT_H
 
-#include "coverage.h"
+#include "pitch.h"
+#include "segment.h"
 
 /* The words of a segment in the plane, in a buffer beside the footprints. */
 #define CAMBER_PLANE_WORDS 32
@@ -27,88 +28,13 @@
 
 /* By how much the footprint is wider than what is drawn, so that rounding does not matter. */
 #define CAMBER_PITCH_SLACK_PX 0.02f
-/* The least depth at which a point is projected. */
-#define CAMBER_PITCH_LEAST 1e-3f
 
 /* ---- Footprints ---- */
 
 typedef struct camber_plane {
-    camber_real owner_a, owner_b, cut_a[4], cut_b[4];
+    camber_pitch_cut cut_a, cut_b;
     camber_real ends, margin, left[3], right[3];
 } camber_plane;
-
-CAMBER_FN camber_real camber_pitch_depth(camber_eye e, camber_real y) {
-    const camber_real depth = 1.0f - e.fall * y, least = CAMBER_REAL(CAMBER_PITCH_LEAST);
-    return CAMBER_MORE(depth, least);
-}
-
-CAMBER_FN void camber_pitch_see(camber_eye e, camber_real x, camber_real y, camber_real *seen_x, camber_real *seen_y) {
-    const camber_real by_depth = 1.0f / camber_pitch_depth(e, y);
-    *seen_x = x * by_depth;
-    *seen_y = y * e.cosine * by_depth;
-}
-
-/* The width in the picture of a line through a point of the plane, px. */
-CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_real y, camber_real ux, camber_real uy,
-                                         camber_real half_width) {
-    const camber_real across = (ux - e.fall * (y * ux - x * uy)) / e.cosine;
-    const camber_real seen = CAMBER_SQRT(uy * uy + across * across), least = CAMBER_REAL(1e-15f);
-    return 2.0f * half_width / (camber_pitch_depth(e, y) * CAMBER_MORE(seen, least));
-}
-
-/* The direction in the picture of the plane's direction u, at a point of the plane. */
-CAMBER_FN void camber_pitch_direction(camber_eye e, const camber_real place[2], camber_real ux, camber_real uy,
-                                      camber_real seen[2]) {
-    const camber_real x = ux * camber_pitch_depth(e, place[1]) + e.fall * place[0] * uy, y = e.cosine * uy;
-    const camber_real length = CAMBER_SQRT(x * x + y * y), least = CAMBER_REAL(1e-20f);
-    const camber_real scale = 1.0f / CAMBER_MORE(length, least);
-    seen[0] = x * scale;
-    seen[1] = y * scale;
-}
-
-/* The end of a segment at a point: which side of the bisector the segment draws, and its cut in the picture. Where the
- * join is seen narrower than a pixel, the cut divides the pixels between both segments. Its four words are the normal,
- * its position, and a share: 1 where the line is wide and the plane's bisector divides the pixels, down to 0. turns: 1
- * at B, -1 at A; c and s: cosine and sine of half the turn. */
-CAMBER_FN void camber_pitch_cut(camber_eye e, const camber_segment *s, const camber_real place[2], camber_words end,
-                                float turns, camber_real c, camber_real sine, camber_real *own, camber_real cut[4]) {
-    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), h = s->half_width;
-    const camber_real cosine = c * c - sine * sine, turned = 2.0f * turns * c * sine;
-    const camber_real other_x = s->ux * cosine - s->uy * turned, other_y = s->ux * turned + s->uy * cosine;
-    const camber_real width = camber_pitch_width(e, place[0], place[1], s->ux, s->uy, h);
-    const camber_real other = camber_pitch_width(e, place[0], place[1], other_x, other_y, h);
-    const camber_real narrowest = CAMBER_LESS(width, other);
-    camber_real along[2], behind[2], seen_x, seen_y;
-    camber_pitch_direction(e, place, s->ux, s->uy, along);
-    camber_pitch_direction(e, place, other_x, other_y, behind);
-    camber_pitch_see(e, place[0], place[1], &seen_x, &seen_y);
-    const camber_real sum_x = along[0] + behind[0], sum_y = along[1] + behind[1];
-    const camber_real length = CAMBER_SQRT(sum_x * sum_x + sum_y * sum_y);
-    const camber_mask bends = length > 1e-5f;
-    const camber_real scale = one / (bends ? length : one);
-    const camber_real x = bends ? sum_x * scale : along[0], y = bends ? sum_y * scale : along[1];
-    const camber_words class = CAMBER_END_CLASS(end);
-    const camber_mask is_cap = class == CAMBER_CLASS_CAP;
-    const camber_mask wide = is_cap | (1.0f - e.fall * place[1] < CAMBER_PITCH_LEAST);
-    cut[0] = wide ? none : turns * x;
-    cut[1] = wide ? none : turns * y;
-    cut[2] = wide ? none : turns * (x * seen_x + y * seen_y);
-    cut[3] = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
-    const camber_real soon = CAMBER_END_IS_LAST(end) ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
-    const camber_mask spill = (class != CAMBER_CLASS_CUT) & (0.5f * narrowest * CAMBER_FABS(sine) > soon * c);
-    const camber_real own_side = spill ? none : CAMBER_REAL(CAMBER_ALWAYS_PX);
-    *own = is_cap ? CAMBER_REAL(CAMBER_NEVER_PX) : own_side;
-}
-
-/* How far a stroke reaches past an end, px of the plane. */
-CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber_real sine, camber_real half_width) {
-    const camber_real one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-5f), aside = CAMBER_FABS(sine);
-    const camber_words kind = CAMBER_END_KIND(end), class = CAMBER_END_CLASS(end);
-    const camber_real tip =
-        ((kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_SPLIT_MITER)) ? aside / CAMBER_MORE(c, least) : aside;
-    const camber_real whole = CAMBER_MORE(tip, one), cap = kind == CAMBER_ENDS_BUTT ? CAMBER_REAL(0.0f) : one;
-    return half_width * (class == CAMBER_CLASS_CAP ? cap : class == CAMBER_CLASS_SPLIT ? whole : tip);
-}
 
 /* Clips a segment to what the camera sees: from where to where, px along it from A. all_over: it may be seen anywhere
  * in the picture, as a wide line with one side behind the camera. Returns whether it is seen. */
@@ -190,11 +116,12 @@ CAMBER_FN camber_mask camber_pitch_segment_of(camber_eye e, float horizon, const
     const camber_words end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
     const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
-    const camber_real a[2] = {s->ax, s->ay}, b[2] = {s->bx, s->by};
+    const camber_pitch_end a = {s->ax, s->ay, s->ux, s->uy, h, ca, sa, end_a, -1.0f};
+    const camber_pitch_end b = {s->bx, s->by, s->ux, s->uy, h, cb, sb, end_b, 1.0f};
     const camber_real along_a = s->ax * s->ux + s->ay * s->uy, along_b = s->bx * s->ux + s->by * s->uy;
     const camber_real across = s->ay * s->ux - s->ax * s->uy;
-    camber_pitch_cut(e, s, a, end_a, -1.0f, ca, sa, &plane->owner_a, plane->cut_a);
-    camber_pitch_cut(e, s, b, end_b, 1.0f, cb, sb, &plane->owner_b, plane->cut_b);
+    camber_pitch_cut_of(e, &a, &plane->cut_a);
+    camber_pitch_cut_of(e, &b, &plane->cut_b);
     camber_pitch_project_edge(e, -s->uy, s->ux, across + h, plane->left);
     camber_pitch_project_edge(e, s->uy, -s->ux, h - across, plane->right);
     const camber_real slant_a = CAMBER_FABS(s->uy - e.fall * along_a), slant_b = CAMBER_FABS(s->uy - e.fall * along_b);

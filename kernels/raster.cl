@@ -1,8 +1,5 @@
-/* The rasterizer's program: all kernels from setup to rasterize. CAMBER_LANES chooses those for CPUs (16) or GPUs (1).
- */
+/* The rasterizer's program: all kernels from setup to rasterize. */
 #include "setup.cl"
-
-#include "setup_gpu.cl"
 
 #include "bin_count.cl"
 
@@ -10,8 +7,4 @@
 
 #include "bin_scatter.cl"
 
-#include "bin_gpu.cl"
-
 #include "rasterize.cl"
-
-#include "rasterize_gpu.cl"

@@ -3,14 +3,7 @@
 #ifndef CAMBER_KERNELS_RASTER_ARGS_H
 #define CAMBER_KERNELS_RASTER_ARGS_H
 
-#include "layout.h"
-
-/* The camera of a picture with a pitch, as in shaders/stroke.vert. */
-typedef struct camber_eye {
-    float x, y;   /* half the picture's size, px */
-    float cosine; /* cosine of the pitch */
-    float fall;   /* by how much depth falls for each px of the plane towards the viewer */
-} camber_eye;
+#include "pitch.h"
 
 /* The tiles of an area: where the first lies in the picture, px, and how many there are. */
 typedef struct camber_tile_grid {

@@ -1,68 +1,86 @@
 /* rasterize: draws the pixels of a tile, or of some rows of its cells, from the tile's list of segments.
  *
- * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 1], lists[starts[tiles]], brushes[brush count],
+ * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 2], lists[starts[tiles]], brushes[brush count],
  * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
  * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
  * planes[CAMBER_PLANE_WORDS * n]. Writes pixels, rows of `stride` words. Before the last slice it writes spill[tiles *
  * tile_words] instead.
  *
  * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
- * Each brush is gathered as the share of light that it lets through, and then put under what is there already.
- * rasterize_gpu.cl writes the same bytes, with a work-item for each pixel. */
-#include "rasterize_pitch.cl"
+ * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
+#include "spill.cl"
 
-/* A list's segments are scattered in memory. Where the compiler is known to be clang, they are prefetched. */
+/* A list's segments are scattered in memory. Where the compiler is known to be clang, those of the next batch are
+ * prefetched while one is drawn. And pixels go past the caches: nobody reads them before all tiles are drawn. */
 #if defined(POCL_DEVICE_ADDRESS_BITS) && CAMBER_POINT_CHUNK == CAMBER_BLOCK
-#define AHEAD 6
+#define AHEAD 24
 #define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address))
+#define WRITE(vector, at) __builtin_nontemporal_store(vector, (global camber_words *)(at))
 #else
 #define AHEAD 0
 #define ASK_FOR(address) ((void)0)
+#define WRITE(vector, at) CAMBER_STORE(vector, 0, at)
 #endif
 
+/* As many cells beside each other as a vector has rows of a cell: together their rows are vectors, too. */
+#define CELLS_ABREAST (CAMBER_LANES / CAMBER_CELL_PX)
 #if CAMBER_LANES == 16
-/* Whether nothing shows of the segments to come. A cell that is filled in a layer or group may still be translucent. */
-static inline int is_full(private const tile_state *c) {
-    const int opaque = c->now.mode != CAMBER_BRUSH_UNION && !c->is_open[1] && !c->is_open[2];
-    return (c->done | (opaque ? c->filled : 0ul)) == ~0ul;
+#define ABREAST(cells, row) (uint16)((cells)[0].row, (cells)[1].row, (cells)[2].row, (cells)[3].row)
+#else
+#define ABREAST(cells, row) (uint8)((cells)[0].row, (cells)[1].row)
+#endif
+
+/* Writes the rows of cells that lie abreast. Rows of many pixels write whole lines of the processor's caches. */
+static inline void write_abreast(const camber_words *cells, global camber_u32 *at, size_t stride) {
+#if CAMBER_LANES == 16
+    WRITE(ABREAST(cells, s0123), at);
+    WRITE(ABREAST(cells, s4567), at + stride);
+    WRITE(ABREAST(cells, s89ab), at + 2 * stride);
+    WRITE(ABREAST(cells, scdef), at + 3 * stride);
+#else
+    WRITE(ABREAST(cells, lo), at);
+    WRITE(ABREAST(cells, hi), at + stride);
+#endif
 }
 
-static inline uint16 level_of(float16 value) {
-    const float16 scaled = value * 255.0f + 0.5f, least = scaled > 0.0f ? scaled : (float16)(0.0f);
-    return convert_uint16(least < 255.0f ? least : (float16)(255.0f));
+/* Behind a tile's pixels lies the background, and above the horizon the sky. */
+typedef struct backdrop {
+    float back[4], top;
+    camber_words bare;
+#if CAMBER_RASTER_PITCHED
+    camber_words sky;
+    float horizon;
+#endif
+} backdrop;
+
+static inline camber_words look_at(const camber_tile_state *c, const backdrop *b, int i, int v) {
+    camber_words rgba = c->touched[CAMBER_PICTURE] >> i & 1ul ? camber_tile_pixels(c, i, v, b->back) : b->bare;
+#if CAMBER_RASTER_PITCHED
+    const camber_real y = b->top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + CAMBER_LOAD((size_t)v, ROWS);
+    rgba = y < b->horizon ? b->sky : rgba;
+#endif
+    return rgba;
 }
 
-static inline uint16 pixels_of(private const float16 *r, private const float16 *g, private const float16 *b,
-                               float16 through, camber_target_args s) {
-    return level_of(*r + through * s.r) | level_of(*g + through * s.g) << 8 | level_of(*b + through * s.b) << 16 |
-           level_of(1.0f - through + through * s.a) << 24;
-}
-
-static inline void write_cells(private const tile_state *c, global camber_u32 *pixels, camber_target_args s, float top,
+static inline void write_cells(const camber_tile_state *c, global camber_u32 *pixels, camber_target_args s, float top,
                                int first, int last) {
-    const float16 none = (float16)(0.0f);
-    const uint16 bare = pixels_of(&none, &none, &none, (float16)(1.0f), s);
+    backdrop b = {.back = {s.r, s.g, s.b, s.a}, .top = top};
+    b.bare = camber_bare_pixels(b.back);
 #if CAMBER_RASTER_PITCHED
-    const uint16 sky = level_of((float16)(s.sky[0])) | level_of((float16)(s.sky[1])) << 8 |
-                       level_of((float16)(s.sky[2])) << 16 | level_of((float16)(s.sky[3])) << 24;
+    b.sky = camber_rgba(CAMBER_REAL(s.sky[0]), CAMBER_REAL(s.sky[1]), CAMBER_REAL(s.sky[2]), CAMBER_REAL(s.sky[3]));
+    b.horizon = s.horizon;
 #endif
-    for (int i = CAMBER_TILE_CELLS * first; i < CAMBER_TILE_CELLS * (last + 1); i++) {
-        uint16 rgba = bare;
-        if (c->touched[0] >> i & 1ul)
-            rgba = pixels_of(c->level[0][0] + i, c->level[0][1] + i, c->level[0][2] + i, c->level[0][3][i], s);
-#if CAMBER_RASTER_PITCHED
-        const float16 y = top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + vload16(0, DOWN);
-        rgba = y < s.horizon ? sky : rgba;
-#endif
-        global camber_u32 *at = pixels + (size_t)(i / CAMBER_TILE_CELLS * CAMBER_CELL_PX) * s.stride +
-                                i % CAMBER_TILE_CELLS * CAMBER_CELL_PX;
-        vstore4(rgba.s0123, 0, at);
-        vstore4(rgba.s4567, 0, at + s.stride);
-        vstore4(rgba.s89ab, 0, at + 2 * (size_t)s.stride);
-        vstore4(rgba.scdef, 0, at + 3 * (size_t)s.stride);
-    }
+    for (int i = CAMBER_TILE_CELLS * first; i < CAMBER_TILE_CELLS * (last + 1); i += CELLS_ABREAST)
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            const int row = i / CAMBER_TILE_CELLS * CAMBER_CELL_PX + v * (CAMBER_LANES / CAMBER_CELL_PX);
+            camber_words cells[CELLS_ABREAST];
+#pragma unroll
+            for (int k = 0; k < CELLS_ABREAST; k++)
+                cells[k] = look_at(c, &b, i + k, v);
+            write_abreast(cells, pixels + (size_t)row * s.stride + i % CAMBER_TILE_CELLS * CAMBER_CELL_PX, s.stride);
+        }
 }
 
 CAMBER_KERNEL(1, rasterize,
@@ -74,7 +92,7 @@ CAMBER_KERNEL(1, rasterize,
                global const float *restrict planes),
               (segments, starts, lists, brushes, jobs, pixels, s, spill, slice, arc_lengths, brush_ext, side_table,
                planes)) {
-    tile_state c;
+    camber_tile_state c;
     positions at;
     sixteen b;
     const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
@@ -83,17 +101,19 @@ CAMBER_KERNEL(1, rasterize,
     const int first = (int)(cells & 255u), last = (int)(cells >> 8);
     const float left = s.left + (float)(column * CAMBER_TILE_PX), top = s.top + (float)(row * CAMBER_TILE_PX);
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
-    const tile_rows where = {left, top, first, last};
+    const camber_tile_rows where = {left, top, first, last};
     camber_u32 current = ~0u;
+    /* The next tile's first batch. Mostly it comes next, and its segments are scattered in memory. */
+    for (camber_u32 k = starts[tile + 2]; k > starts[tile + 1] && k + AHEAD > starts[tile + 2]; k--)
+        ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k - 1]);
     b.count = 0;
-    begin_tile_state(&c, own);
+    camber_tile_begin(&c, own, brushes);
     begin_positions(&at, left, top);
 #if CAMBER_RASTER_PITCHED
     for (int j = first; j <= last; j++) /* cells above the horizon are done */
         if (top + (float)(CAMBER_CELL_PX * (j + 1)) <= s.horizon)
             c.done |= 255ul << (CAMBER_TILE_CELLS * j);
 #endif
-    c.now = brushes[0];
     global float *own_spill = spill + tile * slice.tile_words;
     if (!slice.is_first) {
         if (!slice.is_last && starts[tile] == starts[tile + 1])
@@ -101,7 +121,7 @@ CAMBER_KERNEL(1, rasterize,
         current = restore_cells(&c, own_spill, brushes, slice, first, last);
 #if CAMBER_RASTER_RICH
         if (current != ~0u && current != CAMBER_SPILL_FULL)
-            use_brush_ext(&c, brush_ext[current]);
+            camber_tile_use_ext(&c, brush_ext[current]);
 #endif
     }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
@@ -110,46 +130,48 @@ CAMBER_KERNEL(1, rasterize,
         const camber_u32 brush = as_uint(segment[CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
             draw_sixteen(&c, &at, segments, where, &b);
-            change_brush(&c, brushes[brush]);
+            camber_tile_change_brush(&c, brushes[brush]);
 #if CAMBER_RASTER_RICH
-            use_brush_ext(&c, brush_ext[brush]);
+            camber_tile_use_ext(&c, brush_ext[brush]);
 #endif
             current = brush;
         }
-#if CAMBER_RASTER_PITCHED
-        draw_tilted(&c, &at, where,
-                    (tilted){segment, planes + (size_t)CAMBER_PLANE_WORDS * lists[k],
-                             arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)lists[k], side_table, s.eye});
-#else
 #if CAMBER_RASTER_RICH
+        const size_t which = lists[k];
+        const drawn_segment from = {
+            segment,
+            arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * which,
+            side_table,
+#if CAMBER_RASTER_PITCHED
+            planes + CAMBER_PLANE_WORDS * which,
+            s.eye
+#endif
+        };
         if (c.brush_ext.features) {
-            draw_rich(&c, &at, segment, where, arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)lists[k], side_table);
+            draw_rich(&c, &at, where, from);
         } else
 #endif
-            if (c.now.mode == CAMBER_BRUSH_UNION) {
-            draw_segment(&c, &at, segment, where);
-        } else {
+        {
+#if CAMBER_RASTER_PITCHED
+            draw_segment(&c, &at, where, from);
+#else
             b.which[b.count++] = lists[k];
-            if (b.count < CAMBER_SIXTEEN)
+            if (b.count < SIXTEEN)
                 continue;
             draw_sixteen(&c, &at, segments, where, &b);
-        }
 #endif
-        if (is_full(&c))
+        }
+        if (camber_tile_is_full(&c))
             break;
     }
     draw_sixteen(&c, &at, segments, where, &b);
-    const int full = is_full(&c);
+    const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
-        const camber_u32 open = (camber_u32)c.is_open[1] << 30 | (camber_u32)c.is_open[2] << 31;
+        const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;
         spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open);
         return;
     }
-    close_brush(&c);
-    if (c.is_open[2])
-        close_level(&c, 2, c.now.layer_opacity);
-    if (c.is_open[1])
-        close_level(&c, 1, c.now.group_opacity);
+    camber_tile_end(&c);
     if (!slice.is_last) {
         c.done = ~0ul;
         spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL);
@@ -158,4 +180,3 @@ CAMBER_KERNEL(1, rasterize,
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,
                 top, first, last);
 }
-#endif

@@ -2,126 +2,170 @@
 #ifndef CAMBER_RASTERIZE_RICH_CL
 #define CAMBER_RASTERIZE_RICH_CL
 
-#include "pitch_images.h"
-#include "rasterize_cells.cl"
+#include "cells_of_one.cl"
 
 #if CAMBER_RASTER_RICH
 
-/* Puts colours that change from pixel to pixel straight under what the level has. */
-static inline void put_colors(private tile_state *c, int i, float16 area, private const float16 *color, int whole) {
-    const int level = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
-    const float16 through = c->level[level][3][i], seen = through * area * c->now.a;
-    c->level[level][0][i] += seen * c->layer_alpha * color[0] * c->now.r;
-    c->level[level][1][i] += seen * c->layer_alpha * color[1] * c->now.g;
-    c->level[level][2][i] += seen * c->layer_alpha * color[2] * c->now.b;
-    if (c->now.mode == CAMBER_BRUSH_MASKED) {
-        c->mask[i] += seen * c->layer_alpha * color[3];
-        c->level[level][3][i] = through * (1.0f - area);
-    } else {
-        c->level[level][3][i] = through * (1.0f - area * c->now.a * color[3]);
-    }
-    c->touched[level] |= 1ul << i;
-    if (++c->blend_count[i] % CAMBER_LOOK_EVERY && !whole)
-        return;
-    if (most_of(c->level[level][3][i]) < CAMBER_NOTHING_PX)
-        *(level == 0 ? &c->done : &c->filled) |= 1ul << i;
-}
-
 /* Fills all cells that are not full with images. */
-static inline void fill_with_images(private tile_state *c, private const positions *at, camber_eye eye,
-                                    global const float *side_table) {
+static inline void fill_with_images(camber_tile_state *c, const positions *at, drawn_segment from) {
     camber_image_sampler m;
-    camber_image_sampler_of(side_table, 4u * c->brush_ext.image, &m);
+    camber_image_sampler_of(from.side_table, 4u * c->brush_ext.image, &m);
     for (ulong cells = ~c->done; cells; cells &= cells - 1) {
-        const int i = lowest(cells);
-        camber_image_spot spot;
-        float16 rgba[4];
+        const int i = camber_lowest(cells);
+        camber_tile_take_level(c, camber_tile_level(c), i);
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            const camber_real x = pixels_x(at, from, i), y = pixels_y(at, from, i, v);
+            camber_image_spot spot;
+            camber_real rgba[4];
 #if CAMBER_RASTER_PITCHED
-        camber_plane_spot(eye, at->x[i % CAMBER_TILE_CELLS] - eye.x, at->y[i / CAMBER_TILE_CELLS] - eye.y, &spot);
+            camber_plane_spot(from.eye, x, y, &spot);
 #else
-        spot.x = at->x[i % CAMBER_TILE_CELLS];
-        spot.y = at->y[i / CAMBER_TILE_CELLS];
-        spot.distance = spot.reach_x = spot.reach_y = (float16)(0.0f);
+            spot.x = x;
+            spot.y = y;
+            spot.distance = spot.reach_x = spot.reach_y = CAMBER_REAL(0.0f);
 #endif
-        camber_fill_image(side_table, &m, &spot, rgba);
-        put_colors(c, i, (float16)(1.0f), rgba, 1);
+            camber_fill_image(&m, &spot, rgba);
+            camber_tile_put_colors(c, i, v, CAMBER_REAL(1.0f), rgba);
+        }
+        camber_tile_count_colors(c, i, 1);
     }
 }
 
-#if !CAMBER_RASTER_PITCHED
-/* Multiplies the colours of a line's pixels by its image. */
-static inline void image_line(global const float *side_table, private const camber_edge *p,
-                              private const camber_image_sampler *m, float16 x, float16 y, private float16 *color) {
-    const float16 none = (float16)(0.0f), past_a = -x - p->round_a, past_b = x - p->length - p->round_b;
-    const float16 arc_a = past_a > 0.0f ? past_a : none, arc_b = past_b > 0.0f ? past_b : none;
-    camber_image_spot at;
-    float16 rgba[4];
-    at.x = x;
-    at.y = y;
-    at.distance = sqrt(arc_a * arc_a + arc_b * arc_b + y * y);
-    at.reach_x = at.reach_y = none;
-    camber_line_image(side_table, m, &at, rgba);
+/* A segment with all that its features need. */
+typedef struct rich_segment {
+    camber_edge edge;
+    camber_extras extras;
+    camber_image_sampler image;
+    drawn_segment from;
+} rich_segment;
+
+/* Finds how a cell lies to the features: CAMBER_CELL_*. range: where along the line the cell lies, px. With a pitch all
+ * cells are drawn as if an end were near. */
+static inline camber_u32 find_left(const rich_segment *t, const cell_sets *sets, int i, camber_tile_rows where,
+                                   float range[2]) {
+#if CAMBER_RASTER_PITCHED
+    return CAMBER_CELL_NEAR_END;
+#else
+    const camber_edge *p = &t->edge;
+    const float qx = where.left + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) + 0.5f * CAMBER_CELL_PX - p->ax;
+    const float qy = where.top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + 0.5f * CAMBER_CELL_PX - p->ay;
+    const float middle = qx * p->ux + qy * p->uy, aside = qy * p->ux - qx * p->uy;
+    const camber_u32 far = sets->full >> i & 1ul ? CAMBER_CELL_FULL : CAMBER_CELL_PARTIAL;
+    if (t->extras.features & CAMBER_FEATURE_RAMP)
+        camber_extras_range(p, &t->extras, middle, range, range + 1);
+    return camber_extras_cell(p, &t->extras, sets->near_end >> i & 1ul ? CAMBER_CELL_NEAR_END : far, middle, aside);
+#endif
+}
+
+/* Where the pixels of a cell lie to the segment, and their areas. */
+typedef struct cell_pixels {
+    camber_pixel at[CAMBER_VECTORS];
+    camber_real area[CAMBER_VECTORS];
+} cell_pixels;
+
+static inline void find_areas_of_one(const rich_segment *t, const positions *at, int i, camber_u32 meets,
+                                     cell_pixels *pixels) {
+    const camber_edge *p = &t->edge;
+    const camber_extras *e = &t->extras;
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        camber_pixel *one = pixels->at + v;
+        camber_look(p, pixels_x(at, t->from, i), pixels_y(at, t->from, i, v), one);
+        pixels->area[v] = CAMBER_REAL(1.0f);
+        if (meets == CAMBER_CELL_NEAR_END)
+            pixels->area[v] = camber_stroke_area(p, e, e->features, one, CAMBER_NO);
+        else if (meets == CAMBER_CELL_PARTIAL)
+            pixels->area[v] = camber_stroke_area(p, e, e->features, one, CAMBER_YES);
+        else
+            one->along = camber_extras_along(p, e, one->x);
+    }
+}
+
+/* The colours of pixels: of a ramp, and of an image along the line. */
+static inline void find_colors(const rich_segment *t, const camber_pixel *pixels, const float range[2],
+                               camber_real *color) {
     for (int channel = 0; channel < 4; channel++)
-        color[channel] *= rgba[channel];
+        color[channel] = CAMBER_REAL(1.0f);
+    if (t->extras.features & CAMBER_FEATURE_RAMP)
+        camber_ramp_over(&t->edge, &t->extras, pixels, range[0], range[1], color);
+    if (t->extras.features & CAMBER_FEATURE_IMAGE) {
+        camber_image_spot spot;
+        camber_real rgba[4];
+        camber_line_spot(&t->edge, pixels, &spot);
+        camber_line_image(&t->image, &spot, rgba);
+        for (int channel = 0; channel < 4; channel++)
+            color[channel] *= rgba[channel];
+    }
+}
+
+/* Puts colours that change from pixel to pixel under what a cell has. */
+static inline void put_colors(camber_tile_state *c, const rich_segment *t, int i, const cell_pixels *pixels,
+                              float range[2]) {
+#if CAMBER_RASTER_PITCHED
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        const camber_real along = pixels->at[v].along, reach = camber_extent_along(&t->edge, pixels->at + v);
+        range[0] = CAMBER_LESS(range[0], -camber_most_of(reach - along));
+        range[1] = CAMBER_MORE(range[1], camber_most_of(along + reach));
+    }
+#endif
+    camber_tile_take_level(c, camber_tile_level(c), i);
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        camber_real color[4];
+        find_colors(t, pixels->at + v, range, color);
+        camber_tile_put_colors(c, i, v, pixels->area[v], color);
+    }
+}
+
+/* Draws a cell, which the segment meets in one way or another. */
+static inline void draw_rich_cell(camber_tile_state *c, const positions *at, const rich_segment *t, int i,
+                                  camber_u32 meets, float range[2]) {
+    const int whole = meets == CAMBER_CELL_FULL;
+    cell_pixels pixels;
+    if (t->extras.features & CAMBER_FEATURES_COLORS) {
+        find_areas_of_one(t, at, i, meets, &pixels);
+        put_colors(c, t, i, &pixels, range);
+        camber_tile_count_colors(c, i, whole);
+        return;
+    }
+    camber_tile_take_cells(c, 1ul << i);
+    if (whole) {
+        camber_tile_put_whole(c, i);
+        return;
+    }
+    find_areas_of_one(t, at, i, meets, &pixels);
+    for (int v = 0; v < CAMBER_VECTORS; v++)
+        put_area(c, &t->edge, i, v, pixels.area[v], pixels.at + v);
+    camber_tile_count(c, i);
 }
 
 /* Draws a segment of a brush with features. */
-static __attribute__((noinline)) void draw_rich(private tile_state *c, private const positions *at,
-                                                global const float *segment, tile_rows where,
-                                                global const float *arc_length, global const float *side_table) {
-    cell_box box;
+static __attribute__((noinline)) void draw_rich(camber_tile_state *c, const positions *at, camber_tile_rows where,
+                                                drawn_segment from) {
     cell_sets sets;
-    camber_edge p;
-    camber_extras e;
-    camber_image_sampler image;
-    pixel_set set;
-    const ulong cells = box_of(segment, where, &box) & ~(c->done | c->filled);
+    rich_segment t;
+    const ulong cells = box_of(from.segment, where) & ~(c->done | c->filled);
     if (!cells)
         return;
-    if (c->brush_ext.features & CAMBER_FEATURE_IMAGE && segment[CAMBER_SEGMENT_HALF_WIDTH] >= CAMBER_FILL_PX) {
-        fill_with_images(c, at, (camber_eye){0, 0, 0, 0}, side_table);
+    t.from = from;
+    begin_edge(from, &t.edge);
+    if (c->brush_ext.features & CAMBER_FEATURE_IMAGE && t.edge.half_width >= CAMBER_FILL_PX) {
+        fill_with_images(c, at, from);
         return;
     }
-    camber_edge_of(segment, as_uint(segment[CAMBER_SEGMENT_FLAGS]), &p);
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE)
-        camber_flat_image_of(side_table, 4u * c->brush_ext.image, arc_length, &p, &image);
-    camber_extras_of(&c->brush_ext, &p, arc_length, side_table, &e);
-    sort_cells(&p, at, box, cells, &sets);
+        camber_image_line_of(from.side_table, 4u * c->brush_ext.image, from.arc_length, &t.edge, &t.image);
+    camber_extras_of(&c->brush_ext, from.arc_length, from.side_table, &t.extras);
+    sort_cells(from, &t.edge, at, cells, &sets);
     for (ulong left = sets.partial; left; left &= left - 1) {
-        const int i = lowest(left);
-        const float qx = where.left + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) + 0.5f * CAMBER_CELL_PX - p.ax;
-        const float qy = where.top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + 0.5f * CAMBER_CELL_PX - p.ay;
-        const float middle = qx * p.ux + qy * p.uy, aside = qy * p.ux - qx * p.uy;
-        const camber_u32 far = sets.full >> i & 1ul ? CAMBER_CELL_FULL : CAMBER_CELL_PARTIAL;
-        const camber_u32 meets =
-            camber_extras_cell(&p, &e, sets.near_end >> i & 1ul ? CAMBER_CELL_NEAR_END : far, middle, aside);
-        float16 area = (float16)(1.0f);
-        if (meets == CAMBER_CELL_OUTSIDE)
-            continue;
-        find_pixels(&p, at, i, &set);
-        if (meets != CAMBER_CELL_FULL)
-            area = camber_extras_area(&p, &e, meets == CAMBER_CELL_PARTIAL, set.x, set.y, set.fa, set.fb);
-        if (e.features & CAMBER_FEATURES_COLORS) {
-            float low, high;
-            float16 color[4] = {(float16)(1.0f), (float16)(1.0f), (float16)(1.0f), (float16)(1.0f)};
-            if (e.features & CAMBER_FEATURE_RAMP) {
-                camber_extras_range(&p, &e, middle, &low, &high);
-                camber_ramp_over(&p, &e, camber_extras_along(&p, &e, set.x), low, high, color);
-            }
-            if (e.features & CAMBER_FEATURE_IMAGE)
-                image_line(side_table, &p, &image, set.x, set.y, color);
-            put_colors(c, i, area, color, meets == CAMBER_CELL_FULL);
-            continue;
-        }
-        c->brushed |= 1ul << i;
-        if (meets == CAMBER_CELL_FULL)
-            put_whole(c, 1ul << i);
-        else
-            put_area(c, &p, i, area, set.x, set.y);
+        const int i = camber_lowest(left);
+        float range[2] = {0.0f, 0.0f};
+        const camber_u32 meets = find_left(&t, &sets, i, where, range);
+        if (meets != CAMBER_CELL_OUTSIDE)
+            draw_rich_cell(c, at, &t, i, meets, range);
     }
 }
 
-#endif
 #endif
 
 #endif

@@ -2,40 +2,13 @@
  *
  * Input: the points before A, A and B with their join words, and the row that the segment is drawn by. Output:
  * camber_segment, the 16 words that all later stages read, and the box of tiles around it. Only + - * / sqrt and
- * comparisons are used, so that device and twin agree to the last bit. A camber_real is sixteen segments, or the
- * sixteen pixels of a cell, on the device, and one of them in the twin and on GPUs. */
+ * comparisons are used, so that device and twin agree to the last bit. A camber_real has a segment, or a pixel,
+ * in each of its lanes: lanes.h. */
 #ifndef CAMBER_KERNELS_SEGMENT_H
 #define CAMBER_KERNELS_SEGMENT_H
 
 #include "raster_args.h"
-
-/* The host has all features. A build for the device says which it has. */
-#ifndef CAMBER_RASTER_RICH
-#define CAMBER_RASTER_RICH 0
-#endif
-#ifndef CAMBER_RASTER_PITCHED
-#define CAMBER_RASTER_PITCHED 0
-#endif
-
-/* Pixels that a work-item draws at a time: 16 on a CPU, the pixels of a cell; 1 on a GPU, as in the twin. */
-#ifndef CAMBER_LANES
-#define CAMBER_LANES 16
-#endif
-
-#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
-typedef float16 camber_real;
-typedef uint16 camber_words;
-typedef int16 camber_mask;
-#define CAMBER_TURNS(joins) convert_float16(as_int16((joins) << 16) >> 16)
-#else
-typedef float camber_real;
-typedef camber_u32 camber_words;
-typedef int camber_mask;
-#define CAMBER_TURNS(joins) ((float)((camber_i32)((joins) << 16) >> 16))
-#endif
-#define CAMBER_REAL(x) ((camber_real)(x))
-#define CAMBER_MORE(a, b) ((a) > (b) ? (a) : (b))
-#define CAMBER_LESS(a, b) ((a) < (b) ? (a) : (b))
+#include "stroke.h"
 
 /* A picture is cut into tiles, which are drawn independently, and a tile into cells of 4 x 4 pixels. */
 #define CAMBER_TILE_PX 32
@@ -44,10 +17,7 @@ typedef int camber_mask;
 #define CAMBER_TILES_MAX 256              /* along each side of an area: a box has a byte for each */
 #define CAMBER_LOOK_EVERY 16              /* a cell is checked for being full after so many segments */
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* where less than this shows through, what lies below is not drawn */
-#define CAMBER_NEVER_PX 1e6f
-#define CAMBER_ALWAYS_PX (-1e30f)
-#define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
-#define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0 that is this long to either side, and this half width */
+#define CAMBER_FILL_PX 1e6f /* a fill is a line along y = 0 that is this long to either side, and this half width */
 
 /* The most bytes that a tile spills between slices: seventeen planes of its pixels, and a few words. */
 #define CAMBER_SPILL_BYTES (17 * 4096 + 192)
@@ -74,39 +44,6 @@ typedef struct camber_brush {
 
 /* ---- A segment as tiles and pixels read it ---- */
 
-/* The ends (CAMBER_ENDS_*) that a second line cuts, a bit each. */
-#define CAMBER_SECOND_ENDS                                                                                             \
-    (1u << CAMBER_ENDS_MITER | 1u << CAMBER_ENDS_BEVEL | 1u << CAMBER_ENDS_SPLIT_BEVEL | 1u << CAMBER_ENDS_SPLIT_MITER)
-#define CAMBER_CLASS_CAP 0u
-#define CAMBER_CLASS_CUT 1u
-#define CAMBER_CLASS_TIGHT 2u
-#define CAMBER_CLASS_SPLIT 3u
-
-/* Flags of a segment. Each end has 13 bits: 0-2 camber_end, 3-4 class, 5-11 a tight join's limit, 12 the line ends with
- * the next segment. First the end at A, then that at B, then the flags below. LINEAR: coverage is a linear ramp. */
-#define CAMBER_SEGMENT_END_BITS 13
-#define CAMBER_END_MASK 0x1fffu
-#define CAMBER_END_CLASS_SHIFT 3
-#define CAMBER_END_LIMIT_SHIFT 5
-#define CAMBER_END_LAST_SHIFT 12
-#define CAMBER_END_CLASS_BITS (3u << CAMBER_END_CLASS_SHIFT)
-#define CAMBER_END_OF_A(flags) ((flags)&CAMBER_END_MASK)
-#define CAMBER_END_OF_B(flags) ((flags) >> CAMBER_SEGMENT_END_BITS & CAMBER_END_MASK)
-#define CAMBER_END_KIND(end) ((end)&CAMBER_JOIN_END_MASK)
-#define CAMBER_END_CLASS(end) ((end) >> CAMBER_END_CLASS_SHIFT & 3u)
-#define CAMBER_END_LIMIT(end) ((end) >> CAMBER_END_LIMIT_SHIFT & 127u)
-#define CAMBER_END_IS_LAST(end) (((end) >> CAMBER_END_LAST_SHIFT & 1u) != 0u)
-#define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
-    (((end) & (CAMBER_JOIN_END_MASK | CAMBER_END_CLASS_BITS)) == (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << 3))
-#define CAMBER_SEGMENT_LINEAR (1u << 26)
-/* Past a split end the segment draws its inner side as well, if it is wide there: camber_owner_side. */
-#define CAMBER_SEGMENT_OWNER_A (1u << 27)
-#define CAMBER_SEGMENT_OWNER_B (1u << 28)
-/* At least one of its ends is: cut by a second line or tight (SHARP), flat (FLAT), a round cap (ROUNDED). */
-#define CAMBER_SEGMENT_SHARP (1u << 29)
-#define CAMBER_SEGMENT_FLAT (1u << 30)
-#define CAMBER_SEGMENT_ROUNDED (1u << 31)
-
 /* The words of a segment, in the order in which setup writes them. */
 #define CAMBER_SEGMENT_AX 0u
 #define CAMBER_SEGMENT_AY 1u
@@ -130,36 +67,16 @@ typedef struct camber_segment {
     camber_real ax, ay, bx, by, ux, uy; /* A, B, and the direction from A to B */
     camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, which point along the line */
     camber_real half_width, reach; /* reach: no pixel is touched farther than this, px, outside the box of A and B */
-    camber_real slope, curve;      /* how its sides cut pixels: edge_of in shaders/edge.glsl */
+    camber_real slope, curve;      /* how its sides cut pixels: camber_profile_of */
     camber_words flags;
 } camber_segment;
 
-/* The 12 bits of an end from its join word: camber_end, class, limit. */
-CAMBER_FN camber_words camber_segment_end(camber_words join) {
-    const camber_words kind = join >> CAMBER_JOIN_KIND_SHIFT,
-                       end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
-    const camber_words split = end == CAMBER_ENDS_ROUND   ? (camber_words)(CAMBER_ENDS_SPLIT_ROUND)
-                               : end == CAMBER_ENDS_BEVEL ? (camber_words)(CAMBER_ENDS_SPLIT_BEVEL)
-                                                          : (camber_words)(CAMBER_ENDS_SPLIT_MITER);
-    const camber_words drawn = ((kind >= CAMBER_KIND_TIGHT) & (end < CAMBER_ENDS_SPLIT_ROUND)) ? split : end;
-    const camber_words class = kind < CAMBER_KIND_CUT ? (camber_words)(0u) : kind - 2u;
-    const camber_words limit = kind == CAMBER_KIND_TIGHT ? join >> CAMBER_JOIN_LIMIT_SHIFT & 127u : (camber_words)(0u);
-    return drawn | class << CAMBER_END_CLASS_SHIFT | limit << CAMBER_END_LIMIT_SHIFT;
-}
-
-/* Whether a segment draws more of a split end than its own side of the bisector, as in shaders/stroke.vert. c and s:
- * cosine and sine of half the turn. */
-CAMBER_FN camber_mask camber_owner_side(camber_words end, camber_real c, camber_real s, camber_real half_width) {
-    const camber_real bound = (CAMBER_END_IS_LAST(end) ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f)) * c;
-    return (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & (half_width * CAMBER_FABS(s) > bound);
-}
-
 CAMBER_FN camber_words camber_end_flags(camber_words end) {
-    const camber_words none = (camber_words)(0u), kind = CAMBER_END_KIND(end), class = CAMBER_END_CLASS(end);
+    const camber_words none = (camber_words)(0u), kind = CAMBER_END_KIND(end), ends_as = CAMBER_END_CLASS(end);
     const camber_mask sharp = (kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_BEVEL) |
-                              (kind > CAMBER_ENDS_SPLIT_ROUND) | (class == CAMBER_CLASS_TIGHT);
+                              (kind > CAMBER_ENDS_SPLIT_ROUND) | (ends_as == CAMBER_CLASS_TIGHT);
     const camber_mask flat = (kind == CAMBER_ENDS_BUTT) | (kind == CAMBER_ENDS_SQUARE),
-                      rounded = (kind == CAMBER_ENDS_ROUND) & (class == CAMBER_CLASS_CAP);
+                      rounded = (kind == CAMBER_ENDS_ROUND) & (ends_as == CAMBER_CLASS_CAP);
     return (sharp ? (camber_words)(CAMBER_SEGMENT_SHARP) : none) | (flat ? (camber_words)(CAMBER_SEGMENT_FLAT) : none) |
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
@@ -169,8 +86,10 @@ CAMBER_FN void camber_segment_judge(camber_segment *s) {
     const camber_words none = (camber_words)(0u), end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
     const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
-    s->flags |= camber_owner_side(end_a, ca, sa, s->half_width) ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : none;
-    s->flags |= camber_owner_side(end_b, cb, sb, s->half_width) ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : none;
+    const camber_mask own_a = camber_owner_side(CAMBER_END_IS_LAST(end_a), ca, sa, s->half_width);
+    const camber_mask own_b = camber_owner_side(CAMBER_END_IS_LAST(end_b), cb, sb, s->half_width);
+    s->flags |= (CAMBER_END_CLASS(end_a) > CAMBER_CLASS_CUT) & own_a ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : none;
+    s->flags |= (CAMBER_END_CLASS(end_b) > CAMBER_CLASS_CUT) & own_b ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : none;
     s->flags |= camber_end_flags(end_a) | camber_end_flags(end_b);
 }
 
@@ -199,10 +118,10 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     s.ux = length > 0.0f ? dx * scale : one;
     s.uy = length > 0.0f ? dy * scale : none;
     const camber_real ix = before > 0.0f ? ex * scale_in : one, iy = before > 0.0f ? ey * scale_in : none;
-    const camber_real qa = CAMBER_TURNS(join_a) * (1.0f / 32767.0f), qb = CAMBER_TURNS(join_b) * (1.0f / 32767.0f);
-    const camber_real ta = one / (1.0f + qa * qa), tb = one / (1.0f + qb * qb);
-    const camber_real ca = (1.0f - qa * qa) * ta, sa = 2.0f * qa * ta;
-    const camber_real cb = (1.0f - qb * qb) * tb, sb = 2.0f * qb * tb;
+    const camber_real qa = camber_quarter_turn(join_a), qb = camber_quarter_turn(join_b);
+    camber_real ca, sa, cb, sb;
+    camber_half_turn(qa, &ca, &sa);
+    camber_half_turn(qb, &cb, &sb);
     const camber_words end_a = camber_segment_end(join_a), end_b = camber_segment_end(join_b);
     const camber_mask cap_a = CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP;
     const camber_words soon_a = join_a & CAMBER_JOIN_AFTER_FIRST, soon_b = join_b & CAMBER_JOIN_BEFORE_LAST;
@@ -217,11 +136,10 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     s.half_width = half_width;
     const camber_real reach_a = camber_segment_reach(join_a, qa), reach_b = camber_segment_reach(join_b, qb);
     s.reach = (half_width + CAMBER_PAD_PX) * CAMBER_MORE(reach_a, reach_b);
-    const camber_real nx = CAMBER_FABS(s.ux), ny = CAMBER_FABS(s.uy);
-    const camber_real p = CAMBER_MORE(nx, ny), q = CAMBER_LESS(nx, ny), safe = q > 1e-4f ? q : one;
-    s.slope = linear ? one : one / p;
-    const camber_real curve = q > 1e-4f ? CAMBER_REAL(0.5f) / (p * safe) : none;
-    s.curve = linear ? none : curve;
+    camber_profiles side;
+    camber_profile_of(s.ux, s.uy, CAMBER_ALL_LANES(linear), &side);
+    s.slope = side.slope;
+    s.curve = side.curve;
     /* from bits 26 and 27 of the join word to CAMBER_END_LAST_SHIFT */
     s.flags = end_a | soon_a >> 14 | (end_b | soon_b >> 15) << CAMBER_SEGMENT_END_BITS;
     s.flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
@@ -245,13 +163,8 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
     const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (x1 >= 0.0f) & (y1 >= 0.0f);
     const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);
     const camber_real lx = x1 < right ? x1 : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
-#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
-    const camber_words box = convert_uint16(meets ? fx : none) | convert_uint16(meets ? fy : none) << 8 |
-                             convert_uint16(meets ? lx : none) << 16 | convert_uint16(meets ? ly : none) << 24;
-#else
-    const camber_words box = (camber_u32)(meets ? fx : none) | (camber_u32)(meets ? fy : none) << 8 |
-                             (camber_u32)(meets ? lx : none) << 16 | (camber_u32)(meets ? ly : none) << 24;
-#endif
+    const camber_words box = CAMBER_TO_WORDS(meets ? fx : none) | CAMBER_TO_WORDS(meets ? fy : none) << 8 |
+                             CAMBER_TO_WORDS(meets ? lx : none) << 16 | CAMBER_TO_WORDS(meets ? ly : none) << 24;
     return meets ? box : (camber_words)(CAMBER_NO_BOX);
 }
 

@@ -6,59 +6,74 @@
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
  *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
  *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH; 0 if the records have none
- *     planes[CAMBER_PLANE_WORDS * n], only with CAMBER_RASTER_PITCHED: the segments in their plane
- * setup_gpu.cl writes the same bytes, with a work-item for each record. */
-#include "features.h"
+ *     planes[CAMBER_PLANE_WORDS * n], only with CAMBER_RASTER_PITCHED: the segments in their plane */
+#include "brush_ext.h"
+#include "cells.h"
 #include "pitch_segment.h"
-#include "record_at.cl"
 #include "transpose.cl"
 
-#if CAMBER_LANES == 16
-/* The words of sixteen consecutive records, a vector for each word. */
-typedef struct sixteen_records {
-    uint16 x, y, join, info;
-} sixteen_records;
+/* Flags of records that begin a polyline or a strip: no segment ends with them. */
+#define STARTS (CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START)
 
-/* Reads sixteen records from `first` on. Numbers outside the part stand for its nearest record. */
-static inline void take_records(global const camber_u32 *records, int first, camber_setup_args r,
-                                private sixteen_records *taken) {
-    uint16 v[4];
-    if (r.stride == 1 && first >= 0 && first + 16 <= (int)r.record_count) {
-        for (size_t i = 0; i < 4; i++)
-            v[i] = vload16(i, records + CAMBER_RECORD_WORDS * (size_t)first);
-    } else {
-        uint words[64];
-        for (int k = 0; k < 16; k++)
-            vstore4(record_at(records, first + k, r), (size_t)k, words);
-        for (size_t i = 0; i < 4; i++)
-            v[i] = vload16(i, words);
-    }
+/* Reads record i. A number outside the part stands for its nearest record. */
+static inline uint4 record_at(global const camber_u32 *records, int i, camber_setup_args r) {
+    const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
+    return vload4((size_t)at * r.stride, records);
+}
+
+/* The words of consecutive records, a vector for each word. */
+typedef struct lane_records {
+    camber_words x, y, join, info;
+} lane_records;
+
+/* Turns four vectors of whole records over. */
+static inline void part_records(const camber_words *v, lane_records *taken) {
+#if CAMBER_LANES == 16
     taken->x = (uint16)(v[0].s048c, v[1].s048c, v[2].s048c, v[3].s048c);
     taken->y = (uint16)(v[0].s159d, v[1].s159d, v[2].s159d, v[3].s159d);
     taken->join = (uint16)(v[0].s26ae, v[1].s26ae, v[2].s26ae, v[3].s26ae);
     taken->info = (uint16)(v[0].s37bf, v[1].s37bf, v[2].s37bf, v[3].s37bf);
+#else
+    taken->x = (uint8)(v[0].s04, v[1].s04, v[2].s04, v[3].s04);
+    taken->y = (uint8)(v[0].s15, v[1].s15, v[2].s15, v[3].s15);
+    taken->join = (uint8)(v[0].s26, v[1].s26, v[2].s26, v[3].s26);
+    taken->info = (uint8)(v[0].s37, v[1].s37, v[2].s37, v[3].s37);
+#endif
 }
 
-/* Reads the rows of sixteen segments. Mostly they all have the same one. */
-static inline void take_rows(global const float *rows, camber_u32 first, uint16 numbers, int16 drawn,
-                             private float16 *row) {
-    const uint16 known = drawn ? numbers : (uint16)(0u);
-    const uint8 a = max(known.lo, known.hi);
-    const uint4 b = max(a.lo, a.hi);
-    const uint2 c = max(b.lo, b.hi);
-    const uint most = max(c.x, c.y);
-    if (all((known == most) | (drawn == 0))) {
+/* Reads a vector of records from `first` on. Numbers outside the part stand for its nearest record. */
+static inline void take_records(global const camber_u32 *records, int first, camber_setup_args r, lane_records *taken) {
+    camber_words v[4];
+    if (r.stride == 1 && first >= 0 && first + CAMBER_LANES <= (int)r.record_count) {
+        for (size_t i = 0; i < 4; i++)
+            v[i] = CAMBER_LOAD(i, records + CAMBER_RECORD_WORDS * (size_t)first);
+    } else {
+        uint words[4 * CAMBER_LANES];
+        for (int k = 0; k < CAMBER_LANES; k++)
+            vstore4(record_at(records, first + k, r), (size_t)k, words);
+        for (size_t i = 0; i < 4; i++)
+            v[i] = CAMBER_LOAD(i, words);
+    }
+    part_records(v, taken);
+}
+
+/* Reads the rows of a vector of segments. Mostly they all have the same one. */
+static inline void take_rows(global const float *rows, camber_u32 first, camber_words numbers, camber_mask drawn,
+                             camber_real *row) {
+    const camber_words known = drawn ? numbers : (camber_words)(0u);
+    const uint most = (uint)camber_largest_of(CAMBER_AS_INTEGERS(known)); /* a row has 24 bits */
+    if (CAMBER_ALL((known == most) | (drawn == 0))) {
         const float4 one = vload4(first + most, rows);
-        row[0] = (float16)(one.s0);
-        row[1] = (float16)(one.s1);
-        row[2] = (float16)(one.s2);
-        row[3] = (float16)(one.s3);
+        row[0] = CAMBER_REAL(one.s0);
+        row[1] = CAMBER_REAL(one.s1);
+        row[2] = CAMBER_REAL(one.s2);
+        row[3] = CAMBER_REAL(one.s3);
         return;
     }
-    float words[CAMBER_RASTER_ROW_WORDS][16];
-    uint number[16];
-    vstore16(known, 0, number);
-    for (int k = 0; k < 16; k++) {
+    float words[CAMBER_RASTER_ROW_WORDS][CAMBER_LANES];
+    uint number[CAMBER_LANES];
+    CAMBER_STORE(known, 0, number);
+    for (int k = 0; k < CAMBER_LANES; k++) {
         const float4 one = vload4(first + number[k], rows);
         words[0][k] = one.s0;
         words[1][k] = one.s1;
@@ -66,7 +81,7 @@ static inline void take_rows(global const float *rows, camber_u32 first, uint16 
         words[3][k] = one.s3;
     }
     for (int k = 0; k < CAMBER_RASTER_ROW_WORDS; k++)
-        row[k] = vload16(0, words[k]);
+        row[k] = CAMBER_LOAD(0, words[k]);
 }
 
 #if CAMBER_RASTER_RICH
@@ -76,94 +91,116 @@ static inline float2 arc_length_at(global const camber_u32 *records, int i, camb
 }
 
 static inline void put_arc_lengths(global const camber_u32 *records, int first, camber_setup_args r,
-                                   private const camber_segment *s, global float *arc_lengths) {
-    float from[16], to[16], total[16];
-    for (int k = 0; k < 16; k++) {
+                                   const camber_segment *s, global float *arc_lengths) {
+    float from[CAMBER_LANES], to[CAMBER_LANES], total[CAMBER_LANES], rates[CAMBER_LANES];
+    for (int k = 0; k < CAMBER_LANES; k++) {
         const int is_dot = record_at(records, first + k, r).s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_DOT;
         const float2 a = arc_length_at(records, is_dot ? first + k : first + k - 1, r);
         from[k] = a.s0;
         to[k] = arc_length_at(records, first + k, r).s0;
         total[k] = a.s1;
     }
-    const float16 along = vload16(0, from);
-    const float16 rates = camber_segment_rate(s, along, vload16(0, to));
-    for (int k = 0; k < 16; k++)
-        vstore4((float4)(from[k], ((private const float *)&rates)[k], total[k], 0.0f), (size_t)k, arc_lengths);
+    CAMBER_STORE(camber_segment_rate(s, CAMBER_LOAD(0, from), CAMBER_LOAD(0, to)), 0, rates);
+    for (int k = 0; k < CAMBER_LANES; k++)
+        vstore4((float4)(from[k], rates[k], total[k], 0.0f), (size_t)k, arc_lengths);
 }
 #endif
 
-static inline void put_segments(private float16 *words, global float *segments, size_t segment_words) {
-    turn_over(words);
-    for (int k = 0; k < 16; k++)
-        vstore16(words[k], 0, segments + segment_words * (size_t)k);
+/* Writes sixteen words of each of a vector of segments, which lie segment_words apart. */
+static inline void put_segments(camber_real *words, global float *segments, size_t segment_words) {
+#pragma unroll
+    for (size_t from = 0; from < 16; from += CAMBER_LANES) {
+        turn_over(words + from);
+#pragma unroll
+        for (size_t k = 0; k < CAMBER_LANES; k++)
+            CAMBER_STORE(words[from + k], 0, segments + segment_words * k + from);
+    }
 }
 
 #if CAMBER_RASTER_PITCHED
-static inline void put_planes(private const camber_segment *s, private const camber_plane *p, global float *planes) {
-    const float16 none = (float16)(0.0f);
-    float16 words[16] = {s->ax,  s->ay,  s->bx,         s->by,      s->ux,      s->uy,       s->nax,      s->nay,
-                         s->nbx, s->nby, s->half_width, p->owner_a, p->owner_b, p->cut_a[0], p->cut_a[1], p->cut_a[2]};
+static inline void put_planes(const camber_segment *s, const camber_plane *p, global float *planes) {
+    const camber_real none = CAMBER_REAL(0.0f);
+    camber_real words[16] = {s->ax,          s->ay,      s->bx,      s->by,      s->ux,         s->uy,
+                             s->nax,         s->nay,     s->nbx,     s->nby,     s->half_width, p->cut_a.owner,
+                             p->cut_b.owner, p->cut_a.x, p->cut_a.y, p->cut_a.at};
     put_segments(words, planes, CAMBER_PLANE_WORDS);
-    float16 rest[16] = {p->cut_a[3], p->cut_b[0], p->cut_b[1], p->cut_b[2], p->cut_b[3], p->ends, p->margin, p->left[0],
-                        p->left[1],  p->left[2],  p->right[0], p->right[1], p->right[2], none,    none,      none};
+    camber_real rest[16] = {p->cut_a.wide, p->cut_b.x, p->cut_b.y, p->cut_b.at, p->cut_b.wide, p->ends,
+                            p->margin,     p->left[0], p->left[1], p->left[2],  p->right[0],   p->right[1],
+                            p->right[2],   none,       none,       none};
     put_segments(rest, planes + 16, CAMBER_PLANE_WORDS);
 }
 #endif
+
+/* Where the segments of a vector of records go. */
+typedef struct outputs {
+    global float *segments;
+    global camber_u32 *boxes;
+    global float *arc_lengths, *planes;
+} outputs;
+
+/* Makes the segments of the records from `first` on. */
+static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
+                                 camber_setup_args r, outputs to) {
+    const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    lane_records b, before, second, third;
+    camber_real row[CAMBER_RASTER_ROW_WORDS];
+    take_records(records, first, r, &b);
+    take_records(records, first - 1, r, &before);
+    take_records(records, first - 2, r, &second);
+    take_records(records, first - 3, r, &third);
+    const camber_words kind = b.join >> CAMBER_JOIN_KIND_SHIFT;
+    const camber_mask is_dot = kind == CAMBER_KIND_DOT, again = (before.info & CAMBER_RECORD_START) != 0u;
+    const camber_mask is_real = ((b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
+                                (CAMBER_LOAD(0, numbers) < (int)r.end - first);
+    const camber_mask ends = (b.info & (r.strips ? STARTS : CAMBER_POINT_FIRST)) == 0u,
+                      is_end = r.strips ? ends : ends | is_dot;
+    const camber_mask from_third = again & (before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
+    take_rows(rows, r.first_row, b.info >> CAMBER_POINT_ROW_SHIFT, is_real & is_end, row);
+#if CAMBER_RASTER_PITCHED
+    const camber_real x = row[1] - r.eye.x, y = row[2] - r.eye.y;
+#else
+    const camber_real x = row[1], y = row[2];
+#endif
+    const camber_real px = CAMBER_AS_REAL(from_third ? third.x : second.x) + x;
+    const camber_real py = CAMBER_AS_REAL(from_third ? third.y : second.y) + y;
+    const camber_real ax = CAMBER_AS_REAL(is_dot ? b.x : before.x) + x,
+                      ay = CAMBER_AS_REAL(is_dot ? b.y : before.y) + y;
+    camber_segment s = camber_segment_of(px, py, ax, ay, CAMBER_AS_REAL(b.x) + x, CAMBER_AS_REAL(b.y) + y,
+                                         is_dot ? b.join : before.join, b.join, row[0], r.linear);
+    camber_mask is_drawn = is_real & is_end & (row[0] >= 0.0f);
+#if CAMBER_RASTER_PITCHED
+    const camber_segment flat = s;
+    camber_plane plane;
+    is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
+#endif
+    const camber_words box = camber_segment_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
+    CAMBER_STORE(box, 0, to.boxes);
+    /* If a picture is drawn in several areas, most segments lie in others. */
+    if (CAMBER_ALL(box == CAMBER_NO_BOX))
+        return;
+#if CAMBER_RASTER_PITCHED
+    put_planes(&flat, &plane, to.planes);
+    put_arc_lengths(records, first, r, &flat, to.arc_lengths);
+#elif CAMBER_RASTER_RICH
+    put_arc_lengths(records, first, r, &s, to.arc_lengths);
+#endif
+    camber_real words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
+                             s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
+                             s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
+                             row[3]};
+    put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
+}
 
 CAMBER_KERNEL(1, setup,
               (global const camber_u32 *restrict records, global const float *restrict rows,
                global float *restrict segments, global camber_u32 *restrict boxes, const camber_setup_args r,
                global float *restrict arc_lengths, global float *restrict planes),
               (records, rows, segments, boxes, r, arc_lengths, planes)) {
-    const size_t group = CAMBER_WORK_ITEM;
-    const int first = (int)(r.first + 16 * (uint)group);
-    const int16 lanes = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    sixteen_records b, before, second, third;
-    float16 row[CAMBER_RASTER_ROW_WORDS];
-    take_records(records, first, r, &b);
-    take_records(records, first - 1, r, &before);
-    take_records(records, first - 2, r, &second);
-    take_records(records, first - 3, r, &third);
-    const uint16 kind = b.join >> CAMBER_JOIN_KIND_SHIFT;
-    const int16 is_dot = kind == CAMBER_KIND_DOT, again = (before.info & CAMBER_RECORD_START) != 0u;
-    const int16 is_real =
-        ((b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) & (lanes < (int16)((int)r.end - first));
-    const int16 ends = (b.info & (r.strips ? STARTS : CAMBER_POINT_FIRST)) == 0u,
-                is_end = r.strips ? ends : ends | is_dot;
-    const int16 from_third = again & (before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
-    take_rows(rows, r.first_row, b.info >> CAMBER_POINT_ROW_SHIFT, is_real & is_end, row);
-#if CAMBER_RASTER_PITCHED
-    const float16 x = row[1] - r.eye.x, y = row[2] - r.eye.y;
-#else
-    const float16 x = row[1], y = row[2];
-#endif
-    const float16 px = as_float16(from_third ? third.x : second.x) + x;
-    const float16 py = as_float16(from_third ? third.y : second.y) + y;
-    const float16 ax = as_float16(is_dot ? b.x : before.x) + x, ay = as_float16(is_dot ? b.y : before.y) + y;
-    camber_segment s = camber_segment_of(px, py, ax, ay, as_float16(b.x) + x, as_float16(b.y) + y,
-                                         is_dot ? b.join : before.join, b.join, row[0], r.linear);
-    int16 is_drawn = is_real & is_end & (row[0] >= 0.0f);
-    const size_t at = r.base / 16 + group;
-#if CAMBER_RASTER_PITCHED
-    const camber_segment flat = s;
-    camber_plane plane;
-    is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
-#endif
-    const uint16 box = camber_segment_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
-    vstore16(box, at, boxes);
-    /* If a picture is drawn in several areas, most segments lie in others. */
-    if (all(box == CAMBER_NO_BOX))
-        return;
-#if CAMBER_RASTER_PITCHED
-    put_planes(&flat, &plane, planes + 16 * CAMBER_PLANE_WORDS * at);
-    put_arc_lengths(records, first, r, &flat, arc_lengths + 64 * at);
-#elif CAMBER_RASTER_RICH
-    put_arc_lengths(records, first, r, &s, arc_lengths + 64 * at);
-#endif
-    float16 words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
-                         s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
-                         s.half_width, s.reach, s.slope, s.curve, as_float16(s.flags),
-                         row[3]};
-    put_segments(words, segments + 16 * CAMBER_SEGMENT_WORDS * at, CAMBER_SEGMENT_WORDS);
+    const uint group = (uint)CAMBER_WORK_ITEM;
+    for (uint v = 0; v < CAMBER_VECTORS; v++) {
+        const size_t at = (size_t)r.base + 16 * group + CAMBER_LANES * v;
+        const outputs to = {segments + CAMBER_SEGMENT_WORDS * at, boxes + at,
+                            arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * at, planes + CAMBER_PLANE_WORDS * at};
+        make_segments(records, rows, (int)(r.first + 16 * group + CAMBER_LANES * v), r, to);
+    }
 }
-#endif

@@ -1,32 +1,36 @@
-/* Transposes sixteen vectors: from the sixteen words of each segment to each word of sixteen segments. */
+/* Transposes as many vectors as a vector has lanes: from words of a segment each to segments of a word each. */
 #ifndef CAMBER_TRANSPOSE_CL
 #define CAMBER_TRANSPOSE_CL
 
 #include "segment.h"
 
+/* The lanes of two vectors in turn: of their lower or of their upper halves. */
+static inline camber_real put_together(camber_real a, camber_real b, int upper) {
 #if CAMBER_LANES == 16
-static inline float16 put_together(float16 high, float16 low, int upper) {
-    return upper ? (float16)(high.s8, low.s8, high.s9, low.s9, high.sa, low.sa, high.sb, low.sb, high.sc, low.sc,
-                             high.sd, low.sd, high.se, low.se, high.sf, low.sf)
-                 : (float16)(high.s0, low.s0, high.s1, low.s1, high.s2, low.s2, high.s3, low.s3, high.s4, low.s4,
-                             high.s5, low.s5, high.s6, low.s6, high.s7, low.s7);
+    return upper ? (float16)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, a.sf,
+                             b.sf)
+                 : (float16)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7,
+                             b.s7);
+#else
+    return upper ? (float8)(a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7)
+                 : (float8)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3);
+#endif
 }
 
-/* Four perfect shuffles of 256 words transpose them. */
-static inline void turn_over(private float16 *words) {
+/* As many perfect shuffles as a lane's number has bits transpose the words. */
+static inline void turn_over(camber_real *words) {
 #pragma unroll
-    for (int turn = 0; turn < 4; turn++) {
-        float16 next[16];
+    for (int lanes = CAMBER_LANES; lanes > 1; lanes /= 2) {
+        camber_real next[CAMBER_LANES];
 #pragma unroll
-        for (int i = 0; i < 8; i++) {
-            next[2 * i] = put_together(words[i], words[i + 8], 0);
-            next[2 * i + 1] = put_together(words[i], words[i + 8], 1);
+        for (int i = 0; i < CAMBER_LANES / 2; i++) {
+            next[2 * i] = put_together(words[i], words[i + CAMBER_LANES / 2], 0);
+            next[2 * i + 1] = put_together(words[i], words[i + CAMBER_LANES / 2], 1);
         }
 #pragma unroll
-        for (int i = 0; i < 16; i++)
+        for (int i = 0; i < CAMBER_LANES; i++)
             words[i] = next[i];
     }
 }
-#endif
 
 #endif

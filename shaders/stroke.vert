@@ -7,6 +7,10 @@
 precision highp float;
 precision highp int;
 
+#define CAMBER_STROKE_PITCHED PITCHED
+#define MEASURED (DASH || TRIM || RAMP || PATTERN)
+#include "pitch.h"
+
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
 // Tables of rows, TEXELS_A_ROW texels a row, then the side table of dashes and ramps. The texels of a row:
 //     0  half the width px, -1: not drawn; the step of a fan; translation x, y px
@@ -64,13 +68,7 @@ flat out vec2 v_end;
 flat out vec4 v_cut_a, v_cut_b;
 #endif
 
-const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
-const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
-const uint SENTINEL = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
-const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, SPLIT_ROUND = 5u, SPLIT_BEVEL = 6u,
-           SPLIT_MITER = 7u; // camber_end
-const float ALWAYS_PX = -1e30;
 
 struct Record {
     vec2 p;
@@ -108,21 +106,20 @@ int stops_up_to(float place, ivec2 ramp, float len) {
 #endif
 
 float turn_of(uint join) {
-    return float(int(join << 16u) >> 16) * (1.0 / 32767.0);
+    return camber_quarter_turn(join);
 }
 
 uint kind_of(uint join) {
-    return join >> 28u;
+    return join >> CAMBER_JOIN_KIND_SHIFT;
 }
 
+// How a segment ends. With kite and fan the triangles say what belongs to a segment; with PITCHED they do not.
 uint end_of(uint join) {
-    uint end = join >> 16u & 7u;
 #if PITCHED && METHOD != 0
-    // With kite and fan the triangles say what belongs to a segment; here they do not.
-    uint split_end = end == ROUND ? SPLIT_ROUND : end == MITER ? SPLIT_MITER : SPLIT_BEVEL;
-    end = kind_of(join) > CUT ? split_end : end;
+    return CAMBER_END_KIND(camber_segment_end(join));
+#else
+    return join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
 #endif
-    return end;
 }
 
 float tan_half(float q) {
@@ -138,14 +135,14 @@ struct Extrusion {
 Extrusion edge_at(uint join, float end, float side) {
     uint kind = kind_of(join);
     float q = turn_of(join), cut = -end * side * tan_half(q);
-    bool is_cut = kind == CUT || kind == TIGHT, inner = side * q > 0.0;
+    bool is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT, inner = side * q > 0.0;
 #if METHOD == 0
     float along = is_cut ? cut : end;
 #else
-    float along = METHOD == 1 && is_cut && inner ? cut : kind < CUT ? end : 0.0;
+    float along = METHOD == 1 && is_cut && inner ? cut : kind < CAMBER_KIND_CUT ? end : 0.0;
 #endif
-    float limit = kind == TIGHT && inner ? float(join >> 19u & 127u) * (PAD_PX / 127.0) : NO_LIMIT_PX;
-    return Extrusion(along, kind < CUT && end_of(join) == BUTT ? PAD_PX : limit, side);
+    float limit = kind == CAMBER_KIND_TIGHT && inner ? float(join >> CAMBER_JOIN_LIMIT_SHIFT & 127u) * (CAMBER_PAD_PX / 127.0) : CAMBER_NO_LIMIT_PX;
+    return Extrusion(along, kind < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_BUTT ? CAMBER_PAD_PX : limit, side);
 }
 
 #if METHOD != 0
@@ -161,100 +158,36 @@ Extrusion corner_at(uint corner, float q, float step) {
                  : corner == BISECTOR ? vec2(2.0 * a, outer * (1.0 - a * a)) * scale
                  : corner == OUT_TIP  ? vec2(-a, outer)
                                       : vec2(sin(angle), outer * cos(angle)) * reach;
-    return Extrusion(place.x, NO_LIMIT_PX, place.y);
+    return Extrusion(place.x, CAMBER_NO_LIMIT_PX, place.y);
 }
 #endif
 
-// Cosine and sine of half a turn from tan(turn / 4).
-vec2 half_turn(float q) {
-    float scale = 1.0 / (1.0 + q * q);
-    return vec2((1.0 - q * q) * scale, 2.0 * q * scale);
-}
-
-// Past a split end a segment has its own side of the bisector only. What its body has past the bisector on the inner
-// side it gives up where that is narrow: bends that gentle follow each other on curves, and their edges would be drawn
-// twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it.
-float foreign_from(uint end, vec2 turn, bool ends_soon, float half_width) {
-    bool kept = half_width * abs(turn.y) > (ends_soon ? 0.35 : 0.6) * turn.x;
-    return end < SPLIT_ROUND ? NEVER_PX : kept ? 0.0 : ALWAYS_PX;
-}
-
-#if SHARP_JOINS
-float round_from(uint end) {
-    return end == ROUND || end == SPLIT_ROUND ? 0.0 : NEVER_PX;
-}
-#endif
-
-float flat_cap(uint end, float half_width) {
-    return end == BUTT ? 0.0 : end == SQUARE ? half_width : NEVER_PX;
-}
-
-// The arc alone takes a line thinner than the pixel for one that crosses it. A cap as thin as that ends like a flat one
-// of the same area, pi / 4 of half the width further on.
-float tip(uint join, float half_width) {
-#if PITCHED
-    const float until = 0.0; // how wide it is seen differs from place to place
-#else
-    float until = 0.5 + 0.785398 * half_width + 1.2 * max(half_width - 0.5, 0.0);
-#endif
-    return kind_of(join) < CUT && end_of(join) == ROUND ? until : NEVER_PX;
+bool is_round_cap(uint join) {
+    return kind_of(join) < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_ROUND;
 }
 
 #if PITCHED
+camber_eye eye() {
+    return camber_eye(u_eye.x, u_eye.y, u_eye.z, u_eye.w);
+}
+
 float depth_at(vec2 p) {
     return 1.0 - u_eye.w * p.y;
-}
-
-// No triangle is cut along a bisector: all joins say what belongs to a segment as split ones do.
-// narrowest: px of the picture that the line is wide there.
-float own_until(uint join, vec2 turn, bool ends_soon, float narrowest) {
-    return kind_of(join) == CUT ? ALWAYS_PX : foreign_from(end_of(join), turn, ends_soon, 0.5 * narrowest);
 }
 
 vec2 seen_of(vec2 p) {
     return vec2(p.x, p.y * u_eye.z) / depth_at(p);
 }
 
-// The direction that u has in the picture, at a place of the plane.
-vec2 seen_direction(vec2 p, vec2 u) {
-    vec2 seen = vec2(u.x * depth_at(p) + u_eye.w * p.x * u.y, u_eye.z * u.y);
-    return seen / max(length(seen), 1e-20);
+// The bits of an end (kernels/stroke_ends.h). soon: the bit of the join that says that the line ends with the segment.
+uint end_bits(uint join, uint soon) {
+    return camber_segment_end(join) | ((join & soon) != 0u ? 1u << CAMBER_END_LAST_SHIFT : 0u);
 }
 
-// Px of the picture that a line through a place of the plane is wide.
-float seen_width(vec2 p, vec2 u, float half_width) {
-    vec2 normal = vec2(-u.y, u.x);
-    return 2.0 * half_width / (depth_at(p) * length(vec2(normal.x, (normal.y - u_eye.w * dot(normal, p)) / u_eye.z)));
-}
-
-// The direction on the other side of a join; turns: 1 behind it, -1 before.
-vec2 other_direction(vec2 u, float turns, uint join) {
-    vec2 half_turned = half_turn(turn_of(join));
-    float c = half_turned.x * half_turned.x - half_turned.y * half_turned.y,
-          s = 2.0 * turns * half_turned.x * half_turned.y;
-    return vec2(u.x * c - u.y * s, u.x * s + u.y * c);
-}
-
-float narrowest_at(vec2 p, vec2 u, vec2 other, float half_width) {
-    return min(seen_width(p, u, half_width), seen_width(p, other, half_width));
-}
-
-// A join that is narrower than a pixel as it is seen: the line between the two segments in the picture, by its normal
-// and where it lies, and 1 where it is wide and the bisector in the plane parts them, down to 0.
-vec4 seen_cut(vec2 p, vec2 u, vec2 other, float turns, uint join, float narrowest) {
-    if (kind_of(join) < CUT || depth_at(p) < 1e-3)
-        return vec4(0.0, 0.0, 0.0, 1.0);
-    vec2 along = seen_direction(p, u), sum = along + seen_direction(p, other);
-    vec2 normal = length(sum) > 1e-5 ? normalize(sum) : along;
-    return vec4(turns * normal, turns * dot(normal, seen_of(p)), clamp(1.5 * narrowest - 0.75, 0.0, 1.0));
-}
-
-// How far the stroke reaches past an end of its segment.
 float end_reach(uint join, float half_width) {
-    uint kind = kind_of(join), end = end_of(join);
-    vec2 turn = half_turn(turn_of(join));
-    float sine = abs(turn.y), tip = end == MITER || end == SPLIT_MITER ? sine / max(turn.x, 1e-5) : sine;
-    return half_width * (kind < CUT ? (end == BUTT ? 0.0 : 1.0) : kind == SPLIT ? max(tip, 1.0) : tip);
+    float c, s;
+    camber_half_turn(turn_of(join), c, s);
+    return camber_pitch_reach(camber_segment_end(join), c, s, half_width);
 }
 
 // A corner of what the segment's part of the stroke takes of the picture and half a pixel around it, px from its
@@ -283,8 +216,8 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
          left_b = turned * (seen_of(a + u * to + side) - start);
     vec2 right_a = turned * (seen_of(a + u * from - side) - start),
          right_b = turned * (seen_of(a + u * to - side) - start);
-    float begin = min(min(left_a.x, left_b.x), min(right_a.x, right_b.x)) - PAD_PX;
-    float end = max(max(left_a.x, left_b.x), max(right_a.x, right_b.x)) + PAD_PX;
+    float begin = min(min(left_a.x, left_b.x), min(right_a.x, right_b.x)) - CAMBER_PAD_PX;
+    float end = max(max(left_a.x, left_b.x), max(right_a.x, right_b.x)) + CAMBER_PAD_PX;
     vec2 near_side = right ? right_a : left_a, far_side = right ? right_b : left_b;
     float low = right ? -1.0 : 1.0; // of the two sides in the picture, as in the plane
     float slope = (far_side.y - near_side.y) / max(abs(far_side.x - near_side.x), 1e-3) *
@@ -295,48 +228,58 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
     bool tapers = abs(far_side.x - near_side.x) > 4.0 && abs(slope) < 1.0;
     float other = max(low * (far ? left_a.y : left_b.y), low * (far ? right_a.y : right_b.y));
     float across = tapers ? max(widest, low * (near_side.y + slope * (at - near_side.x))) : max(widest, other);
-    vec2 found = vec2(at, low * (across + (tapers ? 1.4143 : 1.0) * PAD_PX));
+    vec2 found = vec2(at, low * (across + (tapers ? 1.4143 : 1.0) * CAMBER_PAD_PX));
     place = start + axis * found.x + vec2(-axis.y, axis.x) * found.y;
     return true;
+}
+#endif
+
+#if !PITCHED
+// How far past an end a segment still draws pixels behind the bisector. Where triangles are cut along it, all there are.
+float owner_from(uint join, uint soon, vec2 turn, float half_width) {
+    bool own = camber_owner_side((join & soon) != 0u, turn.x, turn.y, half_width);
+    return camber_owner_from(end_of(join) < CAMBER_ENDS_SPLIT_ROUND, own);
 }
 #endif
 
 // Computes all that is constant over a segment.
 void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a, uint join_b) {
     uint end_a = end_of(join_a), end_b = end_of(join_b);
-    vec2 turn_a = half_turn(turn_of(join_a)), turn_b = half_turn(turn_of(join_b));
+    camber_half_turn(turn_of(join_a), v_turns.x, v_turns.y);
+    camber_half_turn(turn_of(join_b), v_turns.z, v_turns.w);
+    v_shape = vec4(len, half_width, camber_flat_from(end_a, half_width), camber_flat_from(end_b, half_width));
 #if PITCHED
+    camber_pitch_cut cut_a, cut_b;
+    camber_pitch_cut_of(eye(), camber_pitch_end(a.x, a.y, u.x, u.y, half_width, v_turns.x, v_turns.y,
+                                                end_bits(join_a, CAMBER_JOIN_AFTER_FIRST), -1.0), cut_a);
+    camber_pitch_cut_of(eye(), camber_pitch_end(b.x, b.y, u.x, u.y, half_width, v_turns.z, v_turns.w,
+                                                end_bits(join_b, CAMBER_JOIN_BEFORE_LAST), 1.0), cut_b);
     v_segment = vec4(a, u);
     v_end = b;
-    vec2 before = other_direction(u, -1.0, join_a), behind = other_direction(u, 1.0, join_b);
-    float narrowest_a = narrowest_at(a, u, before, half_width), narrowest_b = narrowest_at(b, u, behind, half_width);
-    v_cut_a = seen_cut(a, u, before, -1.0, join_a, narrowest_a);
-    v_cut_b = seen_cut(b, u, behind, 1.0, join_b, narrowest_b);
+    v_cut_a = vec4(cut_a.x, cut_a.y, cut_a.at, cut_a.wide);
+    v_cut_b = vec4(cut_b.x, cut_b.y, cut_b.at, cut_b.wide);
+    v_rest = vec4(0.0, 0.0, cut_a.owner, cut_b.owner);
 #else
+    camber_profile side;
+    camber_profile_of(u.x, u.y, LINEAR != 0, side);
     v_segment = vec4(a - u_origin, u);
-#endif
-    v_shape = vec4(len, half_width, flat_cap(end_a, half_width), flat_cap(end_b, half_width));
-    v_turns = vec4(turn_a, turn_b);
-#if PITCHED
-    v_rest = vec4(0.0, 0.0, own_until(join_a, turn_a, (join_a & AFTER_FIRST) != 0u, narrowest_a),
-                  own_until(join_b, turn_b, (join_b & BEFORE_LAST) != 0u, narrowest_b));
-#else
-    v_rest = vec4(edge_of(u).zw, foreign_from(end_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
-                  foreign_from(end_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width));
+    v_rest = vec4(side.slope, side.curve, owner_from(join_a, CAMBER_JOIN_AFTER_FIRST, v_turns.xy, half_width),
+                  owner_from(join_b, CAMBER_JOIN_BEFORE_LAST, v_turns.zw, half_width));
 #endif
 #if TIPS
-    v_tips = vec2(tip(join_a, half_width), tip(join_b, half_width));
+    v_tips = vec2(camber_tip_from(is_round_cap(join_a), half_width), camber_tip_from(is_round_cap(join_b), half_width));
 #endif
 #if SHARP_JOINS
-    v_ends = uvec3(end_a | end_b << 3, floatBitsToUint(round_from(end_a)), floatBitsToUint(round_from(end_b)));
+    v_ends = uvec3(end_a | end_b << 3, floatBitsToUint(camber_round_from(end_a)),
+                   floatBitsToUint(camber_round_from(end_b)));
 #endif
 }
 
 #if PITCHED
 // Whether a segment ends at a record, from the record before it; of a dot of kite and fan, at itself.
 bool ends_segment(Record r) {
-    bool first = (r.last & FIRST) != 0u && (METHOD == 0 || kind_of(r.join) != DOT);
-    return kind_of(r.join) != SENTINEL && (r.last & (BREAK | START)) == 0u && !first;
+    bool first = (r.last & FIRST) != 0u && (METHOD == 0 || kind_of(r.join) != CAMBER_KIND_DOT);
+    return kind_of(r.join) != CAMBER_KIND_SENTINEL && (r.last & (BREAK | START)) == 0u && !first;
 }
 #endif
 
@@ -347,7 +290,7 @@ void main() {
     int seen_corner = place_in < 3 ? place_in : 6 - place_in;
     Record here = record_at(i);
     const bool goes_out = false;
-    int o = (METHOD != 0 && kind_of(here.join) == DOT) || i == 0 ? i : i - 1;
+    int o = (METHOD != 0 && kind_of(here.join) == CAMBER_KIND_DOT) || i == 0 ? i : i - 1;
 #elif METHOD == 0
     int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id >> 1;
     bool right = (id & 1) != 0;
@@ -358,8 +301,8 @@ void main() {
         here = record_at(i);
     }
     uint kind = kind_of(here.join);
-    bool is_seam = (here.last & RING) != 0u && kind == CUT,
-         is_outer = kind == TIGHT && right == (turn_of(here.join) > 0.0);
+    bool is_seam = (here.last & RING) != 0u && kind == CAMBER_KIND_CUT,
+         is_outer = kind == CAMBER_KIND_TIGHT && right == (turn_of(here.join) > 0.0);
     bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
     bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
     bool is_again = (here.last & START) != 0u; // the end lies between
@@ -369,7 +312,7 @@ void main() {
     uint corner = uint(gl_VertexID) & 127u;
     Record here = record_at(i);
     bool goes_out = corner == CENTRE || corner == OUT_LEFT_CORNER || corner == OUT_RIGHT_CORNER || corner == OUT_TIP;
-    int o = kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1;
+    int o = kind_of(here.join) == CAMBER_KIND_DOT ? i : goes_out ? i + 1 : i - 1;
 #endif
     Record other = record_at(o);
 
@@ -402,7 +345,7 @@ void main() {
     is_drawn = is_drawn && surround(a + middle, u, len, max(half_width, 0.0), join_a, join_b, seen_corner, place);
     hand_over(a + middle, here.p + middle, u, len, half_width, join_a, join_b);
 #else
-    float reach = half_width + PAD_PX;
+    float reach = half_width + CAMBER_PAD_PX;
     vec2 place = here.p + row.zw + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
     hand_over(a + row.zw, here.p, u, len, half_width, join_a, join_b);
@@ -435,8 +378,8 @@ void main() {
     v_image = row_texel(texel + 5);
     float one_px = max(row_texel(texel + 6).x, 1e-3);
     float first = measure_a.x - one_px * floor(measure_a.x / one_px);
-    vec4 turns = vec4(half_turn(turn_of(join_a)), half_turn(turn_of(join_b)));
-    v_pattern = vec4(first / one_px, v_measure.y / one_px, turns.yw / max(turns.xz, 1e-3));
+    v_pattern = vec4(first / one_px, v_measure.y / one_px, camber_image_tangent(v_turns.x, v_turns.y),
+                     camber_image_tangent(v_turns.z, v_turns.w));
 #endif
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
 #if PITCHED

@@ -258,6 +258,9 @@ typedef struct camber_device_desc {
     /* Work-group size of all kernels: 64, 128 or 256 points. It affects speed only; the output is the same bytes.
      * 0 (recommended): chosen for the device. */
     uint32_t work_group_size;
+    /* Lanes of the vectors that OpenCL draws with: 8 or 16. It affects speed only; the output is the same bytes.
+     * 0 (recommended): as wide as the device's own vectors of floats. */
+    uint32_t lanes;
     /* No buffer is made larger than this, which is at least 4096. A mesh that needs more is made in parts of whole
      * polylines; it is read and drawn the same. 0, or more than the device allows: the device's own limit, below 2^31
      * bytes. */
@@ -279,7 +282,7 @@ typedef struct camber_device camber_device;
 
 /* Opens a device. desc may be NULL.
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
- * size that is none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY.
+ * size or lanes that are none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY.
  * No kernel is built here: those of a method are built, or loaded from the cache, when it is first used. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_device **device);

@@ -1,4 +1,4 @@
-/* camber: the files that it reads and writes by itself: polylines for interchange, and PNG.
+/* camber: the files that it reads and writes by itself: polylines for interchange, and pictures as PNG and WebP.
  *
  * The rules of camber.h hold here too.
  */
@@ -60,20 +60,23 @@ typedef struct camber_png_text {
 
 typedef struct camber_png_desc {
     uint32_t width, height;       /* px, 1 to 65535 */
-    bool opaque;                  /* true: alpha is dropped, and the file is RGB. false: RGBA */
+    bool opaque;                  /* true: alpha is dropped. false: it is kept where any pixel has one below 255 */
     const camber_png_text *texts; /* text_count. NULL: none */
     size_t text_count;
-    int compression; /* zlib's level, 1 to 9. 0: 1 */
+    int compression; /* DEFLATE's level, 1 to 9. 0: 1 */
 } camber_png_desc;
 
 typedef struct camber_png camber_png;
 
-/* Makes a writer of a PNG and writes the head. camber_png_write_rows follows until all rows are there, and then
- * camber_png_finish. Once a writer has failed, it goes on failing.
- * Returns CAMBER_ERROR_IO where the sink refuses, CAMBER_ERROR_MEMORY. */
+/* Makes a writer of a PNG. camber_png_write_rows follows until all rows are there, and then camber_png_finish. Up to
+ * 2^22 px it holds the picture, finds a palette where 256 colours are enough, and writes the file at the end. Beyond
+ * that it writes rows as they come, at half the speed and without a palette. Once a writer has failed, it goes on
+ * failing.
+ * Returns CAMBER_ERROR_ARGUMENT (a size, a level or the length of a text's key that is out of range), CAMBER_ERROR_IO
+ * where the sink refuses, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
                                            camber_png **png);
-/* Writes the next rows, from the top down; their colours go to the file unpremultiplied, as PNG wants it.
+/* Takes the next rows, from the top down; their colours go to the file unpremultiplied, as PNG wants it.
  * rgba has row_count rows of width * 4 bytes, premultiplied RGBA8.
  * Returns what camber_png_create returns. */
 CAMBER_API camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count);
@@ -82,6 +85,55 @@ CAMBER_API camber_status camber_png_write_rows(camber_png *png, const uint8_t *r
 CAMBER_API camber_status camber_png_finish(camber_png *png);
 /* Frees the writer, finished or not. */
 CAMBER_API void camber_png_destroy(camber_png *png);
+
+/* ---- Encoders ---------------------------------------------------------------------------------------- */
+
+typedef enum camber_encoding {
+    CAMBER_ENCODING_PNG = 0, /* lossless: a palette where 256 colours are enough, else RGB or RGBA */
+    CAMBER_ENCODING_PNG8,    /* a palette always, whose entries mixtures share; docs/encoding.md has by how much
+                              * they differ. Opaque and transparent pixels stay so */
+    CAMBER_ENCODING_WEBP,
+} camber_encoding;
+
+/* The encoding's short name, as in "png8"; never NULL. */
+CAMBER_API const char *camber_encoding_get_name(camber_encoding encoding);
+/* Whether this build has the encoding: WebP needs libwebp. */
+CAMBER_API bool camber_encoding_is_built(camber_encoding encoding);
+/* The longest side of a picture, px: 16383 of WebP, else 65535. */
+CAMBER_API uint32_t camber_encoding_get_longest_side(camber_encoding encoding);
+
+typedef struct camber_encoder_desc {
+    camber_encoding encoding;
+    bool opaque;                  /* alpha is dropped */
+    int compression;              /* PNG: DEFLATE's level, 1 to 9. 0: 1, and 6 of png8 */
+    int quality;                  /* WebP: 1 to 100, which is lossless. 0: 80 */
+    const camber_png_text *texts; /* PNG: text_count. NULL: none */
+    size_t text_count;
+} camber_encoder_desc;
+
+enum { CAMBER_PIXELS_MOST = 1 << 28 };
+
+/* Premultiplied RGBA8 in rows, from the top down. */
+typedef struct camber_pixels {
+    const uint8_t *rgba;
+    uint32_t width, height; /* 1 to the encoding's longest side, and CAMBER_PIXELS_MOST in all */
+    size_t stride_bytes;    /* from row to row. 0: 4 * width */
+} camber_pixels;
+
+/* Encodes whole pictures in memory, one after another. It keeps its buffers, so tiles of one size need no allocations.
+ * Threads have an encoder each, each of its own context. The same pixels give the same bytes, whatever was encoded
+ * before, with the same versions of libdeflate, zlib and libwebp. */
+typedef struct camber_encoder camber_encoder;
+
+/* Returns CAMBER_ERROR_ARGUMENT (an encoding that is not built, a level, a quality, or a text's key out of range),
+ * CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_encoder_create(camber_context *context, const camber_encoder_desc *desc,
+                                               camber_encoder **encoder);
+/* *bytes are the encoder's until its next call.
+ * Returns CAMBER_ERROR_ARGUMENT (a size out of range), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_encoder_encode(camber_encoder *encoder, const camber_pixels *pixels,
+                                               const uint8_t **bytes, size_t *size_bytes);
+CAMBER_API void camber_encoder_destroy(camber_encoder *encoder);
 
 #ifdef __cplusplus
 }

@@ -120,7 +120,8 @@ CAMBER_API void camber_style_report_destroy(camber_style_report *report);
 
 typedef struct camber_source_desc {
     /* Anything that OGR opens, "/vsigzip/..." included; a .gz is opened through it. Vector tiles in MBTiles and
-     * PMTiles, by their endings, are read without GDAL, unless there is a filter: those of the highest zoom. */
+     * PMTiles, by their endings, are read without GDAL, unless there is a filter: those of the highest zoom. So are
+     * the lines of a PBF of OpenStreetMap, whatever its name, by several threads. */
     const char *path;
     /* The layer that is read. NULL: OSM's "lines". In a vector tile set it is then the layers that the style names, or
      * the road layer where the set has none of them. In other files it is every layer with lines. */
@@ -130,6 +131,7 @@ typedef struct camber_source_desc {
      * third, meet end to end. They do so against their direction too, unless the style names line-dasharray,
      * line-offset, line-gradient or line-pattern. */
     bool keep_apart;
+    uint32_t threads; /* that read a PBF of OpenStreetMap; 0: one a core */
 } camber_source_desc;
 
 typedef struct camber_features_stats {
@@ -165,6 +167,9 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
  * The first call of a process does what camber_gdal_load does, and registers GDAL's drivers. */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
+/* Frees the points of the lines, most of what a set takes. Scenes that were made stay, and are drawn as before. Call it
+ * once there are all that are wanted: none can be made or moved from then on, and nothing more is read. */
+CAMBER_API void camber_features_release_points(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
 CAMBER_API camber_features_times camber_features_get_times(const camber_features *features);
 /* Returns whom to name beside a picture of the data, as UTF-8; NULL: nobody is known. Several names have commas between
@@ -172,6 +177,16 @@ CAMBER_API camber_features_times camber_features_get_times(const camber_features
  * For OpenStreetMap's own formats it is "(c) OpenStreetMap contributors", as their licence asks. For tiles it is what
  * their metadata or the style's source says, without its HTML. For other files nobody is known. */
 CAMBER_API const char *camber_features_get_attribution(const camber_features *features);
+
+/* Writes the box that all lines lie in: west, south, east, north in degrees. false: there are no lines, and bounds
+ * stays as it was. It looks at each point. */
+CAMBER_API bool camber_features_get_bounds(const camber_features *features, double bounds[4]);
+
+/* Gives a set that was read from files another style, from the next scene or engine on, and leaves the lines as they
+ * are. The style must read the same properties as the set's, in the same order, as the themes of one style do; it has
+ * no sprites. It must outlive the set.
+ * Returns CAMBER_ERROR_ARGUMENT where it differs in what it reads; then the files are to be read into another set. */
+CAMBER_API camber_status camber_features_restyle(camber_features *features, const camber_style *style);
 
 /* Returns whether camber_features_read of such a file needs GDAL. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
@@ -244,6 +259,12 @@ typedef struct camber_scene_desc {
     double simplify_px;
     /* true: camber_scene_create leaves out camber_scene_project, which camber_scene_tessellate does not need. */
     bool on_device;
+    /* true: the scene is for this view; another one takes a new network. Points are rounded to 1/4096 px of it, as
+     * tiles of its zoom have them (camber_tiles.h), so that these are cuts of the picture. */
+    bool still;
+    /* The scene's own features, where nothing else is drawn of them: their points go as soon as they are in the
+     * network, as by camber_features_release_points. Needs still. NULL: they stay. */
+    camber_features *spent;
 } camber_scene_desc;
 
 typedef struct camber_scene_info {
@@ -260,6 +281,14 @@ typedef struct camber_scene_info {
 } camber_scene_info;
 
 typedef struct camber_scene camber_scene;
+
+/* Says which scene the files are read for, from the next on. Of these files the set then has the lines that touch the
+ * scene's picture or reach it, by whatever the style may ask for, and no others. FlatGeobuf, GeoPackage and Shapefile
+ * are read by their index where they have one, so that the time is that of what is seen. The set and the picture are
+ * the same with and without an index. A view that fits, and scene NULL: files are read whole, as at first. For another
+ * view read into another set; a scene with another view lacks lines, and says nothing.
+ * Returns CAMBER_ERROR_ARGUMENT (a view out of range). */
+CAMBER_API camber_status camber_features_read_for(camber_features *features, const camber_scene_desc *scene);
 
 /* Makes a scene: evaluates the style, and makes a network of the lines that it draws. The features must outlive the
  * scene. Nothing to draw is no error. Where the style draws none of the features, a warning says the keys that it goes
@@ -289,6 +318,8 @@ CAMBER_API camber_network *camber_scene_get_network(const camber_scene *scene, c
  * trims or patterns when they are drawn.
  * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_scene_project(camber_scene *scene);
+/* Frees the projected lines. What camber_scene_get_info says of them stays until the scene moves. */
+CAMBER_API void camber_scene_release_lines(camber_scene *scene);
 /* Returns what the scene is. layers, features, polylines and points are 0 until the scene is projected. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
 /* These return the lines of a projected scene, in two forms. The scene owns them. */

@@ -34,11 +34,17 @@ typedef struct camber_network_desc {
      * share of that line's length to the second; its arc lengths are those of the longer line. NULL: 0 and 1 for all.
      */
     const float *progress;
+    /* Points of less importance than this are not stored, for cameras that would leave them out in any case. Ends stay,
+     * and arc lengths and the box of all points are as if no point were left out. 0: all are stored. */
+    float least_importance;
+    /* Points are rounded to multiples of this, world units; where their box is too large for it, to twice as much, or 4
+     * times and so on. So networks of parts of a map round its points alike. 0: as fine as the box allows. */
+    double step;
 } camber_network_desc;
 
 /* Polylines in world coordinates, kept on the device from frame to frame. The polylines of a mesh of a network, and of
  * its passes, are the network's entries. Coordinates are rounded to 2^31 steps over the longer side of the box of all
- * points: 0.02 mm for a city of 50 km, 2 cm for the planet. */
+ * points: 0.02 mm for a city of 50 km, 2 cm for the planet; or to steps that the caller chooses. */
 typedef struct camber_network camber_network;
 
 /* Makes a network of polylines, and cleans them as camber_polylines_create does. Points that are not finite split their
@@ -46,8 +52,8 @@ typedef struct camber_network camber_network;
  * point is a ring.
  * Returns CAMBER_ERROR_INPUT (offsets that do not ascend, an entry of no polyline, a row of 2^24 or more),
  * CAMBER_ERROR_LIMIT (2^31 points or more), CAMBER_ERROR_MEMORY.
- * It takes one pass over the points, and keeps 12 bytes a point and 24 a polyline. A device that works in host memory
- * shares them. */
+ * It takes one pass over the points, and keeps 12 bytes a stored point and 24 a polyline. A device that works in host
+ * memory shares them. */
 CAMBER_API camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
                                                camber_network **network);
 /* Frees the network. A mesh that holds it keeps the parts that it needs. */

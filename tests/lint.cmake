@@ -64,17 +64,17 @@ if(CLANG_FORMAT_IS_PINNED)
 endif()
 
 # Each kernel file by itself, as editors check it, in as many builds as show all of it: as for a CPU, where a kernel
-# calls its body (CAMBER_KERNEL), and as for a GPU.
+# calls its body (CAMBER_KERNEL), and as for other devices.
 file(GLOB kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.cl)
-file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
+file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h ${PROJECT_SOURCE_DIR}/kernels/*.inl)
 file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/compile_flags.txt kernel_flags)
 set(build_plain)
 set(build_cpu -DCAMBER_POINT_CHUNK=256 -DCAMBER_HAS_ARC_LENGTH=1 -UCAMBER_METHOD -DCAMBER_METHOD=1 -DCAMBER_RASTER_RICH=1)
 set(build_pitched -DCAMBER_PITCHED=1 -DCAMBER_RASTER_RICH=1 -DCAMBER_RASTER_PITCHED=1)
-set(build_gpu -DCAMBER_LANES=1 -Wno-bitwise-instead-of-logical -UCAMBER_METHOD -DCAMBER_METHOD=2)
+set(build_fan -UCAMBER_METHOD -DCAMBER_METHOD=2)
 foreach(kernel IN LISTS kernels)
   get_filename_component(name ${kernel} NAME_WE)
-  foreach(build plain cpu pitched gpu)
+  foreach(build plain cpu pitched fan)
     lint_step(kernel_${name}_${build}
       COMMAND ${CLANG} ${kernel_flags} -fsyntax-only ${lint_warnings} -Wno-unused-function -Wno-unused-parameter
               -Wno-ignored-pragmas -Wno-missing-field-initializers ${build_${build}} ${kernel}

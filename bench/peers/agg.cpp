@@ -48,17 +48,17 @@ void add_line(rasterizer &cells, const camber_lines &lines, std::size_t polyline
     cells.add_path(stroke);
 }
 
-double draw(const camber_lines *lines, float width_px, uint8_t *rgba, bool one_path) {
+double draw(const bench_peer_frame *frame, bool one_path) {
     const auto begin = std::chrono::steady_clock::now();
-    agg::rendering_buffer buffer(rgba, BENCH_SIDE_PX, BENCH_SIDE_PX, 4 * BENCH_SIDE_PX);
+    agg::rendering_buffer buffer(frame->rgba, BENCH_SIDE_PX, BENCH_SIDE_PX, 4 * BENCH_SIDE_PX);
     pixels format(buffer);
     agg::renderer_base<pixels> base(format);
     base.clear(agg::rgba8(255, 255, 255));
     rasterizer cells(one_path ? 65536 : 1024); /* blocks of cells: all lines at once take more than its usual limit */
     cells.clip_box(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX);
     agg::scanline_u8 scanline;
-    for (std::size_t i = 0; i < lines->polyline_count; i++) {
-        add_line(cells, *lines, i, static_cast<double>(width_px));
+    for (std::size_t i = 0; i < frame->lines->polyline_count; i++) {
+        add_line(cells, *frame->lines, i, static_cast<double>(frame->width_px));
         if (!one_path)
             agg::render_scanlines_aa_solid(cells, scanline, base, agg::rgba8(0, 0, 0));
     }
@@ -67,21 +67,25 @@ double draw(const camber_lines *lines, float width_px, uint8_t *rgba, bool one_p
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-double draw_lines(const camber_lines *lines, float width_px, uint8_t *rgba) {
-    return draw(lines, width_px, rgba, false);
+double draw_lines(const bench_peer_frame *frame) {
+    return draw(frame, false);
 }
 
-double draw_path(const camber_lines *lines, float width_px, uint8_t *rgba) {
-    return draw(lines, width_px, rgba, true);
+double draw_path(const bench_peer_frame *frame) {
+    return draw(frame, true);
 }
 
 const char *version() {
     return CAMBER_BENCH_AGG;
 }
 
+const char *build() {
+    return CAMBER_BENCH_BUILD;
+}
+
 } // namespace
 
 extern "C" {
-const bench_peer bench_peer_agg = {"agg", "AGG", version, draw_lines};
-const bench_peer bench_peer_agg_path = {"agg_path", "AGG, one path", version, draw_path};
+const bench_peer bench_peer_agg = {"agg", "AGG", "a line at a time", version, build, draw_lines};
+const bench_peer bench_peer_agg_path = {"agg_path", "AGG", "one path", version, build, draw_path};
 }

@@ -9,6 +9,10 @@ static const char *version(void) {
     return cairo_version_string();
 }
 
+static const char *build(void) {
+    return CAMBER_BENCH_CAIRO;
+}
+
 static void add_line(cairo_t *cairo, const camber_lines *lines, size_t polyline) {
     const size_t first = lines->offsets[polyline], end = lines->offsets[polyline + 1];
     if (end - first < 2)
@@ -18,19 +22,19 @@ static void add_line(cairo_t *cairo, const camber_lines *lines, size_t polyline)
         cairo_line_to(cairo, (double)lines->points[2 * k], (double)lines->points[2 * k + 1]);
 }
 
-static double draw(const camber_lines *lines, float width_px, uint8_t *rgba, bool one_path) {
-    cairo_surface_t *surface =
-        cairo_image_surface_create_for_data(rgba, CAIRO_FORMAT_RGB24, BENCH_SIDE_PX, BENCH_SIDE_PX, 4 * BENCH_SIDE_PX);
+static double draw(const bench_peer_frame *frame, bool one_path) {
+    cairo_surface_t *surface = cairo_image_surface_create_for_data(frame->rgba, CAIRO_FORMAT_RGB24, BENCH_SIDE_PX,
+                                                                   BENCH_SIDE_PX, 4 * BENCH_SIDE_PX);
     cairo_t *cairo = cairo_create(surface);
     const double begin = camber_now_ms();
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
     cairo_set_source_rgb(cairo, 0, 0, 0);
-    cairo_set_line_width(cairo, (double)width_px);
+    cairo_set_line_width(cairo, (double)frame->width_px);
     cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
     cairo_set_tolerance(cairo, 0.25);
-    for (size_t i = 0; i < lines->polyline_count; i++) {
-        add_line(cairo, lines, i);
+    for (size_t i = 0; i < frame->lines->polyline_count; i++) {
+        add_line(cairo, frame->lines, i);
         if (!one_path)
             cairo_stroke(cairo);
     }
@@ -43,13 +47,13 @@ static double draw(const camber_lines *lines, float width_px, uint8_t *rgba, boo
     return done ? ms : -1;
 }
 
-static double draw_lines(const camber_lines *lines, float width_px, uint8_t *rgba) {
-    return draw(lines, width_px, rgba, false);
+static double draw_lines(const bench_peer_frame *frame) {
+    return draw(frame, false);
 }
 
-static double draw_path(const camber_lines *lines, float width_px, uint8_t *rgba) {
-    return draw(lines, width_px, rgba, true);
+static double draw_path(const bench_peer_frame *frame) {
+    return draw(frame, true);
 }
 
-const bench_peer bench_peer_cairo = {"cairo", "Cairo", version, draw_lines};
-const bench_peer bench_peer_cairo_path = {"cairo_path", "Cairo, one path", version, draw_path};
+const bench_peer bench_peer_cairo = {"cairo", "Cairo", "a line at a time", version, build, draw_lines};
+const bench_peer bench_peer_cairo_path = {"cairo_path", "Cairo", "one path", version, build, draw_path};

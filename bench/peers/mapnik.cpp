@@ -64,15 +64,15 @@ mapnik::Map make_map(const camber_lines &lines, double width_px) {
     return map;
 }
 
-double draw(const camber_lines *lines, float width_px, uint8_t *rgba) {
+double draw(const bench_peer_frame *frame) {
     try {
-        const mapnik::Map map = make_map(*lines, static_cast<double>(width_px));
+        const mapnik::Map map = make_map(*frame->lines, static_cast<double>(frame->width_px));
         const auto begin = std::chrono::steady_clock::now();
         mapnik::image_rgba8 image(BENCH_SIDE_PX, BENCH_SIDE_PX);
         mapnik::agg_renderer<mapnik::image_rgba8> renderer(map, image);
         renderer.apply();
         const auto end = std::chrono::steady_clock::now();
-        std::memcpy(rgba, image.bytes(), image.size());
+        std::memcpy(frame->rgba, image.bytes(), image.size());
         return std::chrono::duration<double, std::milli>(end - begin).count();
     } catch (const std::exception &) {
         return -1;
@@ -83,6 +83,10 @@ const char *version() {
     return MAPNIK_VERSION_STRING;
 }
 
+const char *build() {
+    return CAMBER_BENCH_BUILD;
+}
+
 } // namespace
 
-extern "C" const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", version, draw};
+extern "C" const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", "", version, build, draw};

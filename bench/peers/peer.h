@@ -5,20 +5,31 @@
 
 #include "camber_files.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 enum { BENCH_SIDE_PX = 2048 };
 
+typedef struct bench_peer_frame {
+    const camber_lines *lines; /* in pixels */
+    float width_px;
+    bool avx2_only; /* a peer that makes its code at run time makes none that needs more than AVX2 */
+    uint8_t *rgba;  /* BENCH_SIDE_PX rows of as many pixels of four bytes, whose first three will be equal */
+} bench_peer_frame;
+
 typedef struct bench_peer {
     const char *key;  /* "cairo_path", in the JSON; what comes before _ names the library */
-    const char *name; /* "Cairo, one path" */
+    const char *name; /* "Cairo"; its ways to draw have one name */
+    const char *way;  /* "two threads, one path": what tells this way from the library's others; "": it has one */
     const char *(*version)(void);
-    /* Draws lines, in pixels, to rgba: BENCH_SIDE_PX rows of as many pixels of four bytes whose first three are equal.
-     * Gives the milliseconds from the library's own form of the lines in memory to the picture in memory; below 0
+    /* "gcc 12.2.0 -O2": what the library was compiled with, as far as it is known. */
+    const char *(*build)(void);
+    /* Gives the milliseconds from the library's own form of the lines in memory to the picture in memory; below 0
      * where it failed. */
-    double (*draw)(const camber_lines *lines, float width_px, uint8_t *rgba);
+    double (*draw)(const bench_peer_frame *frame);
 } bench_peer;
 
 /* bench_peer_count of them, those that are built in. */
@@ -28,7 +39,8 @@ extern const size_t bench_peer_count;
 extern const char *const bench_peers_missing;
 
 extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_agg, bench_peer_agg_path, bench_peer_mapnik,
-    bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads;
+    bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads, bench_peer_blend2d_threads_path,
+    bench_peer_thorvg, bench_peer_thorvg_threads;
 
 #ifdef __cplusplus
 }

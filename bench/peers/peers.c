@@ -16,6 +16,11 @@ const bench_peer *const bench_peers[] = {
     &bench_peer_blend2d,
     &bench_peer_blend2d_path,
     &bench_peer_blend2d_threads,
+    &bench_peer_blend2d_threads_path,
+#endif
+#ifdef CAMBER_BENCH_THORVG
+    &bench_peer_thorvg,
+    &bench_peer_thorvg_threads,
 #endif
     NULL,
 };
@@ -34,5 +39,8 @@ const char *const bench_peers_missing = ""
 #endif
 #ifndef CAMBER_BENCH_BLEND2D
                                         "Blend2D (no Debian package: blend2d_DIR) "
+#endif
+#ifndef CAMBER_BENCH_THORVG
+                                        "ThorVG (no Debian package: CMAKE_PREFIX_PATH) "
 #endif
     ;

@@ -35,6 +35,7 @@ struct camber_context {
     camber_device_info *devices; /* that camber_device_list has found, looked for once */
     size_t device_count;
     bool saves_shared; /* cache.c: files are saved for all users of the machine */
+    void *spare;       /* a block for camber_alloc_spare; NULL: none */
 };
 
 /* camber_alloc leaves the memory uncleared, camber_alloc_zero clears it. Both return NULL and log an error if there is
@@ -45,6 +46,10 @@ void *camber_alloc_zero(camber_context *context, size_t count, size_t size_bytes
  * pointer to elements, and capacity counts elements. On failure returns false and keeps the old block. */
 bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t needed, size_t size_bytes);
 void camber_free(camber_context *context, void *block);
+/* For a block that each frame makes anew: one that was freed is kept for the next, if it is large and memory has no
+ * bound. Fresh pages cost more than to fill them. The contents are whatever was left. */
+void *camber_alloc_spare(camber_context *context, size_t count, size_t size_bytes);
+void camber_free_spare(camber_context *context, void *block);
 /* Resizes without logging. block may be NULL. Returns NULL if there is no memory, and keeps the block as it was. */
 void *camber_resize_quietly(camber_context *context, void *block, size_t size_bytes);
 char *camber_copy_string(camber_context *context, const char *text);

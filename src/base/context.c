@@ -51,6 +51,7 @@ void camber_context_destroy(camber_context *context) {
     if (!context)
         return;
     const camber_context_desc desc = context->desc;
+    camber_free(context, context->spare);
     camber_free(context, context->devices);
     camber_free(context, (char *)(uintptr_t)desc.cache_dir);
     camber_free(context, (char *)(uintptr_t)desc.access.root);
@@ -93,6 +94,9 @@ const char *camber_version(void) {
  * alignment. */
 enum { HEAD_BYTES = 16 };
 
+/* Blocks that are kept for the next frame: smaller ones are cheap to make, and larger ones have 5 million points. */
+static const size_t LEAST_SPARE_BYTES = 256 << 10, MOST_SPARE_BYTES = 64 << 20;
+
 static size_t size_of(const void *block) {
     size_t size_bytes = 0;
     if (block)
@@ -100,9 +104,20 @@ static size_t size_of(const void *block) {
     return size_bytes;
 }
 
+static void drop_spare(camber_context *context) {
+    void *spare = context->spare;
+    context->spare = NULL;
+    camber_free(context, spare);
+}
+
 void *camber_resize_quietly(camber_context *context, void *block, size_t size_bytes) {
     const size_t before = size_of(block), more = size_bytes > before ? size_bytes - before : 0;
-    if (size_bytes > SIZE_MAX - HEAD_BYTES || !camber_budget_take(context, more))
+    bool allowed = size_bytes <= SIZE_MAX - HEAD_BYTES && camber_budget_take(context, more);
+    if (!allowed && context->spare) {
+        drop_spare(context);
+        allowed = size_bytes <= SIZE_MAX - HEAD_BYTES && camber_budget_take(context, more);
+    }
+    if (!allowed)
         return NULL;
     char *head = block ? (char *)block - HEAD_BYTES : NULL;
     char *made = context->desc.reallocate(context->desc.allocator_user, head, HEAD_BYTES + size_bytes);
@@ -160,6 +175,27 @@ void camber_free(camber_context *context, void *block) {
         return;
     camber_budget_give(context, size_of(block));
     context->desc.reallocate(context->desc.allocator_user, (char *)block - HEAD_BYTES, 0);
+}
+
+void *camber_alloc_spare(camber_context *context, size_t count, size_t size_bytes) {
+    void *spare = context->spare;
+    const bool fits = size_of(spare) / size_bytes >= count && size_of(spare) / size_bytes / 4 <= count;
+    if (spare && !fits)
+        drop_spare(context);
+    if (!spare || !fits)
+        return camber_alloc(context, count, size_bytes);
+    context->spare = NULL;
+    return spare;
+}
+
+void camber_free_spare(camber_context *context, void *block) {
+    const size_t size_bytes = size_of(block);
+    const bool is_kept = !context->spare && !context->budget->desc.memory_bytes && size_bytes >= LEAST_SPARE_BYTES &&
+                         size_bytes <= MOST_SPARE_BYTES;
+    if (is_kept)
+        context->spare = block;
+    else
+        camber_free(context, block);
 }
 
 char *camber_copy_string(camber_context *context, const char *text) {

@@ -7,14 +7,13 @@ extern const char camber_tessellate_kernels[], camber_cull_kernels[], camber_arc
 extern const unsigned long camber_tessellate_kernels_size, camber_cull_kernels_size, camber_arc_length_kernels_size;
 extern const char camber_offset_kernels[], camber_raster_kernels[];
 extern const unsigned long camber_offset_kernels_size, camber_raster_kernels_size;
-extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
-extern const unsigned long camber_edge_glsl_size;
+/* shaders/ without their #version line, with what they include */
 extern const char camber_stroke_vert[], camber_stroke_frag[];
 extern const unsigned long camber_stroke_vert_size, camber_stroke_frag_size;
 extern const char camber_flatten_vert[], camber_flatten_frag[];
 extern const unsigned long camber_flatten_vert_size, camber_flatten_frag_size;
-extern const char camber_count_frag[];
-extern const unsigned long camber_count_frag_size;
+extern const char camber_images_frag[], camber_count_frag[];
+extern const unsigned long camber_images_frag_size, camber_count_frag_size;
 extern const char camber_style_light[], camber_style_dark[]; /* src/style/ */
 extern const unsigned long camber_style_light_size, camber_style_dark_size;
 extern const char camber_style_openmaptiles_light[], camber_style_openmaptiles_dark[];

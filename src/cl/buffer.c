@@ -42,11 +42,20 @@ void camber_release_buffer(const camber_device *device, cl_mem *mem) {
     clReleaseMemObject(held);
 }
 
+static camber_status write_buffer(const camber_device *device, cl_mem mem, cl_bool waits, size_t offset_bytes,
+                                  size_t size_bytes, const void *bytes) {
+    const cl_int code = clEnqueueWriteBuffer(device->queue, mem, waits, offset_bytes, size_bytes, bytes, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
+}
+
 camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
                                   const void *bytes) {
-    const cl_int code =
-        clEnqueueWriteBuffer(device->queue, mem, CL_TRUE, offset_bytes, size_bytes, bytes, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
+    return write_buffer(device, mem, CL_TRUE, offset_bytes, size_bytes, bytes);
+}
+
+camber_status camber_write_buffer_later(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
+                                        const void *bytes) {
+    return write_buffer(device, mem, CL_FALSE, offset_bytes, size_bytes, bytes);
 }
 
 /* ---- Output buffers that GL does not read ---- */

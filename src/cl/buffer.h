@@ -11,6 +11,10 @@ camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags
 void camber_release_buffer(const camber_device *device, cl_mem *mem);
 camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
                                   const void *bytes);
+/* The same without a wait, which takes longer than a short write: the bytes must stay until the queue has been waited
+ * for. */
+camber_status camber_write_buffer_later(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
+                                        const void *bytes);
 
 /* An output buffer: kernels write it, and GL may read it. src/gl/share_*.c has the ways to share it. */
 typedef struct camber_buffer {

@@ -247,12 +247,25 @@ enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 /* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
-/* Sets the work-group's size and the largest buffer, from the desc's bounds and the device's. */
+/* Lanes that are as wide as the device's vectors. */
+static camber_status native_lanes(const camber_device *device, unsigned *lanes) {
+    cl_uint floats = 0;
+    const cl_int code = clGetDeviceInfo(device->id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof floats, &floats, NULL);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clGetDeviceInfo", code);
+    *lanes = floats >= 16 ? 16 : 8;
+    return CAMBER_OK;
+}
+
+/* Sets the work-group's size, the lanes and the largest buffer, from the desc's bounds and the device's. */
 static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
                            "a work-group of %u points; it must be 64, 128, 256, or 0 for 256", size);
+    if (desc->lanes != 0 && desc->lanes != 8 && desc->lanes != 16)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "vectors of %u lanes; it must be 8, 16, or 0 for the device's own width", desc->lanes);
     if (desc->largest_buffer_bytes != 0 && desc->largest_buffer_bytes < LEAST_BUFFER_BYTES)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
                            "a largest buffer of %llu bytes; it must be %d or more, or 0 for the device's own limit",
@@ -263,7 +276,7 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
                            (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
     device->block = size ? size : CAMBER_BLOCK;
     device->point_chunk = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_POINT_CHUNK;
-    device->lanes = device->point_chunk == device->block ? 16 : 1;
+    device->lanes = desc->lanes;
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
         *largest = LARGEST_BUFFER_BYTES;
@@ -271,7 +284,7 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
         *largest = desc->gl.largest_buffer_bytes;
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
-    return CAMBER_OK;
+    return device->lanes ? CAMBER_OK : native_lanes(device, &device->lanes);
 }
 
 /* Bounds what meshes may hold. Where the desc gives no bound, a device with memory of its own keeps a quarter of it for

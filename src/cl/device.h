@@ -18,7 +18,7 @@ struct camber_device {
     bool gl_context;       /* cl was made for a GL context, so that GL buffers can be shared */
     size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels are built */
     size_t point_chunk;    /* points a work-item: CAMBER_POINT_CHUNK */
-    unsigned lanes;        /* pixels a work-item of the rasterizer: CAMBER_LANES */
+    unsigned lanes;        /* of the rasterizer's vectors: CAMBER_LANES */
     /* Programs, each NULL until it is first used. */
     struct camber_program *programs[2][2][3];      /* [has arc lengths][has round limits][camber_method] */
     struct camber_program *network_programs[2][2]; /* [has arc lengths][the camera has a pitch] */

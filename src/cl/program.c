@@ -309,8 +309,7 @@ camber_status camber_device_raster_program(camber_device *device, unsigned varia
     recipe from = {PROGRAM_RASTER, "drawing", camber_raster_kernels, camber_raster_kernels_size, ""};
     set_options(device, -1, false, &from);
     const size_t used = strlen(from.options);
-    snprintf(from.options + used, sizeof from.options - used, "%s%s%s",
-             variant == 0 && device->lanes == 1 ? " -DCAMBER_LANES=1" : "",
+    snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_LANES=%u%s%s", device->lanes,
              variant & CAMBER_RASTER_RICH ? " -DCAMBER_RASTER_RICH=1" : "",
              variant & CAMBER_RASTER_PITCHED ? " -DCAMBER_RASTER_PITCHED=1" : "");
     return ensure_program(device, &from, &device->raster_programs[variant], program);

@@ -24,8 +24,7 @@ typedef struct camber_program_desc {
     bool round_limits; /* a stroke has one. Without them classify is a fifth faster on PoCL */
 } camber_program_desc;
 
-/* Variants of the rasterizer, as bits: the compiler is given each bit that is set as a macro with the value 1. All
- * variants but the plain one (0) are built for 16 lanes on every device. */
+/* Variants of the rasterizer, as bits: the compiler is given each bit that is set as a macro with the value 1. */
 #define CAMBER_RASTER_RICH 1
 #define CAMBER_RASTER_PITCHED 2 /* only together with RICH */
 

@@ -64,8 +64,10 @@ static camber_status read_features(camber_compared_networks *networks, const cha
     camber_status status = camber_features_create(networks->session->context, networks->style, features);
     for (size_t i = 0; i < options->input_count && status == CAMBER_OK; i++) {
         const bool standard = strcmp(options->inputs[i], "-") == 0;
-        const camber_source_desc desc = {
-            .path = standard ? networks->copy.path : options->inputs[i], .layer = options->layer, .where = where};
+        const camber_source_desc desc = {.path = standard ? networks->copy.path : options->inputs[i],
+                                         .layer = options->layer,
+                                         .where = where,
+                                         .threads = options->threads};
         networks->session->report->spool = networks->copy.path;
         status = camber_features_read(*features, &desc);
         networks->session->report->spool = NULL;

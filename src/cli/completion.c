@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-static const char style_actions[] = "check eval";
+static const char style_actions[] = "check eval", tiles_actions[] = "show verify merge";
 
 /* The names of the styles that ship with camber. */
 static void print_styles(FILE *file) {
@@ -37,7 +37,7 @@ static void print_choice(const char *words, FILE *file) {
 }
 
 static bool takes_files(const camber_verb_spec *verb) {
-    return strstr(verb->operands, "INPUT") != NULL;
+    return strstr(verb->operands, "INPUT") != NULL && verb->verb != CAMBER_VERB_TILES;
 }
 
 /* Whether the completion for a verb offers an option: those that its help lists. */
@@ -87,7 +87,9 @@ static void print_bash_operands(FILE *file) {
 #ifdef CAMBER_MAP
     fprintf(file, "    style:) echo '%s' ;;\n    style:check) echo '@files ", style_actions);
     print_styles(file);
-    fputs("' ;;\n    style:*) echo '@files' ;;\n", file);
+    fprintf(file,
+            "' ;;\n    style:*) echo '@files' ;;\n    tiles:) echo '@files %s' ;;\n    tiles:*) echo '@files' ;;\n",
+            tiles_actions);
 #endif
     fputs("    : | help:) echo '", file);
     print_verbs(file);
@@ -196,7 +198,8 @@ static void print_zsh_option(const camber_option_spec *spec, camber_verb verb, F
         fprintf(file, "'(-%c --%s)'{-%c%s,--%s%s}'[", spec->letter, name, spec->letter, spec->argument ? "+" : "", name,
                 is);
     else
-        fprintf(file, "'%s--%s%s[", spec->kind == CAMBER_OPTION_WHERES ? "*" : "", name, is);
+        fprintf(file, "'%s--%s%s[", spec->kind == CAMBER_OPTION_WHERES || spec->kind == CAMBER_OPTION_PLACES ? "*" : "",
+                name, is);
     print_escaped(camber_option_help(spec, verb), file);
     fputc(']', file);
     print_zsh_value(spec, file);
@@ -216,6 +219,9 @@ static void print_zsh_verb(const camber_verb_spec *verb, FILE *file) {
         fputs(" \\\n            '*:INPUT:_files'", file);
     if (verb->verb == CAMBER_VERB_STYLE)
         fprintf(file, " \\\n            '1:action:(%s)' '2:style:_camber_styles'", style_actions);
+    if (verb->verb == CAMBER_VERB_TILES)
+        fprintf(file, " \\\n            '1: :_alternative \"actions:action:(%s)\" files:INPUT:_files' '*:file:_files'",
+                tiles_actions);
     fputs("\n        ;;\n", file);
 }
 

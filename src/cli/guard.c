@@ -116,7 +116,8 @@ static void *wait_for_signal(void *user) {
             continue;
         }
         stopping = guard->stopping && number == SIGTERM;
-        if (!stopping && !sigismember(&guard->ignored, number))
+        const bool heeded = guard->heed && guard->heed(guard->heed_user, number);
+        if (!stopping && !heeded && !sigismember(&guard->ignored, number))
             camber_guard_end(guard, 128 + number);
         camber_guard_unlock(guard);
     }

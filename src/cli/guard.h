@@ -23,6 +23,11 @@ typedef struct camber_guard {
     bool stopping;
     void (*look)(void *user); /* called by the thread now and then, with the guard locked. NULL: nothing */
     void *look_user;
+    /* Takes a signal from outside, with the guard locked. Returns whether it does; else the process ends. NULL: it
+     * ends.
+     */
+    bool (*heed)(void *user, int number);
+    void *heed_user;
     _Atomic(camber_guard_handler *)
         after_abort;                           /* a library's handler of aborts, called after the guard's. NULL: none */
     bool erase_bar;                            /* a progress bar may stand on standard error */

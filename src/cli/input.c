@@ -221,8 +221,10 @@ static int read_file(camber_input *input, const char *path) {
         if (status != CAMBER_EXIT_DONE)
             return status;
     }
-    const camber_source_desc desc = {
-        .path = copy.path ? copy.path : path, .layer = session->options->layer, .where = session->options->where};
+    const camber_source_desc desc = {.path = copy.path ? copy.path : path,
+                                     .layer = session->options->layer,
+                                     .where = session->options->where,
+                                     .threads = session->options->threads};
     session->report->spool = copy.path;
     camber_watch_begin(&session->watch, desc.path);
     const camber_status status = camber_features_read(input->features, &desc);
@@ -232,9 +234,23 @@ static int read_file(camber_input *input, const char *path) {
     return camber_report_status(session->report, status);
 }
 
+/* Verbs that draw one picture read what it needs. */
+static int read_for_view(const camber_input *input, bool *done) {
+    const camber_options *options = input->session->options;
+    if (input->session->read_for)
+        return camber_report_status(input->session->report,
+                                    input->session->read_for(input->session->read_for_user, input->features, done));
+    const bool one = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_TESSELLATE;
+    if (!one || options->input_count == 0)
+        return CAMBER_EXIT_DONE;
+    const camber_scene_desc desc = {.view = input->view, .simplify_px = options->simplify_px};
+    return camber_report_status(input->session->report, camber_features_read_for(input->features, &desc));
+}
+
 static int open_map(camber_input *input) {
     camber_session *session = input->session;
     const double start_ms = camber_clock_ms();
+    bool done = false;
     int status = open_style(input);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         take_view(input);
@@ -243,7 +259,9 @@ static int open_map(camber_input *input) {
     if (status == CAMBER_EXIT_DONE)
         status = camber_report_status(session->report,
                                       camber_features_create(session->context, input->style, &input->features));
-    for (size_t i = 0; i < session->options->input_count && status == CAMBER_EXIT_DONE; i++)
+    if (status == CAMBER_EXIT_DONE)
+        status = read_for_view(input, &done);
+    for (size_t i = 0; !done && i < session->options->input_count && status == CAMBER_EXIT_DONE; i++)
         status = read_file(input, session->options->inputs[i]);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         status = read_sources(input);
@@ -264,8 +282,21 @@ static int open_map(camber_input *input) {
 static camber_status project_map(camber_input *input) {
     if (input->scene)
         return camber_scene_move(input->scene, &input->view);
-    const camber_scene_desc desc = {.view = input->view, .simplify_px = input->session->options->simplify_px};
-    return camber_scene_create(input->features, &desc, &input->scene);
+    const bool once = input->session->options->verb == CAMBER_VERB_RENDER;
+    const camber_scene_desc desc = {.view = input->view,
+                                    .simplify_px = input->session->options->simplify_px,
+                                    .on_device = once,
+                                    .still = once,
+                                    .spent = once ? input->features : NULL};
+    camber_status status = camber_scene_create(input->features, &desc, &input->scene);
+    if (status != CAMBER_OK || !once)
+        return status;
+    /* One picture is drawn, of the network: its lines are counted, and go. */
+    status = camber_scene_project(input->scene);
+    if (status == CAMBER_OK)
+        input->drawn = camber_polylines_get_stats(camber_scene_get_polylines(input->scene));
+    camber_scene_release_lines(input->scene);
+    return status;
 }
 #endif
 
@@ -321,7 +352,10 @@ static bool knows_why_empty(const camber_input *input) {
 }
 
 void camber_input_warn_empty(const camber_input *input, const char *consequence) {
-    if (camber_polylines_get_stats(camber_input_polylines(input)).polylines > 0 || knows_why_empty(input))
+    const bool once = input->session->options->verb == CAMBER_VERB_RENDER;
+    const camber_polylines_stats drawn =
+        once ? input->drawn : camber_polylines_get_stats(camber_input_polylines(input));
+    if (drawn.polylines > 0 || knows_why_empty(input))
         return;
     camber_report_warn(input->session->report, "%s; %s",
                        input->features ? "no line that the style draws is in the view" : "no polylines", consequence);

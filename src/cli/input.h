@@ -24,6 +24,7 @@ typedef struct camber_input {
     const char *base_path; /* the style's paths are relative to its folder. NULL: to the working folder */
     camber_features *features;
     camber_scene *scene;
+    camber_polylines_stats drawn; /* render: of the lines in the picture, which are released once they are counted */
 } camber_input;
 
 /* Reads the files that the options name. Returns an exit status, its line printed; the input can be closed in any

@@ -15,10 +15,14 @@ static int run(camber_session *session) {
     case CAMBER_VERB_RENDER: return camber_verb_render(session);
     case CAMBER_VERB_TESSELLATE: return camber_verb_tessellate(session);
     case CAMBER_VERB_STYLE: return camber_verb_style(session);
+    case CAMBER_VERB_TILES: return camber_verb_tiles(session);
+    case CAMBER_VERB_SERVE: return camber_verb_serve(session);
 #else
     case CAMBER_VERB_RENDER:
     case CAMBER_VERB_TESSELLATE:
-    case CAMBER_VERB_STYLE: break; /* this build does not parse these verbs */
+    case CAMBER_VERB_STYLE:
+    case CAMBER_VERB_TILES:
+    case CAMBER_VERB_SERVE: break; /* this build does not parse these verbs */
 #endif
     case CAMBER_VERB_COMPARE: return camber_verb_compare(session);
     case CAMBER_VERB_VALIDATE: return camber_verb_validate(session);

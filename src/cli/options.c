@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* A tenth of a pixel does not show, and drops a fifth to a third of a city's points. */
 #define DRAWN_SIMPLIFY_PX 0.1
@@ -63,18 +64,17 @@ void camber_options_help(camber_verb verb, FILE *file) {
 
 /* ---- Values ---- */
 
-typedef struct parser {
-    camber_options *options;
-    char *message;
-    size_t message_size;
-} parser;
-
-static int usage(const parser *p, const char *format, ...) {
+int camber_options_refuse(const camber_option_reader *reader, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    vsnprintf(p->message, p->message_size, format, list);
+    vsnprintf(reader->message, reader->message_size, format, list);
     va_end(list);
     return CAMBER_EXIT_USAGE;
+}
+
+bool camber_path_ends_with(const char *path, const char *end) {
+    const size_t length = strlen(path), tail = strlen(end);
+    return length > tail && strcasecmp(path + length - tail, end) == 0;
 }
 
 /* Finite decimal numbers only: strtod alone also takes blanks, hexadecimal, inf and nan. *text moves behind. */
@@ -129,7 +129,7 @@ static bool parse_bytes(const char *text, double least, double most, uint64_t *b
     return true;
 }
 
-static int parse_choice(const parser *p, const camber_option_spec *spec, const char *text, int *value) {
+static int parse_choice(const camber_option_reader *p, const camber_option_spec *spec, const char *text, int *value) {
     const size_t size = strlen(text);
     int index = 0;
     for (const char *word = spec->argument ? spec->argument : ""; *word; index++) {
@@ -140,16 +140,17 @@ static int parse_choice(const parser *p, const camber_option_spec *spec, const c
         }
         word += length + (word[length] == '|');
     }
-    return usage(p, "--%s %s: not one of %s; choose one of them", spec->name, text, spec->argument);
+    return camber_options_refuse(p, "--%s %s: not one of %s; choose one of them", spec->name, text, spec->argument);
 }
 
-static int parse_view(const parser *p, const camber_option_spec *spec, const char *text) {
+static int parse_view(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
     camber_options *options = p->options;
     double n[4];
     if (spec->kind == CAMBER_OPTION_BBOX) {
         if (!parse_numbers(text, 4, n) || fabs(n[0]) > 180 || fabs(n[2]) > 180 || fabs(n[1]) > 90 || fabs(n[3]) > 90 ||
             n[1] >= n[3] || n[0] == n[2])
-            return usage(p, "--bbox %s: not a box; give west,south,east,north in degrees, south below north", text);
+            return camber_options_refuse(
+                p, "--bbox %s: not a box; give west,south,east,north in degrees, south below north", text);
         options->has_bbox = true;
         options->view.west = n[0];
         options->view.south = n[1];
@@ -159,7 +160,7 @@ static int parse_view(const parser *p, const camber_option_spec *spec, const cha
     }
     if (spec->kind == CAMBER_OPTION_CENTER) {
         if (!parse_numbers(text, 2, n) || fabs(n[0]) > 180 || fabs(n[1]) > 90)
-            return usage(p, "--center %s: not a place; give longitude,latitude in degrees", text);
+            return camber_options_refuse(p, "--center %s: not a place; give longitude,latitude in degrees", text);
         options->has_center = true;
         options->view.longitude = n[0];
         options->view.latitude = n[1];
@@ -168,23 +169,45 @@ static int parse_view(const parser *p, const camber_option_spec *spec, const cha
     const char *rest = text;
     if (!parse_count(&rest, &options->view.width) || (*rest != 'x' && *rest != 'X') ||
         (rest++, !parse_count(&rest, &options->view.height)) || *rest != 0)
-        return usage(p, "--size %s: not a size; give WIDTHxHEIGHT in CSS px, as in 1024x768", text);
+        return camber_options_refuse(p, "--size %s: not a size; give WIDTHxHEIGHT in CSS px, as in 1024x768", text);
     if (options->view.width < 1 || options->view.height < 1)
-        return usage(p, "--size %s: a side of 0; both sides are 1 or more", text);
+        return camber_options_refuse(p, "--size %s: a side of 0; both sides are 1 or more", text);
     return CAMBER_EXIT_DONE;
 }
 
+static int parse_place(const camber_option_reader *p, const char *text) {
+    camber_tiles_place place;
+    if (!camber_options_parse_place(text, &place))
+        return camber_options_refuse(p, "--tile %s: no tile; give zoom/column/row, as in 12/1950/1533", text);
+    p->options->places[p->options->place_count++] = place;
+    return CAMBER_EXIT_DONE;
+}
+
+bool camber_options_parse_place(const char *text, camber_tiles_place *place) {
+    uint32_t n[3];
+    for (int i = 0; i < 3; i++) {
+        if ((i > 0 && *text++ != '/') || !parse_count(&text, &n[i]))
+            return false;
+    }
+    if (*text || n[0] > 24 || n[1] >> n[0] || n[2] >> n[0])
+        return false;
+    *place = (camber_tiles_place){(int)n[0], n[1], n[2]};
+    return true;
+}
+
 /* Files have it as UTF-8. */
-static int parse_words(const parser *p, const camber_option_spec *spec, const char *text, const char **value) {
+static int parse_words(const camber_option_reader *p, const camber_option_spec *spec, const char *text,
+                       const char **value) {
     json_t *checked = json_string(text);
     json_decref(checked);
     if (!checked)
-        return usage(p, "--%s: is not UTF-8; write it in a terminal whose locale is", spec->name);
+        return camber_options_refuse(p, "--%s: is not UTF-8; write it in a terminal whose locale is", spec->name);
     *value = text;
     return CAMBER_EXIT_DONE;
 }
 
-static int parse_value(const parser *p, const camber_option_spec *spec, const char *text) {
+static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
+    p->options->given[spec - camber_option_specs] = true;
     char *field = (char *)p->options + spec->offset;
     switch (spec->kind) {
     case CAMBER_OPTION_FLAG: *(bool *)(void *)field = true; return CAMBER_EXIT_DONE;
@@ -195,17 +218,18 @@ static int parse_value(const parser *p, const camber_option_spec *spec, const ch
     case CAMBER_OPTION_DEVICE:
     case CAMBER_OPTION_WHERES:
         if (*text == 0)
-            return usage(p, "--%s: empty; give %s", spec->name, spec->argument);
+            return camber_options_refuse(p, "--%s: empty; give %s", spec->name, spec->argument);
         if (spec->kind == CAMBER_OPTION_WHERES)
             p->options->wheres[p->options->where_count++] = text;
         else
             *(const char **)(void *)field = text;
         return CAMBER_EXIT_DONE;
+    case CAMBER_OPTION_PLACES: return parse_place(p, text);
     case CAMBER_OPTION_NUMBER: {
         double number;
         if (!parse_numbers(text, 1, &number) || number < spec->least || number > spec->most)
-            return usage(p, "--%s %s: out of range; give a number from %g to %g", spec->name, text, spec->least,
-                         spec->most);
+            return camber_options_refuse(p, "--%s %s: out of range; give a number from %g to %g", spec->name, text,
+                                         spec->least, spec->most);
         *(double *)(void *)field = number;
         return CAMBER_EXIT_DONE;
     }
@@ -214,15 +238,16 @@ static int parse_value(const parser *p, const camber_option_spec *spec, const ch
         uint32_t count;
         const char *rest = text;
         if (!parse_count(&rest, &count) || *rest || count < spec->least || count > spec->most)
-            return usage(p, "--%s %s: out of range; give a whole number from %g to %g", spec->name, text, spec->least,
-                         spec->most);
+            return camber_options_refuse(p, "--%s %s: out of range; give a whole number from %g to %g", spec->name,
+                                         text, spec->least, spec->most);
         *(uint32_t *)(void *)field = count;
         return CAMBER_EXIT_DONE;
     }
     case CAMBER_OPTION_BYTES:
         if (!parse_bytes(text, spec->least, spec->most, (uint64_t *)(void *)field))
-            return usage(p, "--%s %s: no such size; give bytes from 256K to 1024G, as in 100000000, 512M or 2G",
-                         spec->name, text);
+            return camber_options_refuse(
+                p, "--%s %s: no such size; give bytes from 256K to 1024G, as in 100000000, 512M or 2G", spec->name,
+                text);
         return CAMBER_EXIT_DONE;
     case CAMBER_OPTION_CHOICE: return parse_choice(p, spec, text, (int *)(void *)field);
     case CAMBER_OPTION_SIZE:
@@ -245,15 +270,15 @@ static bool takes(const camber_option_spec *spec, camber_verb verb) {
     return spec->verbs & 1 << verb;
 }
 
-static int unknown_option(const parser *p, const char *name) {
+static int unknown_option(const camber_option_reader *p, const char *name) {
     const camber_verb verb = p->options->verb;
     const char *gap = verb == CAMBER_VERB_NONE ? "" : " ";
-    return usage(p, "%s: no such option of camber%s%s; `camber%s%s --help` lists them", name, gap, verb_name(verb), gap,
-                 verb_name(verb));
+    return camber_options_refuse(p, "%s: no such option of camber%s%s; `camber%s%s --help` lists them", name, gap,
+                                 verb_name(verb), gap, verb_name(verb));
 }
 
 /* --name, --name=value, --name value. *at moves over a value in an argument of its own. */
-static int parse_long(const parser *p, int argc, char **argv, int *at) {
+static int parse_long(const camber_option_reader *p, int argc, char **argv, int *at) {
     const char *name = argv[*at] + 2;
     const size_t length = strcspn(name, "=");
     for (size_t i = 0; i < camber_option_count; i++) {
@@ -261,18 +286,18 @@ static int parse_long(const parser *p, int argc, char **argv, int *at) {
         if (strlen(spec->name) != length || strncmp(spec->name, name, length) != 0 || !takes(spec, p->options->verb))
             continue;
         if (!spec->argument && name[length])
-            return usage(p, "--%s: takes no value; leave out the rest", spec->name);
+            return camber_options_refuse(p, "--%s: takes no value; leave out the rest", spec->name);
         if (!spec->argument || name[length])
             return parse_value(p, spec, name + length + (name[length] == '='));
         if (*at + 1 >= argc)
-            return usage(p, "--%s: no value; give %s", spec->name, spec->argument);
+            return camber_options_refuse(p, "--%s: no value; give %s", spec->name, spec->argument);
         return parse_value(p, spec, argv[++*at]);
     }
     return unknown_option(p, argv[*at]);
 }
 
 /* -q, -qf, -o OUT, -oOUT. */
-static int parse_short(const parser *p, int argc, char **argv, int *at) {
+static int parse_short(const camber_option_reader *p, int argc, char **argv, int *at) {
     for (const char *letter = argv[*at] + 1; *letter; letter++) {
         const camber_option_spec *spec = NULL;
         for (size_t i = 0; i < camber_option_count && !spec; i++)
@@ -283,7 +308,7 @@ static int parse_short(const parser *p, int argc, char **argv, int *at) {
         if (spec->argument && letter[1])
             return parse_value(p, spec, letter + 1);
         if (spec->argument && *at + 1 >= argc)
-            return usage(p, "-%c: no value; give %s", spec->letter, spec->argument);
+            return camber_options_refuse(p, "-%c: no value; give %s", spec->letter, spec->argument);
         if (spec->argument)
             return parse_value(p, spec, argv[++*at]);
         const int status = parse_value(p, spec, "");
@@ -294,7 +319,7 @@ static int parse_short(const parser *p, int argc, char **argv, int *at) {
 }
 
 /* "help" and "version" are what --help and --version are; a verb may stand behind the first. */
-static int parse_verb(const parser *p, const char *text) {
+static int parse_verb(const camber_option_reader *p, const char *text) {
     camber_options *options = p->options;
     if (strcmp(text, "help") == 0) {
         options->help = true;
@@ -314,10 +339,11 @@ static int parse_verb(const parser *p, const char *text) {
         snprintf(names + strlen(names), sizeof names - strlen(names), "%s, ", camber_verb_specs[i].name);
     snprintf(names + strlen(names), sizeof names - strlen(names), "help, version");
 #ifndef CAMBER_MAP
-    if (!strcmp(text, "render") || !strcmp(text, "tessellate") || !strcmp(text, "style"))
-        return usage(p, "%s: this build has no map (CAMBER_MAP=OFF); its verbs are %s", text, names);
+    if (!strcmp(text, "render") || !strcmp(text, "tessellate") || !strcmp(text, "style") || !strcmp(text, "tiles") ||
+        !strcmp(text, "serve"))
+        return camber_options_refuse(p, "%s: this build has no map (CAMBER_MAP=OFF); its verbs are %s", text, names);
 #endif
-    return usage(p, "%s: no such verb; it is one of %s", text, names);
+    return camber_options_refuse(p, "%s: no such verb; it is one of %s", text, names);
 }
 
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size) {
@@ -331,12 +357,15 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
                                 .pitch_deg = NAN,
                                 .simplify_px = NAN,
                                 .runs = 9,
+                                .min_zoom = UINT32_MAX,
+                                .max_zoom = UINT32_MAX,
                                 .windows = 24};
-    const parser p = {options, message, message_size};
+    const camber_option_reader p = {options, message, message_size, NULL};
     options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
     options->wheres = calloc((size_t)argc + 1, sizeof *options->wheres);
-    if (!options->inputs || !options->wheres)
-        return usage(&p, "out of memory for %d arguments; give fewer", argc);
+    options->places = calloc((size_t)argc + 1, sizeof *options->places);
+    if (!options->inputs || !options->wheres || !options->places)
+        return camber_options_refuse(&p, "out of memory for %d arguments; give fewer", argc);
     int status = CAMBER_EXIT_DONE;
     bool only_operands = false;
     for (int at = 1; at < argc && status == CAMBER_EXIT_DONE; at++) {
@@ -355,7 +384,8 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
     }
     options->where = options->wheres[0];
     if (isnan(options->simplify_px)) {
-        const bool drawn = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH;
+        const bool drawn = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH ||
+                           options->verb == CAMBER_VERB_TILES || options->verb == CAMBER_VERB_SERVE;
         options->simplify_px = drawn && !options->polylines ? DRAWN_SIMPLIFY_PX : 0;
     }
     if (status == CAMBER_EXIT_DONE && !options->help && !options->version && options->completion < 0)
@@ -366,4 +396,5 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
 void camber_options_free(camber_options *options) {
     free(options->inputs);
     free(options->wheres);
+    free(options->places);
 }

@@ -3,14 +3,15 @@
 #define CAMBER_CLI_OPTIONS_H
 
 #include "camber.h"
-#include "camber_map.h"
+#include "camber_files.h"
+#include "camber_tiles.h"
 
 #include <stdio.h>
 
 /* Exit statuses. Values come from sysexits.h, which POSIX does not have, so they are named here. */
 enum {
     CAMBER_EXIT_DONE = 0,
-    CAMBER_EXIT_CHECK = 1, /* a check of validate failed */
+    CAMBER_EXIT_CHECK = 1, /* a check of validate or of tiles verify failed */
     CAMBER_EXIT_USAGE = 2,
     CAMBER_EXIT_DATA = 65,
     CAMBER_EXIT_NO_INPUT = 66,
@@ -29,7 +30,26 @@ typedef enum camber_verb {
     CAMBER_VERB_BENCH,
     CAMBER_VERB_INFO,
     CAMBER_VERB_STYLE,
+    CAMBER_VERB_TILES,
+    CAMBER_VERB_SERVE,
 } camber_verb;
+
+/* Formats of OUT, in the order in which --help has them. */
+typedef enum camber_format {
+    CAMBER_FORMAT_PNG = 0,
+    CAMBER_FORMAT_PNG8,
+    CAMBER_FORMAT_WEBP,
+    CAMBER_FORMAT_GLB,
+} camber_format;
+
+/* Pictures alone have an encoding. */
+static inline camber_encoding camber_format_encoding(int format) {
+    return format == CAMBER_FORMAT_WEBP   ? CAMBER_ENCODING_WEBP
+           : format == CAMBER_FORMAT_PNG8 ? CAMBER_ENCODING_PNG8
+                                          : CAMBER_ENCODING_PNG;
+}
+
+enum { CAMBER_OPTIONS_MOST = 128 };
 
 /* Choices hold the index of the word in the list that --help shows, which is also the value of the enum in camber.h;
  * -1: not given. Texts point into argv; NULL: not given. */
@@ -46,7 +66,7 @@ typedef struct camber_options {
     const char *root;        /* a style reads no file outside this folder. NULL: any file */
     bool allow_remote, allow_vrt;
     int completion; /* camber_shell whose completion is to be printed; -1: none */
-    int format;     /* 0: png, 1: glb */
+    int format;     /* camber_format. -1: nothing is written */
     int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
@@ -54,8 +74,26 @@ typedef struct camber_options {
     double simplify_px, width_px, fan_tolerance_px;
     uint32_t threads;      /* 0: as many as there are */
     uint64_t memory_bytes; /* memory limit of the run without its libraries. 0: the library's default */
+    uint32_t quality;      /* WebP's, 1 to 100. 0: the library's default */
     uint32_t runs;
     uint32_t windows; /* windows of each picture that are compared with exact coverage */
+    /* Tiles: */
+    uint32_t min_zoom, max_zoom;
+    int tile_size;              /* 0: 256, 1: 512 */
+    camber_tiles_place *places; /* place_count, each as --tile gave it */
+    size_t place_count;
+    const char *renewed; /* a file of tiles to renew */
+    const char *region, *name, *description, *shard;
+    const char *schedule; /* a file, which a dry run writes and others read */
+    uint32_t shards;
+    bool resume, keep_empty, dry_run;
+    /* Serving: */
+    const char *listen, *metrics, *public_url, *cors;
+    const char *renderd, *cache_dir;
+    const char *edit; /* the style's file, which is watched; style is the same then */
+    uint64_t cache_bytes;
+    uint32_t most_px, most_ratio;
+    bool given[CAMBER_OPTIONS_MOST]; /* by the option's number in the table */
 } camber_options;
 
 /* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. With --help, --version or
@@ -63,6 +101,14 @@ typedef struct camber_options {
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size);
 /* Checks options against each other; camber_options_parse calls it. verb is the name of the verb. */
 int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size);
+/* A tile as zoom/column/row. */
+bool camber_options_parse_place(const char *text, camber_tiles_place *place);
+/* "show", "verify" or "merge", which tiles is to do; NULL: it is to draw. */
+const char *camber_options_tiles_action(const camber_options *options);
+/* Checks the options of serve; camber_options_check calls it. */
+int camber_options_check_serve(camber_options *options, char *message, size_t message_size);
+/* Checks the options of tiles; camber_options_check calls it. */
+int camber_options_check_tiles(camber_options *options, char *message, size_t message_size);
 void camber_options_free(camber_options *options);
 
 /* Prints the help of the tool (CAMBER_VERB_NONE) or of a verb. */

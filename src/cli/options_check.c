@@ -3,33 +3,10 @@
 #include "cli/input.h"
 #include "cli/options.h"
 #include "cli/options_files.h"
+#include "cli/options_table.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
-#include <strings.h>
-
-/* The options to check, and where the message goes. */
-typedef struct checked {
-    camber_options *options;
-    const char *verb; /* its name */
-    char *message;
-    size_t message_size;
-} checked;
-
-static int usage(const checked *p, const char *format, ...) {
-    va_list list;
-    va_start(list, format);
-    vsnprintf(p->message, p->message_size, format, list);
-    va_end(list);
-    return CAMBER_EXIT_USAGE;
-}
-
-static bool has_extension(const char *path, const char *extension) {
-    const size_t length = strlen(path);
-    const size_t tail = strlen(extension);
-    return length > tail && strcasecmp(path + length - tail, extension) == 0;
-}
 
 static bool ships(const char *style) {
 #ifdef CAMBER_MAP
@@ -39,44 +16,101 @@ static bool ships(const char *style) {
 #endif
 }
 
-static int check_output(const checked *p) {
+static const struct {
+    const char *name, *extension;
+} formats[] = {[CAMBER_FORMAT_PNG] = {"png", ".png"},
+               [CAMBER_FORMAT_PNG8] = {"png8", ".png"},
+               [CAMBER_FORMAT_WEBP] = {"webp", ".webp"},
+               [CAMBER_FORMAT_GLB] = {"glb", ".glb"}};
+
+enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
+
+/* Checks the picture that is to be written, whose format is known. */
+static int check_picture(const camber_option_reader *p) {
+    const camber_options *options = p->options;
+    const camber_encoding encoding = camber_format_encoding(options->format);
+    const uint32_t longest = camber_encoding_get_longest_side(encoding);
+    const double width = floor(options->view.width * options->view.ratio + 0.5);
+    const double height = floor(options->view.height * options->view.ratio + 0.5);
+    const char *name = formats[options->format].name;
+    if (!camber_encoding_is_built(encoding))
+        return camber_options_refuse(
+            p, "%s: this build writes no WebP (CAMBER_WEBP); build it with libwebp, or name it OUT.png",
+            options->output);
+    if (options->quality && options->format != CAMBER_FORMAT_WEBP)
+        return camber_options_refuse(p, "--quality: is WebP's, and %s is %s; leave it out, or name it OUT.webp",
+                                     options->output, name);
+    if (width > longest || height > longest)
+        return camber_options_refuse(
+            p, "%s: %.0f x %.0f px, and a side of a WebP is at most %u; draw a smaller picture, or a PNG",
+            options->output, width, height, longest);
+    if (options->format != CAMBER_FORMAT_PNG && width * height > CAMBER_PIXELS_MOST)
+        return camber_options_refuse(
+            p, "%s: %.0f x %.0f px, and %s, which is encoded as a whole, has at most %d; leave out --format",
+            options->output, width, height, name, CAMBER_PIXELS_MOST);
+    return CAMBER_EXIT_DONE;
+}
+
+/* Finds the format by the extension where --format is not given. Both together must agree. */
+static int check_format(const camber_option_reader *p, bool out) {
     camber_options *options = p->options;
     const bool glb = options->verb == CAMBER_VERB_TESSELLATE;
-    const char *format = glb ? "glb" : "png";
+    int named = -1; /* by the extension */
+    for (int i = FORMAT_COUNT - 1; i >= 0; i--)
+        if (!out && camber_path_ends_with(options->output, formats[i].extension))
+            named = i;
+    const int format = options->format >= 0 ? options->format
+                       : named >= 0         ? named
+                       : out && glb         ? CAMBER_FORMAT_GLB
+                       : out                ? CAMBER_FORMAT_PNG
+                                            : -1;
+    if (format < 0)
+        return camber_options_refuse(p, "%s: its extension tells no format; name it OUT.%s, or give --format %s",
+                                     options->output, glb ? "glb" : "png", glb ? "glb" : "png");
+    const bool wrong = (format == CAMBER_FORMAT_GLB) != glb || (named >= 0 && (named == CAMBER_FORMAT_GLB) != glb);
+    if (wrong)
+        return camber_options_refuse(p, "%s: %s writes %s; camber %s writes %s", options->output, p->verb,
+                                     glb ? "glb" : "png, png8 and webp", glb ? "render" : "tessellate",
+                                     glb ? "png, png8 and webp" : "glb");
+    if (named >= 0 && strcmp(formats[named].extension, formats[format].extension) != 0)
+        return camber_options_refuse(
+            p, "%s: its extension says %s, and --format %s; name it OUT%s, or leave out --format", options->output,
+            formats[named].name, formats[format].name, formats[format].extension);
+    options->format = format;
+    return glb ? CAMBER_EXIT_DONE : check_picture(p);
+}
+
+static int check_output(const camber_option_reader *p) {
+    const camber_options *options = p->options;
     if (!options->output && options->verb != CAMBER_VERB_BENCH)
-        return usage(p, "%s: no output; give -o OUT.%s", p->verb, format);
+        return camber_options_refuse(p, "%s: no output; give -o OUT.%s", p->verb,
+                                     options->verb == CAMBER_VERB_TESSELLATE ? "glb" : "png");
     if (!options->output)
         return CAMBER_EXIT_DONE;
     const bool out = strcmp(options->output, "-") == 0;
     if (out && options->json)
-        return usage(p, "--json and -o -: both want standard output; give one of them");
+        return camber_options_refuse(p, "--json and -o -: both want standard output; give one of them");
     if (options->dump && strcmp(options->dump, "-") == 0 && out)
-        return usage(p, "--dump - and -o -: both want standard output; give one of them");
-    const bool png_name = has_extension(options->output, ".png");
-    const bool glb_name = has_extension(options->output, ".glb");
-    if (options->format < 0 && !out && !png_name && !glb_name)
-        return usage(p, "%s: its extension tells no format; name it OUT.%s, or give --format %s", options->output,
-                     format, format);
-    if ((glb ? png_name : glb_name) || (options->format >= 0 && options->format != glb))
-        return usage(p, "%s: %s writes %s; camber %s writes %s", options->output, p->verb, format,
-                     glb ? "render" : "tessellate", glb ? "png" : "glb");
-    return CAMBER_EXIT_DONE;
+        return camber_options_refuse(p, "--dump - and -o -: both want standard output; give one of them");
+    return check_format(p, out);
 }
 
-static int check_view(const checked *p) {
+static int check_view(const camber_option_reader *p) {
     camber_options *options = p->options;
     camber_view_desc *view = &options->view;
     if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
-        return usage(p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
+        return camber_options_refuse(
+            p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
     /* A style that is drawn from its own sources gives the missing one. */
     const bool own = options->style && options->input_count == 0;
     if (!own && options->has_center != !isnan(options->zoom))
-        return usage(p, "--%s alone: give --center LON,LAT and --zoom Z together",
-                     options->has_center ? "center" : "zoom");
+        return camber_options_refuse(p, "--%s alone: give --center LON,LAT and --zoom Z together",
+                                     options->has_center ? "center" : "zoom");
     const bool tilts = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH;
     if (options->pitch_deg > 0 && !tilts)
-        return usage(p, "--pitch %g: camber %s works on the map's plane, which has no pitch; leave it out",
-                     options->pitch_deg, p->verb);
+        return camber_options_refuse(p,
+                                     "--pitch %g: camber %s works on the map's plane, which has no pitch; leave it out",
+                                     options->pitch_deg, p->verb);
     view->kind = options->has_bbox ? CAMBER_VIEW_BBOX : options->has_center ? CAMBER_VIEW_CENTER : CAMBER_VIEW_FIT;
     view->zoom = isnan(options->zoom) ? 0 : options->zoom;
     view->bearing_deg = isnan(options->bearing_deg) ? 0 : options->bearing_deg;
@@ -86,92 +120,111 @@ static int check_view(const checked *p) {
     const double width = floor(view->width * view->ratio + 0.5);
     const double height = floor(view->height * view->ratio + 0.5);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 || width * height > 2147483648.0)
-        return usage(p, "%ux%u at ratio %g: out of range; after --ratio a side is 1 to 65535 px, all 2^31 at most",
-                     view->width, view->height, view->ratio);
+        return camber_options_refuse(
+            p, "%ux%u at ratio %g: out of range; after --ratio a side is 1 to 65535 px, all 2^31 at most", view->width,
+            view->height, view->ratio);
     return CAMBER_EXIT_DONE;
 }
 
-static int check_inputs(const checked *p) {
+static int check_inputs(const camber_option_reader *p) {
     const camber_options *options = p->options;
     const char *verb = p->verb;
 #ifndef CAMBER_MAP
     if (options->input_count)
-        return usage(p, "%s: this build reads no maps (CAMBER_MAP=OFF); give --polylines FILE", options->inputs[0]);
+        return camber_options_refuse(p, "%s: this build reads no maps (CAMBER_MAP=OFF); give --polylines FILE",
+                                     options->inputs[0]);
 #endif
     if (options->verb == CAMBER_VERB_INFO && options->input_count)
-        return usage(p, "%s: info takes no input; leave it out", options->inputs[0]);
+        return camber_options_refuse(p, "%s: info takes no input; leave it out", options->inputs[0]);
     if (options->polylines && options->input_count)
-        return usage(p, "--polylines and %s: both are inputs; give one of them", options->inputs[0]);
+        return camber_options_refuse(p, "--polylines and %s: both are inputs; give one of them", options->inputs[0]);
     if (options->polylines &&
         (options->style || options->theme >= 0 || options->layer || options->where || options->has_bbox ||
          options->has_center || !isnan(options->bearing_deg) || !isnan(options->pitch_deg)))
-        return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
+        return camber_options_refuse(
+            p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
     if (options->where_count > 1 && options->verb != CAMBER_VERB_COMPARE)
-        return usage(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",
-                     options->where_count, verb);
+        return camber_options_refuse(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",
+                                     options->where_count, verb);
     if (options->width_px > 0 && !options->polylines && options->verb != CAMBER_VERB_COMPARE)
-        return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
+        return camber_options_refuse(p, "--width-px: is for --polylines; a map's widths are its style's");
     if (options->style && options->theme >= 0 && !ships(options->style))
-        return usage(p, "--theme: is for the styles that ship with camber; leave it out with --style %s",
-                     options->style);
+        return camber_options_refuse(
+            p, "--theme: is for the styles that ship with camber; leave it out with --style %s", options->style);
     if (options->style && options->input_count == 0 && (options->layer || options->where))
-        return usage(p, "--%s: is for INPUT, and the style's own sources are drawn; let its layers name what they draw",
-                     options->layer ? "layer" : "where");
+        return camber_options_refuse(
+            p, "--%s: is for INPUT, and the style's own sources are drawn; let its layers name what they draw",
+            options->layer ? "layer" : "where");
     size_t streams = options->polylines && strcmp(options->polylines, "-") == 0;
     for (size_t i = 0; i < options->input_count; i++)
         streams += strcmp(options->inputs[i], "-") == 0;
     streams += options->style && strcmp(options->style, "-") == 0;
     if (streams > 1)
-        return usage(p, "-: standard input can be read once; name the other file");
+        return camber_options_refuse(p, "-: standard input can be read once; name the other file");
     const bool takes_both = options->verb == CAMBER_VERB_COMPARE || options->verb == CAMBER_VERB_BENCH;
     const bool needs = options->verb != CAMBER_VERB_INFO && options->verb != CAMBER_VERB_VALIDATE;
     if (needs && !options->input_count && !options->polylines && !options->style)
-        return usage(p, "%s: no input; give %s", verb,
-                     takes_both ? "a file with lines or --polylines FILE" : "a file with lines, such as city.osm.pbf");
+        return camber_options_refuse(p, "%s: no input; give %s", verb,
+                                     takes_both ? "a file with lines or --polylines FILE"
+                                                : "a file with lines, such as city.osm.pbf");
     return CAMBER_EXIT_DONE;
 }
 
 /* style SUBCOMMAND FILE. */
-static int check_style(const checked *p) {
+static int check_style(const camber_option_reader *p) {
     const camber_options *options = p->options;
     if (options->input_count == 0 ||
         (strcmp(options->inputs[0], "check") != 0 && strcmp(options->inputs[0], "eval") != 0))
-        return usage(p, "style: %s%swhat to do with a file; write camber style check FILE or camber style eval FILE",
-                     options->input_count ? options->inputs[0] : "", options->input_count ? ": not " : "say ");
+        return camber_options_refuse(
+            p, "style: %s%swhat to do with a file; write camber style check FILE or camber style eval FILE",
+            options->input_count ? options->inputs[0] : "", options->input_count ? ": not " : "say ");
     if (options->input_count == 1)
-        return usage(p, "style %s: no file; give one, or - for standard input", options->inputs[0]);
+        return camber_options_refuse(p, "style %s: no file; give one, or - for standard input", options->inputs[0]);
     if (options->input_count > 2)
-        return usage(p, "%s: style %s takes one file; leave out the others", options->inputs[2], options->inputs[0]);
+        return camber_options_refuse(p, "%s: style %s takes one file; leave out the others", options->inputs[2],
+                                     options->inputs[0]);
     return CAMBER_EXIT_DONE;
 }
 
 /* With --draw cl no GL is loaded, so an option that names a part of GL would have no effect. */
-static int check_draw(const checked *p) {
+static int check_draw(const camber_option_reader *p) {
     const camber_options *options = p->options;
     const bool named = options->backend != CAMBER_BACKEND_AUTO;
     if (options->draw != CAMBER_RASTERIZER_OPENCL || (!named && options->sharing == CAMBER_SHARING_AUTO))
         return CAMBER_EXIT_DONE;
-    return usage(p, "--draw cl and --%s: OpenCL kernels draw without any GL; leave out --%s, or give --draw gl",
-                 named ? "backend" : "sharing", named ? "backend" : "sharing");
+    return camber_options_refuse(
+        p, "--draw cl and --%s: OpenCL kernels draw without any GL; leave out --%s, or give --draw gl",
+        named ? "backend" : "sharing", named ? "backend" : "sharing");
 }
 
-static int check_plot(const checked *p) {
+static int check_plot(const camber_option_reader *p) {
     const char *plot = p->options->plot;
-    if (plot && !has_extension(plot, ".svg") && !has_extension(plot, ".png"))
-        return usage(p, "--plot %s: its extension tells no format; name it OUT.svg or OUT.png", plot);
+    if (plot && !camber_path_ends_with(plot, ".svg") && !camber_path_ends_with(plot, ".png"))
+        return camber_options_refuse(p, "--plot %s: its extension tells no format; name it OUT.svg or OUT.png", plot);
     return CAMBER_EXIT_DONE;
 }
 
 int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size) {
-    const checked it = {options, verb, message, message_size}, *p = &it;
+    const camber_option_reader it = {options, message, message_size, verb}, *p = &it;
     const bool writes = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_TESSELLATE ||
                         options->verb == CAMBER_VERB_BENCH;
     if (options->verb == CAMBER_VERB_NONE)
-        return usage(p, "no verb given; `camber --help` lists them");
+        return camber_options_refuse(p, "no verb given; `camber --help` lists them");
     if (options->verb == CAMBER_VERB_STYLE)
         return check_style(p);
-    int status = check_inputs(p);
-    if (status == CAMBER_EXIT_DONE)
+    int status = CAMBER_EXIT_DONE;
+    if (options->verb == CAMBER_VERB_TILES) {
+        status = camber_options_check_tiles(options, message, message_size);
+        if (status != CAMBER_EXIT_DONE || camber_options_tiles_action(options))
+            return status;
+    }
+    if (options->verb == CAMBER_VERB_SERVE) {
+        status = camber_options_check_serve(options, message, message_size);
+        if (status != CAMBER_EXIT_DONE)
+            return status;
+    }
+    status = check_inputs(p);
+    if (status == CAMBER_EXIT_DONE && options->verb != CAMBER_VERB_TILES && options->verb != CAMBER_VERB_SERVE)
         status = check_view(p);
     if (status == CAMBER_EXIT_DONE)
         status = check_draw(p);
@@ -180,9 +233,9 @@ int camber_options_check(camber_options *options, const char *verb, char *messag
     if (status == CAMBER_EXIT_DONE)
         status = check_plot(p);
     if (status == CAMBER_EXIT_DONE && options->junit && strcmp(options->junit, "-") == 0)
-        return usage(p, "--junit -: standard output is the report's; name a file");
+        return camber_options_refuse(p, "--junit -: standard output is the report's; name a file");
     if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
-        return usage(p, "--json and --dump -: both want standard output; give one of them");
+        return camber_options_refuse(p, "--json and --dump -: both want standard output; give one of them");
     if (status == CAMBER_EXIT_DONE && camber_options_clash(options, message, message_size))
         return CAMBER_EXIT_USAGE;
     return status;

@@ -20,7 +20,7 @@ typedef struct file {
     const char *name; /* NULL: the file exists */
 } file;
 
-enum { MOST_OUTPUTS = 4, LONGEST_PATH = 4096 };
+enum { MOST_OUTPUTS = 5, LONGEST_PATH = 4096 };
 
 /* ---- Which file it is ---- */
 
@@ -180,10 +180,13 @@ static bool part_meets_output(const checked *c, const char *path) {
 bool camber_options_clash(const camber_options *options, char *message, size_t message_size) {
     checked c = {.options = options, .message = message, .message_size = message_size};
     if (add_output(&c, options->output, "OUT") || add_output(&c, options->dump, "--dump") ||
-        add_output(&c, options->plot, "--plot") || add_output(&c, options->junit, "--junit"))
+        add_output(&c, options->plot, "--plot") || add_output(&c, options->junit, "--junit") ||
+        (options->dry_run && add_output(&c, options->schedule, "--schedule")))
         return true;
     for (size_t i = 0; i < options->input_count; i++)
         if (meets_output(&c, options->inputs[i], "INPUT") || part_meets_output(&c, options->inputs[i]))
             return true;
+    if (!options->dry_run && meets_output(&c, options->schedule, "--schedule"))
+        return true;
     return meets_output(&c, options->style, "--style") || meets_output(&c, options->polylines, "--polylines");
 }

@@ -21,6 +21,7 @@ typedef enum camber_option_kind {
     CAMBER_OPTION_DEVICE, /* const char *, cpu, gpu, or part of a name */
     CAMBER_OPTION_WORDS,  /* const char *, UTF-8; may be empty */
     CAMBER_OPTION_WHERES, /* camber_options.wheres: the option may be given several times */
+    CAMBER_OPTION_PLACES, /* camber_options.places: z/x/y, several times */
     CAMBER_OPTION_NUMBER, /* double, least to most */
     CAMBER_OPTION_COUNT,  /* uint32_t, least to most */
     CAMBER_OPTION_BYTES,  /* uint64_t, least to most: a number, and K, M or G behind it where it is not in bytes */
@@ -45,7 +46,7 @@ typedef struct camber_option_spec {
     const char *argument; /* NULL: the option takes no value */
     const char *help;     /* in the tool's help, and in that of verbs without a note */
     double least, most;
-    camber_option_note notes[3];
+    camber_option_note notes[4];
 } camber_option_spec;
 
 extern const camber_verb_spec camber_verb_specs[];
@@ -55,5 +56,19 @@ extern const size_t camber_option_count;
 
 /* An option's help in that of a verb, or in the tool's (CAMBER_VERB_NONE). "": the verb's help leaves it out. */
 const char *camber_option_help(const camber_option_spec *spec, camber_verb verb);
+
+/* ---- Reading and checking ---- */
+
+typedef struct camber_option_reader {
+    camber_options *options;
+    char *message; /* why they are refused: one line */
+    size_t message_size;
+    const char *verb; /* its name; NULL: not known yet */
+} camber_option_reader;
+
+/* Writes the message, and returns CAMBER_EXIT_USAGE. */
+int camber_options_refuse(const camber_option_reader *reader, const char *format, ...);
+/* Whether a path ends so, in small or large letters, and has something before it. */
+bool camber_path_ends_with(const char *path, const char *end);
 
 #endif

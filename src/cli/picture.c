@@ -1,17 +1,33 @@
+/* Draws a frame and writes it. A PNG takes rows as they are drawn, so that a picture of any size fits in memory; other
+ * formats need all of them, which are held. */
 #include "cli/picture.h"
+
+#include <stdlib.h>
+#include <string.h>
 
 typedef struct writer {
     camber_report *report;
+    camber_context *context;
+    camber_output *output;
+    uint32_t width, height;
+    /* One of these: */
     camber_png *png;
-    uint32_t height;
+    camber_encoder *encoder;
+    uint8_t *rgba; /* the rows that the encoder is to get */
     double write_ms;
     camber_status status; /* of the first write that failed */
 } writer;
 
+static camber_status keep_rows(writer *w, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const size_t row_bytes = 4 * (size_t)w->width;
+    memcpy(w->rgba + row_bytes * first_row, rgba, row_bytes * row_count);
+    return CAMBER_OK;
+}
+
 static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
     writer *w = user;
     const double start_ms = camber_clock_ms();
-    w->status = camber_png_write_rows(w->png, rgba, row_count);
+    w->status = w->png ? camber_png_write_rows(w->png, rgba, row_count) : keep_rows(w, rgba, first_row, row_count);
     w->write_ms += camber_clock_ms() - start_ms;
     camber_report_progress(w->report, "writing", (double)(first_row + row_count) / w->height);
     /* The error that the drawing stops is not reported: the failed write has been. */
@@ -19,23 +35,58 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     return w->status == CAMBER_OK;
 }
 
+static camber_status begin(writer *w, const camber_options *options, bool opaque, const char *attribution) {
+    char software[64];
+    snprintf(software, sizeof software, "camber %s", camber_version());
+    const camber_png_text texts[] = {{"Software", software}, {"Copyright", attribution}};
+    const size_t text_count = attribution ? 2 : 1;
+    if (options->format == CAMBER_FORMAT_PNG) {
+        const camber_png_desc desc = {
+            .width = w->width, .height = w->height, .opaque = opaque, .texts = texts, .text_count = text_count};
+        return camber_png_create(w->context, &desc, camber_output_sink(w->output), &w->png);
+    }
+    const camber_encoder_desc desc = {.encoding = camber_format_encoding(options->format),
+                                      .opaque = opaque,
+                                      .quality = (int)options->quality,
+                                      .texts = texts,
+                                      .text_count = text_count};
+    w->rgba = malloc(4 * (size_t)w->width * w->height);
+    return w->rgba ? camber_encoder_create(w->context, &desc, &w->encoder) : CAMBER_ERROR_MEMORY;
+}
+
+static camber_status finish(writer *w) {
+    if (w->png)
+        return camber_png_finish(w->png);
+    const camber_pixels pixels = {.rgba = w->rgba, .width = w->width, .height = w->height};
+    const camber_sink sink = camber_output_sink(w->output);
+    const uint8_t *bytes = NULL;
+    size_t size_bytes = 0;
+    const camber_status status = camber_encoder_encode(w->encoder, &pixels, &bytes, &size_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    return sink.write(sink.user, bytes, size_bytes) ? CAMBER_OK : CAMBER_ERROR_IO;
+}
+
+static void end(writer *w) {
+    camber_png_destroy(w->png);
+    camber_encoder_destroy(w->encoder);
+    free(w->rgba);
+}
+
 int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times) {
     camber_session *session = input->session;
     const camber_frame frame = camber_input_frame(input, mesh);
-    char software[64];
-    snprintf(software, sizeof software, "camber %s", camber_version());
-    const camber_png_text texts[] = {{"Software", software}, {"Copyright", input->attribution}};
-    const camber_png_desc desc = {.width = frame.width,
-                                  .height = frame.height,
-                                  .opaque = camber_input_opaque(input),
-                                  .texts = texts,
-                                  .text_count = input->attribution ? 2 : 1};
     camber_picture_times none;
     if (!times)
         times = &none;
-    writer w = {.report = session->report, .height = frame.height, .status = CAMBER_OK};
+    writer w = {.report = session->report,
+                .context = session->context,
+                .output = output,
+                .width = frame.width,
+                .height = frame.height,
+                .status = CAMBER_OK};
     const double start_ms = camber_clock_ms();
-    camber_status status = camber_png_create(session->context, &desc, camber_output_sink(output), &w.png);
+    camber_status status = begin(&w, session->options, camber_input_opaque(input), input->attribution);
     w.write_ms = camber_clock_ms() - start_ms;
     if (status == CAMBER_OK)
         status = camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
@@ -43,8 +94,8 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
         status = w.status;
     const double finish_ms = camber_clock_ms();
     if (status == CAMBER_OK)
-        status = camber_png_finish(w.png);
-    camber_png_destroy(w.png);
+        status = finish(&w);
+    end(&w);
     int exit_status = CAMBER_EXIT_DONE;
     if (status != CAMBER_OK)
         exit_status = camber_output_status(output, status);

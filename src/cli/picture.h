@@ -1,4 +1,4 @@
-/* A frame as a PNG. */
+/* A frame as a file: PNG or WebP. */
 #ifndef CAMBER_CLI_PICTURE_H
 #define CAMBER_CLI_PICTURE_H
 
@@ -9,7 +9,8 @@ typedef struct camber_picture_times {
     double write_ms; /* compression and writing */
 } camber_picture_times;
 
-/* Draws a frame and writes its rows as they come. Returns an exit status, its line printed. times may be NULL. */
+/* Draws a frame and writes it in the format that the options name. Returns an exit status, its line printed. times may
+ * be NULL. */
 int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times);
 
 #endif

@@ -11,11 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Meshes of tiles are small but at zooms that show much of the data; there parts of them take turns, as fast. */
+static const uint64_t TILES_BYTES = 256 << 20;
 /* In so little whatever is read may be. */
 static const uint64_t LEAST_BUDGET_BYTES = 128 << 20;
 
 static camber_access access_of(const camber_options *options) {
-    const char *const outputs[] = {options->output, options->dump, options->plot, options->junit};
+    const bool reads = options->resume || options->renewed; /* what is at the output already */
+    const char *const outputs[] = {reads ? NULL : options->output, options->dump, options->plot, options->junit};
     camber_access access = {.remote = options->allow_remote, .vrt = options->allow_vrt, .root = options->root};
     for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
         access.outputs[i] = outputs[i] && strcmp(outputs[i], "-") != 0 ? outputs[i] : NULL;
@@ -110,12 +113,14 @@ static camber_status open_gl(camber_session *session, camber_context *context, c
 static camber_status open_drawing(camber_session *session, camber_context *context, camber_report *report,
                                   camber_needs needs) {
     const camber_options *options = session->options;
+    const bool small = options->verb == CAMBER_VERB_TILES || options->verb == CAMBER_VERB_SERVE;
     camber_status status = CAMBER_OK;
     if (needs >= CAMBER_NEEDS_RENDERER && !session->renderer && !session->surface)
         status = open_gl(session, context, report);
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_DEVICE && !session->device) {
         const camber_device_desc desc = {.match = options->device,
-                                         .memory_bytes = options->memory_bytes,
+                                         .memory_bytes =
+                                             options->memory_bytes || !small ? options->memory_bytes : TILES_BYTES,
                                          .gl = camber_surface_get_handles(session->surface)};
         status = camber_device_create(context, &desc, &session->device);
     }
@@ -204,7 +209,7 @@ static void *open_beside(void *user) {
 #ifdef CAMBER_MAP
 static bool needs_gdal(const camber_options *options) {
     for (size_t i = 0; i < options->input_count; i++) {
-        const camber_source_desc desc = {.path = options->inputs[i], .where = options->where};
+        const camber_source_desc desc = {.path = options->inputs[i], .layer = options->layer, .where = options->where};
         if (camber_source_needs_gdal(&desc))
             return true;
     }

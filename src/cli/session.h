@@ -39,6 +39,10 @@ typedef struct camber_session {
     char draw_reason[256];
     bool opens_beside;     /* camber_input_open starts a renderer, once it knows the style */
     camber_opener *opener; /* NULL: not started */
+    /* Tells a set of features, before files are read, what of them is needed; done: they need not be read. NULL: the
+     * verb and the view do. */
+    camber_status (*read_for)(void *user, camber_features *features, bool *done);
+    void *read_for_user;
     double start_ms;
 } camber_session;
 

@@ -56,9 +56,8 @@ static int draw(job *j) {
 
 static int print_json(const job *j) {
     const camber_session *session = j->session;
-    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
-    const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    const camber_polylines_stats lines = j->input.drawn;
     (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     json_t *object =
@@ -123,7 +122,6 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
-    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
     camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,

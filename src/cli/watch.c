@@ -84,7 +84,8 @@ void camber_watch_stop(camber_watch *watch) {
     if (!watch->guard)
         return;
     lock(watch);
-    watch->guard->look = NULL;
+    if (watch->guard->look_user == watch) /* a later one may look already */
+        watch->guard->look = NULL;
     unlock(watch);
 }
 

@@ -223,6 +223,8 @@ static span find_span(const pass_lines *lines, size_t first) {
         if (s.is_begun && !accumulates && row->color.a != s.alpha)
             break;
         add_to_span(lines, row, &s);
+        if (lines->mesh->row_count == 1)
+            s.end = lines->end - 1; /* all are alike */
     }
     end_span(lines, &s);
     return s;

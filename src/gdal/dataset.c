@@ -46,7 +46,7 @@ static bool has_key(const key_list *list, const char *key, size_t length) {
 
 static bool add_key(key_list *list, const char *key, size_t length) {
     /* The key goes into a comma-separated line of the configuration. */
-    if (!camber_where_is_key(key, length) || (list->size && has_key(list, key, length)))
+    if (!camber_osm_is_key(key, length) || (list->size && has_key(list, key, length)))
         return true;
     if (!camber_grow(list->context, &list->text, &list->capacity, list->size + length + 2, 1))
         return false;
@@ -377,5 +377,5 @@ void camber_dataset_close(camber_dataset *dataset) {
 }
 
 const char *camber_dataset_attribution(const camber_dataset *dataset) {
-    return dataset->osm ? "(c) OpenStreetMap contributors" : GDALGetMetadataItem(dataset->handle, "attribution", NULL);
+    return dataset->osm ? CAMBER_OSM_ATTRIBUTION : GDALGetMetadataItem(dataset->handle, "attribution", NULL);
 }

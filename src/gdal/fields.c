@@ -5,11 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-/* OGR's own list (its osmconf.ini, closed_ways_are_polygons), and "area" itself. */
-const char *const camber_osm_area_keys[] = {"aeroway",    "amenity",  "area",    "boundary", "building", "craft",
-                                            "geological", "historic", "landuse", "leisure",  "military", "natural",
-                                            "office",     "place",    "shop",    "sport",    "tourism",  NULL};
-
 /* Where vector tiles keep the id of a feature: OGR's name for that of the format, OSM's, anyone's, TIGER's. */
 static const char *const id_names[] = {"mvt_id", "osm_id", "id", "TLID"};
 
@@ -160,7 +155,7 @@ bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, 
         return false;
     for (size_t i = 0; i < columns->area_count; i++) {
         if (OGR_F_IsFieldSetAndNotNull(feature, columns->areas[i]) &&
-            !EQUAL(OGR_F_GetFieldAsString(feature, columns->areas[i]), "no"))
+            !camber_osm_is_no(OGR_F_GetFieldAsString(feature, columns->areas[i])))
             return true;
     }
     return false;

@@ -1,11 +1,9 @@
 /* Turns the geometry of a feature that OGR read into polylines in world coordinates.
  *
- * Input: any OGR geometry and the coordinate system of its layer. Output: points, and where each polyline ends. Lines
- * that cross the antimeridian are split there; points that are not numbers split the line; latitudes beyond Web
- * Mercator's limit are moved to it.
+ * Input: any OGR geometry and the coordinate system of its layer. Output: world lines (source/world_lines.h). Points
+ * that are not numbers split the line.
  */
 #include "gdal/vector_file.h"
-#include "source/mercator.h"
 
 #include <cpl_conv.h>
 #include <math.h>
@@ -101,99 +99,32 @@ camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpati
 void camber_feature_lines_free(camber_feature_lines *lines) {
     OCTDestroyCoordinateTransformation(lines->transform);
     camber_free(lines->context, lines->raw);
-    camber_free(lines->context, lines->ends);
-    camber_free(lines->context, lines->points);
+    camber_world_lines_free(&lines->world);
     lines->transform = NULL;
-    lines->raw = lines->points = NULL;
-    lines->ends = NULL;
+    lines->raw = NULL;
 }
 
 /* ---- One line ---- */
 
-/* The state of the line under construction. A point alone between two cuts at the antimeridian lies on it and is
- * left out: its neighbours draw it. */
-typedef struct line_state {
-    size_t first; /* the point that the open line begins with */
-    bool open;    /* a line is open and has a point */
-    bool begun_by_cut;
-    double x, y; /* the last point */
-} line_state;
-
-/* Adds a point; add_line has made room for all that a line can add. */
-static void push(camber_feature_lines *lines, line_state *line, double x, double y) {
-    if (!line->open) {
-        line->first = lines->point_count;
-        line->open = true;
-    }
-    lines->points[2 * lines->point_count] = x;
-    lines->points[2 * lines->point_count + 1] = y;
-    lines->point_count++;
-}
-
-static void end_line(camber_feature_lines *lines, line_state *line, bool cut) {
-    if (!line->open)
-        return;
-    if (lines->point_count - line->first == 1 && (cut || line->begun_by_cut))
-        lines->point_count = line->first;
-    else
-        lines->ends[lines->line_count++] = lines->point_count;
-    line->open = false;
-    line->begun_by_cut = cut;
-}
-
-/* Called where the short way from the last point to (x, y) crosses x = 0 or 1: ends the line there and begins one on
- * the other side. Linear in world coordinates, as the segment is drawn. */
-static void cross_antimeridian(camber_feature_lines *lines, line_state *line, double x, double y) {
-    const double out = x < line->x ? 1.0 : 0.0; /* the edge it leaves by */
-    const double beyond = x < line->x ? x + 1.0 : x - 1.0;
-    const double length = beyond - line->x;
-    const double crossing = length != 0 ? line->y + (y - line->y) * ((out - line->x) / length) : y;
-    if (line->x != out)
-        push(lines, line, out, crossing);
-    end_line(lines, line, true);
-    if (x != 1.0 - out)
-        push(lines, line, 1.0 - out, crossing);
-    lines->antimeridian_splits++;
-}
-
-/* Converts the file's ordinates to world coordinates. false: not a number. */
-static bool to_world(camber_feature_lines *lines, double east, double north, double *x, double *y) {
+/* Adds the point of the file's ordinates. false: not a number. */
+static bool add_point(camber_feature_lines *lines, double east, double north) {
     if (!isfinite(east) || !isfinite(north))
         return false;
     if (lines->projection == CAMBER_PROJECTION_METRES) {
-        camber_mercator_from_metres(east, north, x, y);
-        if (lines->whole)
-            return true;
-        if (*y < 0 || *y > 1) {
-            lines->clamped_points++;
-            *y = *y < 0 ? 0 : 1;
-        }
-    } else {
-        double latitude = lines->latitude_first ? east : north;
-        const double longitude = lines->latitude_first ? north : east;
-        if (fabs(latitude) > 90 || fabs(longitude) > 360)
-            lines->strange_points++;
-        if (fabs(latitude) > CAMBER_MERCATOR_LATITUDE) {
-            lines->clamped_points++;
-            latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
-        }
-        camber_mercator_project(longitude, latitude, x, y);
-        /* The limit itself may come out a rounding error beyond the world. */
-        *y = fmin(fmax(*y, 0), 1);
+        camber_world_lines_add_metres(&lines->world, east, north);
+        return true;
     }
-    *x = camber_mercator_wrap(*x);
+    const double latitude = lines->latitude_first ? east : north, longitude = lines->latitude_first ? north : east;
+    if (fabs(latitude) > 90 || fabs(longitude) > 360)
+        lines->strange_points++;
+    camber_world_lines_add_degrees(&lines->world, longitude, latitude);
     return true;
 }
 
 /* Fetches the line's ordinates to raw: count of x, then count of y. */
 static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t count) {
-    /* A line adds its points, two more for each crossing of the antimeridian, and no more lines than points. */
-    if (count > SIZE_MAX / 64 - lines->point_count ||
-        !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw) ||
-        !camber_grow(lines->context, &lines->points, &lines->point_capacity, lines->point_count + 3 * count,
-                     2 * sizeof *lines->points) ||
-        !camber_grow(lines->context, &lines->ends, &lines->line_capacity, lines->line_count + count + 1,
-                     sizeof *lines->ends))
+    if (!camber_world_lines_reserve(&lines->world, count) ||
+        !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw))
         return false;
     double *x = lines->raw, *y = lines->raw + count;
     OGR_G_GetPoints(geometry, x, sizeof *x, y, sizeof *y, NULL, 0);
@@ -237,21 +168,13 @@ static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry
         turn_back(lines->raw + count, count);
     }
     lines->raw_points += count;
-    line_state line = {0};
     for (size_t i = 0; i < count; i++) {
-        double x, y;
-        if (!to_world(lines, lines->raw[i], lines->raw[count + i], &x, &y)) {
+        if (!add_point(lines, lines->raw[i], lines->raw[count + i])) {
             lines->invalid_points++;
-            end_line(lines, &line, false);
-            continue;
+            camber_world_lines_end(&lines->world);
         }
-        if (line.open && !lines->whole && fabs(x - line.x) > 0.5)
-            cross_antimeridian(lines, &line, x, y);
-        push(lines, &line, x, y);
-        line.x = x;
-        line.y = y;
     }
-    end_line(lines, &line, false);
+    camber_world_lines_end(&lines->world);
     return CAMBER_OK;
 }
 
@@ -322,6 +245,6 @@ static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry,
 
 camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
                                            camber_geometry_kind kind) {
-    lines->point_count = lines->line_count = 0;
+    camber_world_lines_begin(&lines->world);
     return collect(lines, geometry, kind, 0);
 }

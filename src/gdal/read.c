@@ -33,6 +33,8 @@ typedef struct reader {
     camber_features_stats stats; /* counts of this file */
     char damage[512];            /* a message about the first damage */
     size_t read;                 /* features of the layer so far */
+    bool boxed;                  /* the layer is read by its index, for a region */
+    bool failed;                 /* OGR reported a failure with the last feature */
     size_t passed;               /* features of all layers so far */
     double shown_ms;
 } reader;
@@ -68,10 +70,10 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     const int zoom = self->dataset.zoom;
     const double side = ldexp(1.0, zoom);
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (size_t i = 0; i < self->lines.point_count; i++) {
+    for (size_t i = 0; i < self->lines.world.point_count; i++) {
         for (int axis = 0; axis < 2; axis++) {
-            low[axis] = fmin(low[axis], self->lines.points[2 * i + (size_t)axis] * side);
-            high[axis] = fmax(high[axis], self->lines.points[2 * i + (size_t)axis] * side);
+            low[axis] = fmin(low[axis], self->lines.world.points[2 * i + (size_t)axis] * side);
+            high[axis] = fmax(high[axis], self->lines.world.points[2 * i + (size_t)axis] * side);
         }
     }
     const GIntBig number = OGR_F_GetFID(feature), mask = ((GIntBig)1 << zoom) - 1;
@@ -94,15 +96,16 @@ static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_g
         camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
         find_tile(self, feature, &tile);
         tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
-        const camber_tile_lines lines = {self->lines.points, self->lines.ends, self->lines.line_count};
+        const camber_tile_lines lines = {self->lines.world.points, self->lines.world.ends,
+                                         self->lines.world.line_count};
         return camber_tile_stitcher_add(self->stitcher, &tile, &lines);
     }
     status = camber_features_add_feature(self->features, index);
     size_t first = 0;
-    for (size_t i = 0; i < self->lines.line_count && status == CAMBER_OK; i++) {
-        status =
-            camber_features_add_polyline(self->features, self->lines.points + 2 * first, self->lines.ends[i] - first);
-        first = self->lines.ends[i];
+    for (size_t i = 0; i < self->lines.world.line_count && status == CAMBER_OK; i++) {
+        status = camber_features_add_polyline(self->features, self->lines.world.points + 2 * first,
+                                              self->lines.world.ends[i] - first);
+        first = self->lines.world.ends[i];
     }
     return status;
 }
@@ -122,7 +125,7 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
         /* An area's ring is a line to OGR. */
         const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
         status = camber_feature_lines_collect(lines, geometry, collected);
-        if (status == CAMBER_OK && lines->line_count)
+        if (status == CAMBER_OK && lines->world.line_count)
             status = add_to_features(self, feature, (camber_geometry_kind)kind);
     }
     self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons);
@@ -219,6 +222,50 @@ static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) 
     return status;
 }
 
+/* ---- By the index ---- */
+
+static camber_status next_of_box(void *user, OGRFeatureH *feature) {
+    reader *self = user;
+    double fraction;
+    *feature = next_feature(self, &fraction);
+    const camber_gdal_errors *errors = &self->dataset.errors;
+    self->failed = errors->failures && CPLGetLastErrorType() >= CE_Failure;
+    return self->failed && (!*feature || is_read_error(errors)) ? fail_stream(self, errors->message) : CAMBER_OK;
+}
+
+static camber_status add_of_box(void *user, OGRFeatureH feature) {
+    reader *self = user;
+    self->read++;
+    return read_feature(self, feature, self->failed);
+}
+
+/* Reads the layer for the region of the set, if it can be done. Where that finds nothing but what is no line, the whole
+ * layer tells what is wrong with it. */
+static camber_status read_by_box(reader *self) {
+    const camber_box_reading reading = {.features = self->features,
+                                        .lines = &self->lines,
+                                        .dataset = self->dataset.handle,
+                                        .layer = self->layer,
+                                        .has_srs = OGR_L_GetSpatialRef(self->layer) != NULL,
+                                        .merges = !self->desc->keep_apart,
+                                        .user = self,
+                                        .next = next_of_box,
+                                        .add = add_of_box};
+    const size_t features = self->features->feature_count;
+    self->read = 0;
+    const camber_status status = camber_box_read(&reading, &self->boxed);
+    const bool nothing =
+        self->features->feature_count == features && (self->stats.skipped_features || self->stats.damaged_features);
+    if (status != CAMBER_OK || (self->boxed && !nothing))
+        return status;
+    self->boxed = false;
+    self->stats = (camber_features_stats){0};
+    self->damage[0] = 0;
+    return CAMBER_OK;
+}
+
+/* ---- Layers ---- */
+
 /* A FlatGeobuf that is cut off just ends; its header says how many features there are. */
 static camber_status check_count(reader *self, GIntBig expected) {
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(self->dataset.handle));
@@ -265,6 +312,10 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
         if (status != CAMBER_OK)
             return status;
         any = true;
+        if (count == 1 && self->features->has_region && !self->stitcher && !self->dataset.osm)
+            status = read_by_box(self);
+        if (status != CAMBER_OK || self->boxed)
+            return status;
         const bool counts = !self->desc->where && OGR_L_TestCapability(self->layer, OLCFastFeatureCount);
         const GIntBig expected = counts && !self->dataset.osm ? OGR_L_GetFeatureCount(self->layer, FALSE) : -1;
         status = read_layer(self, expected, unsorted);
@@ -337,7 +388,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
             GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
     }
     self->lines = (camber_feature_lines){.context = context,
-                                         .whole = self->stitcher,
+                                         .world = {.context = context, .whole = self->stitcher},
                                          .wants_polygons = style->wants_polygons,
                                          .directed = style->directed};
     status = read_layers(self, layers, count, unsorted);
@@ -345,7 +396,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
         status = camber_tile_stitcher_finish(self->stitcher, self->features);
     if (status == CAMBER_OK)
         status = check_result(self, features_before);
-    if (status == CAMBER_OK && self->desc->where && self->passed == 0)
+    if (status == CAMBER_OK && self->desc->where && self->passed == 0 && !self->boxed)
         warn_where(self);
     if (status == CAMBER_OK)
         status = camber_features_add_attribution(self->features, camber_dataset_attribution(&self->dataset));
@@ -375,8 +426,10 @@ static void add_stats(camber_features *features, const reader *self) {
 
 /* One attempt; on failure the set is as before but for spare classes. */
 static camber_status read_once(camber_features *features, const camber_source_desc *desc, bool *unsorted) {
-    reader self = {
-        .context = features->context, .features = features, .desc = desc, .lines.context = features->context};
+    reader self = {.context = features->context,
+                   .features = features,
+                   .desc = desc,
+                   .lines = {.context = features->context, .world.context = features->context}};
     const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
     const size_t signed_size = features->attribution_size;
     const camber_features_stats stats = features->stats;
@@ -388,8 +441,8 @@ static camber_status read_once(camber_features *features, const camber_source_de
     status = read_dataset(&self, unsorted);
     CPLPopErrorHandler();
     self.stats.invalid_points = self.lines.invalid_points;
-    self.stats.clamped_points = self.lines.clamped_points;
-    self.stats.antimeridian_splits = self.lines.antimeridian_splits;
+    self.stats.clamped_points = self.lines.world.clamped_points;
+    self.stats.antimeridian_splits = self.lines.world.antimeridian_splits;
     /* GDAL's memory is freed before the lines are copied. */
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;

@@ -3,7 +3,9 @@
 #define CAMBER_GDAL_VECTOR_FILE_H
 
 #include "source/features.h"
+#include "source/osm_keys.h"
 #include "source/tile_stitcher.h"
+#include "source/world_lines.h"
 
 #include <gdal.h>
 #include <ogr_api.h>
@@ -22,22 +24,16 @@ typedef struct camber_feature_lines {
     camber_projection_kind projection;
     bool latitude_first;                    /* degrees come as latitude, longitude */
     OGRCoordinateTransformationH transform; /* owned */
-    /* of tiles: coordinates stay where they are, beyond the world's edges too; they are cut later */
-    bool whole;
     bool wants_polygons;
     bool directed; /* outlines go clockwise as seen, those of holes the other way */
 
-    /* The last feature's polylines: line i ends before point ends[i]. */
-    double *points;
-    size_t point_count, point_capacity;
-    size_t *ends;
-    size_t line_count, line_capacity;
-    bool left_out; /* some of its geometry is not drawn */
+    camber_world_lines world; /* the last feature's polylines */
+    bool left_out;            /* some of its geometry is not drawn */
     bool damaged;
 
     /* Sums over all features. */
     size_t raw_points, strange_points; /* strange: not degrees on Earth */
-    size_t invalid_points, clamped_points, antimeridian_splits;
+    size_t invalid_points;
 
     double *raw; /* x of all points of a line, then y */
     size_t raw_capacity;
@@ -85,6 +81,26 @@ camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
 
+/* ---- box.c: reading a layer by its index ---- */
+
+typedef struct camber_box_reading {
+    camber_features *features; /* with a region */
+    camber_feature_lines *lines;
+    GDALDatasetH dataset;
+    OGRLayerH layer;
+    bool has_srs, merges;
+    void *user;
+    /* Gives the next feature; NULL at the end. */
+    camber_status (*next)(void *user, OGRFeatureH *feature);
+    /* Adds the feature to the set, or nothing where it has no lines. */
+    camber_status (*add)(void *user, OGRFeatureH feature);
+} camber_box_reading;
+
+/* Reads the features that the set's region needs: those that touch it, and those that decide how these are drawn, in
+ * the order of the file. *served: false where the layer has no such index, or says too little about where it lies; the
+ * set is then as before, and the layer is to be read whole. */
+camber_status camber_box_read(const camber_box_reading *reading, bool *served);
+
 /* ---- confine.c: what GDAL may reach ---- */
 
 /* Until the end nothing is fetched on this thread, unless the context's access has it, and nothing is written beside
@@ -118,8 +134,6 @@ bool camber_gdal_is_remote(const char *path);
 
 /* The next word of a filter outside '...': it may be a key. *at moves behind it. NULL: there is no more. */
 const char *camber_where_next(const char **at, size_t *length);
-/* Whether the text consists of the characters of such words. */
-bool camber_where_is_key(const char *text, size_t length);
 /* Finds the first key of a filter that no feature of the layer has, for OpenStreetMap data where nothing passes the
  * filter. Reads the file again, without the filter. false: all keys are there. */
 bool camber_where_find_unknown(const camber_dataset *dataset, OGRLayerH layer, char *key, size_t size);
@@ -146,9 +160,6 @@ typedef struct camber_columns {
     int *areas; /* OSM: fields of camber_osm_area_keys */
     size_t area_count;
 } camber_columns;
-
-/* Keys that make a closed way without a highway an area; NULL at the end. */
-extern const char *const camber_osm_area_keys[];
 
 /* Finds the fields of a layer; again for the next layer. */
 camber_status camber_columns_find(camber_columns *columns, camber_features *features, OGRFeatureDefnH schema,

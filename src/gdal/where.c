@@ -6,26 +6,15 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool is_word_character(char c) {
-    return isalnum((unsigned char)c) || c == '_' || c == ':' || c == '@' || c == '-' || c == '.';
-}
-
-bool camber_where_is_key(const char *text, size_t length) {
-    for (size_t i = 0; i < length; i++)
-        if (!is_word_character(text[i]))
-            return false;
-    return length > 0;
-}
-
 const char *camber_where_next(const char **at, size_t *length) {
     bool quoted = false;
     for (const char *c = *at; *c; c++) {
         if (*c == '\'')
             quoted = !quoted;
-        if (quoted || !is_word_character(*c))
+        if (quoted || !camber_osm_is_key_character(*c))
             continue;
         *length = 0;
-        while (is_word_character(c[*length]))
+        while (camber_osm_is_key_character(c[*length]))
             ++*length;
         *at = c + *length;
         return c;

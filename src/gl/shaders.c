@@ -24,7 +24,7 @@ static camber_status compile(camber_surface *surface, GLenum kind, const char *h
     const camber_gl *gl = &surface->gl;
     const GLchar *version =
         surface->es_3_2 ? "#version 320 es\n" : "#version 310 es\n#extension GL_EXT_texture_buffer : require\n";
-    const GLchar *parts[] = {version, head, camber_edge_glsl, "#line 1\n", source};
+    const GLchar *parts[] = {version, "#define CAMBER_GLSL 1\n", head, source};
     const GLuint shader = gl->CreateShader(kind);
     GLint built = 0;
     gl->ShaderSource(shader, sizeof parts / sizeof *parts, parts, NULL);
@@ -70,7 +70,7 @@ static camber_status build_from_sources(camber_surface *surface, const char *hea
 static camber_status build(camber_surface *surface, const char *head, const char *vertex, const char *fragment,
                            camber_shader *shader) {
     const camber_gl *gl = &surface->gl;
-    const char *const sources[] = {head, camber_edge_glsl, vertex, fragment};
+    const char *const sources[] = {head, vertex, fragment};
     const uint64_t key = camber_shader_cache_key(surface, sources, sizeof sources / sizeof *sources);
     const double begin = camber_now_ms();
     const GLuint program = gl->CreateProgram();
@@ -143,17 +143,17 @@ camber_status camber_shaders_stroke(camber_shaders *shaders, unsigned variant, c
 
 camber_status camber_shaders_flatten(camber_shaders *shaders, camber_flatten_kind kind, const camber_shader **shader) {
     static const char *const heads[CAMBER_FLATTEN_KINDS] = {
-        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n",
-        "#define COVERAGE 1\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n",
-        "#define COVERAGE 0\n#define UNION 1\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n",
-        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 1\n#define FILL 0\n#define IMAGES 0\n",
-        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 0\n",
-        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 1\n",
-        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n#define FLIPPED\n"};
+        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n",
+        "#define COVERAGE 1\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n",
+        "#define COVERAGE 0\n#define UNION 1\n#define MASKED 0\n#define FILL 0\n",
+        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 1\n#define FILL 0\n",
+        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n",
+        "",
+        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define FLIPPED\n"};
     camber_shader *wanted = shaders->flatten + kind;
     if (!wanted->program) {
-        const camber_status status =
-            build(shaders->surface, heads[kind], camber_flatten_vert, camber_flatten_frag, wanted);
+        const char *const fragment = kind == CAMBER_FLATTEN_IMAGES ? camber_images_frag : camber_flatten_frag;
+        const camber_status status = build(shaders->surface, heads[kind], camber_flatten_vert, fragment, wanted);
         if (status != CAMBER_OK)
             return status;
     }
@@ -166,7 +166,8 @@ camber_status camber_shaders_count(camber_shaders *shaders, camber_method method
     if (!wanted->program) {
         char head[256];
         snprintf(head, sizeof head,
-                 "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n"
+                 "#define METHOD %d\n#define LINEAR 0\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define "
+                 "BLUR 0\n"
                  "#define DASH 0\n#define TRIM 0\n#define RAMP 0\n#define PATTERN 0\n#define PITCHED 0\n"
                  "#define TEXELS_A_ROW %d\n",
                  (int)method, (int)CAMBER_ROW_TEXELS);

@@ -86,54 +86,133 @@ static void weigh_polyline(const double *points, size_t first, size_t end, float
 
 /* ---- Shared nodes ---- */
 
+/* Nodes are found share by share of their hashes, so that a table stays this small however many points there are; each
+ * share is one more walk over the points. */
+static const size_t MOST_SLOTS = (size_t)1 << 24;
+enum { BATCH = 64 };
+
 typedef struct repeat {
     uint32_t node, point; /* the first point of a node, and a later one at the same position */
 } repeat;
 
 /* A hash table from coordinates to the first point that has them, with open addressing; and the repeats so far. */
 typedef struct node_table {
-    uint32_t *slots; /* point + 1, or 0 for a free slot. Their number is a power of two, and at most half are in use */
-    size_t slot_count;
+    uint32_t *slots; /* point + 1, or 0 for a free slot. Their number is a power of two; about half are in use */
+    size_t slot_count, used;
     repeat *repeats;
     size_t repeat_count, repeat_capacity;
 } node_table;
 
 /* Returns the first point with these coordinates: the point itself where it is the first, which is then remembered. */
-static size_t find_node(node_table *table, const double *points, size_t point) {
-    size_t slot = (size_t)camber_mix_point(0, points + 2 * point) & (table->slot_count - 1);
+static size_t find_node(node_table *table, const double *points, size_t point, uint64_t hash) {
+    size_t slot = (size_t)hash & (table->slot_count - 1);
     for (; table->slots[slot]; slot = (slot + 1) & (table->slot_count - 1)) {
         const size_t other = table->slots[slot] - 1;
         if (memcmp(points + 2 * other, points + 2 * point, 2 * sizeof *points) == 0)
             return other;
     }
     table->slots[slot] = (uint32_t)point + 1;
+    table->used++;
     return point;
 }
 
-/* Gives all points of a node the largest importance among them. The first point collects it, then hands it out. */
+/* A table that fills up, since the hashes of a share are many more than others', is made anew and twice as large. */
+static bool grow_table(camber_context *context, node_table *table, const double *points) {
+    if (table->used + BATCH < table->slot_count / 4 * 3)
+        return true;
+    uint32_t *old = table->slots;
+    const size_t old_count = table->slot_count;
+    uint32_t *slots = camber_alloc_zero(context, 2 * old_count, sizeof *slots);
+    if (!slots)
+        return false;
+    *table = (node_table){slots, 2 * old_count, 0, table->repeats, table->repeat_count, table->repeat_capacity};
+    for (size_t i = 0; i < old_count; i++)
+        if (old[i])
+            (void)find_node(table, points, old[i] - 1, camber_mix_point(0, points + 2 * (size_t)(old[i] - 1)));
+    camber_free(context, old);
+    return true;
+}
+
+/* Whether a hash belongs to the share; there are a power of two of them. The table goes by the low bits. */
+static bool is_of_share(uint64_t hash, size_t share, size_t share_count) {
+    return ((size_t)(hash >> 40) & (share_count - 1)) == share;
+}
+
+/* Points of a share, looked up together: their slots lie anywhere in the table, so memory fetches all at once. */
+typedef struct node_batch {
+    uint32_t points[BATCH];
+    uint64_t hashes[BATCH];
+    size_t count;
+} node_batch;
+
+static inline void fetch(const void *at) {
+#if defined(__GNUC__)
+    __builtin_prefetch(at);
+#else
+    (void)at;
+#endif
+}
+
+/* The first point of a node collects the largest importance. */
+static camber_status look_up(camber_context *context, const double *points, node_batch *batch, node_table *table,
+                             float *importance) {
+    if (!grow_table(context, table, points) || !camber_grow(context, &table->repeats, &table->repeat_capacity,
+                                                            table->repeat_count + BATCH, sizeof *table->repeats))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t k = 0; k < batch->count; k++)
+        fetch(table->slots + ((size_t)batch->hashes[k] & (table->slot_count - 1)));
+    for (size_t k = 0; k < batch->count; k++) {
+        const uint32_t slot = table->slots[(size_t)batch->hashes[k] & (table->slot_count - 1)];
+        if (slot)
+            fetch(points + 2 * (size_t)(slot - 1));
+    }
+    for (size_t k = 0; k < batch->count; k++) {
+        const size_t point = batch->points[k], node = find_node(table, points, point, batch->hashes[k]);
+        if (node == point)
+            continue;
+        table->repeats[table->repeat_count++] = (repeat){(uint32_t)node, (uint32_t)point};
+        importance[node] = fmaxf(importance[node], importance[point]);
+    }
+    batch->count = 0;
+    return CAMBER_OK;
+}
+
+static camber_status share_some(camber_context *context, const double *points, size_t count, size_t share,
+                                size_t share_count, node_table *table, float *importance) {
+    node_batch batch = {.count = 0};
+    camber_status status = CAMBER_OK;
+    table->repeat_count = table->used = 0;
+    memset(table->slots, 0, table->slot_count * sizeof *table->slots);
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
+        const uint64_t hash = camber_mix_point(0, points + 2 * i);
+        batch.points[batch.count] = (uint32_t)i;
+        batch.hashes[batch.count] = hash;
+        batch.count += is_of_share(hash, share, share_count);
+        if (batch.count == BATCH)
+            status = look_up(context, points, &batch, table, importance);
+    }
+    if (status == CAMBER_OK)
+        status = look_up(context, points, &batch, table, importance);
+    for (size_t i = 0; i < table->repeat_count && status == CAMBER_OK; i++)
+        importance[table->repeats[i].point] = importance[table->repeats[i].node];
+    return status;
+}
+
+/* Gives all points of a node the largest importance among them. */
 static camber_status share_nodes(camber_context *context, const double *points, size_t count, float *importance) {
     if (count >= (size_t)1 << 31)
         return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points at once are more than 2^31; read fewer", count);
-    node_table table = {.slot_count = 16};
-    while (table.slot_count < 2 * count)
+    node_table table = {.slot_count = 4 * BATCH};
+    size_t share_count = 1;
+    while (table.slot_count < MOST_SLOTS && table.slot_count < 2 * count)
         table.slot_count *= 2;
-    camber_status status = CAMBER_ERROR_MEMORY;
-    if (!(table.slots = camber_alloc_zero(context, table.slot_count, sizeof *table.slots)))
-        return status;
-    for (size_t i = 0; i < count; i++) {
-        const size_t node = find_node(&table, points, i);
-        if (node == i)
-            continue;
-        if (!camber_grow(context, &table.repeats, &table.repeat_capacity, table.repeat_count + 1,
-                         sizeof *table.repeats))
-            goto done;
-        table.repeats[table.repeat_count++] = (repeat){(uint32_t)node, (uint32_t)i};
-        importance[node] = fmaxf(importance[node], importance[i]);
-    }
-    for (size_t i = 0; i < table.repeat_count; i++)
-        importance[table.repeats[i].point] = importance[table.repeats[i].node];
-    status = CAMBER_OK;
-done:
+    while (share_count * table.slot_count < 2 * count)
+        share_count *= 2;
+    if (!(table.slots = camber_alloc(context, table.slot_count, sizeof *table.slots)))
+        return CAMBER_ERROR_MEMORY;
+    camber_status status = CAMBER_OK;
+    for (size_t share = 0; share < share_count && status == CAMBER_OK; share++)
+        status = share_some(context, points, count, share, share_count, &table, importance);
     camber_free(context, table.repeats);
     camber_free(context, table.slots);
     return status;

@@ -27,6 +27,7 @@ struct camber_polylines {
     size_t polyline_count;
     uint32_t row_count; /* highest row + 1 */
     camber_polylines_stats stats;
+    void *block; /* has the arrays, but for arc_lengths; NULL: each is a block of its own */
 };
 
 /* Points farther out are invalid: steps of a float are larger than a city block there, px. Views cut long before. */

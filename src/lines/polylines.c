@@ -7,16 +7,30 @@
  *
  *     points       A B C D A           the last point is the first again
  *     slots    (D) A B C D A (B)       in brackets: sentinels, so that neighbours are always i - 1 and i + 1
- */
+ *
+ * Most polylines need none of that. So open ones are put in bundles, all their points at once in loops that compilers
+ * vectorise. Only where such a bundle turns out to have an irregular point, its polylines are put one by one. */
 #include "lines/lines.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* Whether b lies within 1e-9 px of a. */
+/* Points of a bundle: few enough that it stays in the first cache while it is put and looked at. */
+enum { BUNDLE_POINTS = 1024 };
+
+/* Points within 1e-9 px count as one. */
+static const float REPEATED_PX2 = 1e-18f;
+
+/* Whether b repeats a. */
 static bool is_repeated(const float *a, const float *b) {
     const float dx = b[0] - a[0], dy = b[1] - a[1];
-    return dx * dx + dy * dy <= 1e-18f;
+    return dx * dx + dy * dy <= REPEATED_PX2;
+}
+
+/* Whether a polyline's last point is its first again. */
+static bool is_closed(const float *points, size_t count) {
+    const float *last = points + 2 * (count - 1);
+    return count > 2 && points[0] == last[0] && points[1] == last[1];
 }
 
 static camber_status check_desc(camber_context *context, const camber_polylines_desc *desc) {
@@ -59,8 +73,7 @@ static void put_slot(camber_polylines *p, const float *point, uint32_t info) {
 /* Puts one stretch of valid points: drops repeated points, marks the ends, and gives a ring its sentinels. */
 static void put_stretch(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
     const uint32_t real = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
-    const float *last = points + 2 * (count - 1);
-    const bool closes = may_close && count > 2 && points[0] == last[0] && points[1] == last[1];
+    const bool closes = may_close && is_closed(points, count);
     const size_t sentinel = p->slot_count + 1;
     if (closes)
         put_slot(p, points, 0);
@@ -93,12 +106,18 @@ static void put_stretch(camber_polylines *p, const float *points, size_t count, 
     p->stats.rings++;
 }
 
+static uint32_t set_row(camber_polylines *p, const camber_polylines_desc *desc, size_t polyline) {
+    const uint32_t row = desc->rows ? desc->rows[polyline] : 0;
+    p->first_slots[polyline] = (uint32_t)p->slot_count;
+    p->polyline_rows[polyline] = row;
+    p->row_count = row + 1 > p->row_count ? row + 1 : p->row_count;
+    return row;
+}
+
 static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc, size_t polyline) {
     const float *points = desc->points + 2 * (size_t)desc->offsets[polyline];
     const size_t count = desc->offsets[polyline + 1] - desc->offsets[polyline];
-    const uint32_t row = desc->rows ? desc->rows[polyline] : 0;
-    p->polyline_rows[polyline] = row;
-    p->row_count = row + 1 > p->row_count ? row + 1 : p->row_count;
+    const uint32_t row = set_row(p, desc, polyline);
     p->stats.empty_polylines += count == 0;
     size_t first = 0;
     for (size_t i = 0; i <= count; i++) {
@@ -111,6 +130,81 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
     }
 }
 
+/* ---- Bundles of open polylines ---- */
+
+/* The end of the bundle of one row that begins with a polyline; the polyline itself where it is empty or closed. */
+static size_t find_bundle_end(const camber_polylines_desc *desc, size_t first) {
+    size_t end = first;
+    for (; end < desc->polyline_count; end++) {
+        const size_t from = desc->offsets[end], count = desc->offsets[end + 1] - from;
+        const bool is_long = desc->offsets[end + 1] - desc->offsets[first] > BUNDLE_POINTS && end > first;
+        const bool is_other = desc->rows && desc->rows[end] != desc->rows[first];
+        if (count == 0 || is_long || is_other || (!desc->keep_open && is_closed(desc->points + 2 * from, count)))
+            break;
+    }
+    return end;
+}
+
+/* Puts the coordinates of points. Gives how many repeat the one before; SIZE_MAX where one is invalid. */
+static size_t put_coordinates(const float *restrict points, size_t count, float *restrict x, float *restrict y) {
+    uint32_t invalid = 0, repeated = 0;
+    for (size_t i = 0; i < count; i++) {
+        x[i] = points[2 * i];
+        y[i] = points[2 * i + 1];
+    }
+    for (size_t i = 0; i < count; i++)
+        invalid |= !(fabsf(x[i]) <= CAMBER_FARTHEST_PX) | !(fabsf(y[i]) <= CAMBER_FARTHEST_PX);
+    for (size_t i = 1; i < count; i++) {
+        const float dx = x[i] - x[i - 1], dy = y[i] - y[i - 1];
+        repeated += dx * dx + dy * dy <= REPEATED_PX2;
+    }
+    return invalid ? SIZE_MAX : repeated;
+}
+
+/* How many polylines but the first begin where the one before ends. */
+static size_t count_joined(const camber_polylines_desc *desc, size_t first, size_t end) {
+    size_t count = 0;
+    for (size_t i = first + 1; i < end; i++) {
+        const float *point = desc->points + 2 * (size_t)desc->offsets[i];
+        count += is_repeated(point - 2, point);
+    }
+    return count;
+}
+
+/* Puts the polylines [first, end). false: a point is invalid, or repeats the one before it in its polyline. */
+static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, size_t first, size_t end) {
+    const size_t from = desc->offsets[first], count = desc->offsets[end] - from, slot = p->slot_count + 1;
+    const size_t repeated = put_coordinates(desc->points + 2 * from, count, p->x + slot, p->y + slot);
+    if (repeated > 0 && repeated != count_joined(desc, first, end))
+        return false;
+    const uint32_t row = desc->rows ? desc->rows[first] : 0;
+    for (size_t i = 0; i < count; i++)
+        p->info[slot + i] = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
+    for (size_t i = first; i < end; i++) {
+        const size_t points = desc->offsets[i + 1] - desc->offsets[i];
+        set_row(p, desc, i);
+        p->info[p->slot_count + 1] |= CAMBER_POINT_FIRST;
+        p->slot_count += points;
+        p->info[p->slot_count] |= CAMBER_POINT_LAST;
+        p->stats.dots += points == 1;
+    }
+    p->stats.kept_points += count;
+    p->stats.kept_segments += count - (end - first);
+    return true;
+}
+
+static void put_polylines(camber_polylines *p, const camber_polylines_desc *desc) {
+    for (size_t i = 0; i < desc->polyline_count;) {
+        const size_t end = find_bundle_end(desc, i);
+        if (end > i && put_bundle(p, desc, i, end))
+            i = end;
+        else
+            do
+                put_polyline(p, desc, i);
+            while (++i < end);
+    }
+}
+
 /* Puts sentinels to the end of the last block, and one behind it. They lie at the origin, so that no kernel meets a
  * NaN. */
 static void put_padding(camber_polylines *p) {
@@ -120,6 +214,19 @@ static void put_padding(camber_polylines *p) {
     memset(p->x + used, 0, padding * sizeof *p->x);
     memset(p->y + used, 0, padding * sizeof *p->y);
     memset(p->info + used, 0, padding * sizeof *p->info);
+}
+
+/* Makes the arrays, in one block. */
+static bool reserve(camber_polylines *p, size_t slots) {
+    p->block = camber_alloc_spare(p->context, 3 * slots + 2 * p->polyline_count + 1, sizeof *p->info);
+    if (!p->block)
+        return false;
+    p->x = p->block;
+    p->y = p->x + slots;
+    p->info = (uint32_t *)(p->y + slots);
+    p->first_slots = p->info + slots;
+    p->polyline_rows = p->first_slots + p->polyline_count + 1;
+    return true;
 }
 
 camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
@@ -139,25 +246,17 @@ camber_status camber_polylines_create(camber_context *context, const camber_poly
     for (size_t i = 0; i < desc->polyline_count; i++)
         rings += desc->offsets[i + 1] - desc->offsets[i] > 2;
     const size_t slots = desc->point_count + 2 * (desc->keep_open ? 0 : rings) + 2 + CAMBER_BLOCK;
-    status = CAMBER_ERROR_MEMORY;
-    if (!(p->x = camber_alloc(context, slots, sizeof *p->x)) || !(p->y = camber_alloc(context, slots, sizeof *p->y)) ||
-        !(p->info = camber_alloc(context, slots, sizeof *p->info)) ||
-        !(p->first_slots = camber_alloc(context, desc->polyline_count + 1, sizeof *p->first_slots)) ||
-        !(p->polyline_rows = camber_alloc(context, desc->polyline_count, sizeof *p->polyline_rows)))
-        goto done;
+    if (!reserve(p, slots)) {
+        camber_polylines_destroy(p);
+        return CAMBER_ERROR_MEMORY;
+    }
     p->x[0] = p->y[0] = 0;
     p->info[0] = 0;
-    for (size_t i = 0; i < desc->polyline_count; i++) {
-        p->first_slots[i] = (uint32_t)p->slot_count;
-        put_polyline(p, desc, i);
-    }
+    put_polylines(p, desc);
     p->first_slots[desc->polyline_count] = (uint32_t)p->slot_count;
     put_padding(p);
     *polylines = p;
     return CAMBER_OK;
-done:
-    camber_polylines_destroy(p);
-    return status;
 }
 
 void camber_polylines_hold(camber_polylines *polylines) {
@@ -171,12 +270,12 @@ void camber_polylines_destroy(camber_polylines *polylines) {
         return;
     }
     camber_context *context = polylines->context;
-    camber_free(context, polylines->polyline_rows);
-    camber_free(context, polylines->first_slots);
+    void *const arrays[] = {polylines->x, polylines->y, polylines->info, polylines->first_slots,
+                            polylines->polyline_rows};
+    for (size_t i = 0; !polylines->block && i < sizeof arrays / sizeof *arrays; i++)
+        camber_free(context, arrays[i]);
+    camber_free_spare(context, polylines->block);
     camber_free(context, polylines->arc_lengths);
-    camber_free(context, polylines->info);
-    camber_free(context, polylines->y);
-    camber_free(context, polylines->x);
     camber_free(context, polylines);
 }
 

@@ -3,6 +3,7 @@
  * that need GDAL in a module, and loads it with the first file that is read. The static library has them in itself. */
 #define _GNU_SOURCE /* dladdr */
 
+#include "osm/osm.h"
 #include "source/gdal_calls.h"
 #include "source/tile_reader.h"
 
@@ -65,19 +66,25 @@ camber_status camber_gdal_load(camber_context *context) {
                        why ? why : "no reason given");
 }
 
-/* Decides who reads a file of tiles. GDAL opens tiles one by one and knows no PMTiles, but it filters by attributes
- * and reads inside archives. */
+/* Decides who reads a file. GDAL opens tiles one by one and knows no PMTiles, but it filters by attributes and reads
+ * inside archives. */
 bool camber_source_needs_gdal(const camber_source_desc *desc) {
     struct stat about;
+    if (camber_osm_reads(desc))
+        return false;
     if (!camber_tile_set_knows(desc->path) || strncmp(desc->path, "/vsi", 4) == 0)
         return true;
     return desc->where || (stat(desc->path, &about) == 0 && S_ISDIR(about.st_mode));
 }
 
 camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
-    if (!camber_source_needs_gdal(desc))
+    bool declined = true;
+    camber_status status = camber_osm_reads(desc) ? camber_osm_read(features, desc, &declined) : CAMBER_OK;
+    if (!declined || status != CAMBER_OK)
+        return status;
+    if (!camber_osm_reads(desc) && !camber_source_needs_gdal(desc))
         return camber_features_read_tile_file(features, desc);
-    const camber_status status = camber_gdal_load(features->context);
+    status = camber_gdal_load(features->context);
     const camber_gdal_calls *calls = features->context->gdal;
     return status == CAMBER_OK ? calls->read(features, desc) : status;
 }

@@ -48,8 +48,8 @@ static two_bounds bounds_of(const camber_features *features, const camber_view *
         return bounds;
     }
     for (size_t s = 0; s < plan->set_count; s++)
-        for (size_t i = 0; i < plan->sets[s].entry_count; i++)
-            add_polyline(features, plan->entries[plan->sets[s].first_entry + i].polyline, view, &bounds);
+        for (size_t i = plan->all.first_entries[s]; i < plan->all.first_entries[s + 1]; i++)
+            add_polyline(features, plan->all.entries[i].polyline, view, &bounds);
     return bounds;
 }
 

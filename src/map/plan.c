@@ -431,16 +431,6 @@ static camber_status match_set(const camber_features *features, const camber_vie
 
 /* ---- Entries: polylines by set, in input order, or in that of their features' keys where a set is sorted ---- */
 
-typedef struct set_pair {
-    uint32_t set, pair;
-} set_pair;
-
-/* The sets that draw a class: [first[class], first[class + 1]) of pairs. */
-typedef struct class_sets {
-    size_t *first;
-    set_pair *pairs;
-} class_sets;
-
 /* Ends the pairs of a set. Where it is sorted, the plan's key includes the sort keys, since other keys mean another
  * order. */
 static void end_set(camber_plan *plan, camber_plan_set *set) {
@@ -482,9 +472,9 @@ static camber_status number_pairs(const camber_features *features, camber_plan *
     return CAMBER_OK;
 }
 
-static camber_status group_by_class(const camber_features *features, const camber_plan *plan, const uint32_t *rows,
-                                    class_sets *by_class) {
+static camber_status group_by_class(const camber_features *features, camber_plan *plan, const uint32_t *rows) {
     const size_t class_count = features->class_count;
+    camber_class_sets *by_class = &plan->by_class;
     by_class->first = camber_alloc(plan->context, class_count + 1, sizeof *by_class->first);
     if (!by_class->first)
         return CAMBER_ERROR_MEMORY;
@@ -503,7 +493,7 @@ static camber_status group_by_class(const camber_features *features, const cambe
     for (size_t s = 0; s < plan->set_count; s++)
         for (size_t c = 0; c < class_count; c++)
             if (rows[s * class_count + c] != CAMBER_NO_ROW)
-                by_class->pairs[by_class->first[c]++] = (set_pair){(uint32_t)s, pair++};
+                by_class->pairs[by_class->first[c]++] = (camber_set_pair){(uint32_t)s, pair++};
     for (size_t c = class_count; c > 0; c--)
         by_class->first[c] = by_class->first[c - 1];
     by_class->first[0] = 0;
@@ -521,12 +511,12 @@ static int compare_keys(const void *left, const void *right) {
 }
 
 /* Sorts the entries of a set by their features' keys; entries of one key stay as they were. */
-static camber_status sort_entries(camber_plan *plan, const camber_plan_set *set) {
-    camber_plan_entry *entries = plan->entries + set->first_entry;
+static camber_status sort_entries(const camber_plan *plan, const camber_plan_set *set, camber_plan_entry *entries,
+                                  size_t count) {
     keyed_pair *keyed = camber_alloc(plan->context, set->pair_count, sizeof *keyed);
     size_t *ranks = keyed ? camber_alloc(plan->context, set->pair_count, sizeof *ranks) : NULL;
     size_t *firsts = ranks ? camber_alloc_zero(plan->context, set->pair_count + 1, sizeof *firsts) : NULL;
-    camber_plan_entry *sorted = firsts ? camber_alloc(plan->context, set->entry_count, sizeof *sorted) : NULL;
+    camber_plan_entry *sorted = firsts ? camber_alloc(plan->context, count, sizeof *sorted) : NULL;
     const bool held = sorted != NULL;
     if (held) {
         for (size_t i = 0; i < set->pair_count; i++)
@@ -536,13 +526,13 @@ static camber_status sort_entries(camber_plan *plan, const camber_plan_set *set)
             rank += i > 0 && keyed[i].key > keyed[i - 1].key;
             ranks[keyed[i].pair] = rank;
         }
-        for (size_t i = 0; i < set->entry_count; i++)
+        for (size_t i = 0; i < count; i++)
             firsts[ranks[entries[i].pair - set->first_pair] + 1]++;
         for (size_t i = 0; i < set->pair_count; i++)
             firsts[i + 1] += firsts[i];
-        for (size_t i = 0; i < set->entry_count; i++)
+        for (size_t i = 0; i < count; i++)
             sorted[firsts[ranks[entries[i].pair - set->first_pair]]++] = entries[i];
-        memcpy(entries, sorted, set->entry_count * sizeof *sorted);
+        memcpy(entries, sorted, count * sizeof *sorted);
     }
     camber_free(plan->context, sorted);
     camber_free(plan->context, firsts);
@@ -551,57 +541,66 @@ static camber_status sort_entries(camber_plan *plan, const camber_plan_set *set)
     return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-static camber_status list_by_set(const camber_features *features, camber_plan *plan, const class_sets *by_class) {
-    if (features->polyline_count > UINT32_MAX)
-        return camber_fail(plan->context, CAMBER_ERROR_LIMIT, "%zu polylines are more than 2^32; draw them in parts",
-                           features->polyline_count);
-    for (size_t p = 0; p < features->polyline_count; p++) {
-        const uint32_t class = features->feature_class[features->polyline_feature[p]];
-        if (by_class->first[class] == by_class->first[class + 1])
-            plan->undrawn += features->feature_counts[p];
-        for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
-            plan->sets[by_class->pairs[k].set].entry_count++;
-    }
-    size_t total = 0;
-    for (size_t s = 0; s < plan->set_count; s++) {
-        plan->sets[s].first_entry = total;
-        total += plan->sets[s].entry_count;
-        plan->sets[s].entry_count = 0;
-    }
-    plan->entries = camber_alloc(plan->context, total, sizeof *plan->entries);
-    if (!plan->entries)
+/* The class of the n-th polyline of a choice, and in *polyline its number. */
+static uint32_t class_at(const camber_features *features, const uint32_t *polylines, size_t n, size_t *polyline) {
+    *polyline = polylines ? polylines[n] : n;
+    return features->feature_class[features->polyline_feature[*polyline]];
+}
+
+camber_status camber_plan_list(const camber_features *features, const camber_plan *plan, const uint32_t *polylines,
+                               size_t polyline_count, camber_plan_entries *list) {
+    const camber_class_sets *by_class = &plan->by_class;
+    size_t p;
+    *list = (camber_plan_entries){.context = plan->context};
+    if (!(list->first_entries = camber_alloc_zero(plan->context, plan->set_count + 2, sizeof *list->first_entries)))
         return CAMBER_ERROR_MEMORY;
-    for (size_t p = 0; p < features->polyline_count; p++) {
-        const uint32_t class = features->feature_class[features->polyline_feature[p]];
-        for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++) {
-            camber_plan_set *set = plan->sets + by_class->pairs[k].set;
-            plan->entries[set->first_entry + set->entry_count++] =
-                (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
-        }
+    size_t *firsts = list->first_entries + 1; /* while entries are put, firsts[set] is where its next one goes */
+    for (size_t i = 0; i < polyline_count; i++) {
+        const uint32_t class = class_at(features, polylines, i, &p);
+        for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
+            firsts[by_class->pairs[k].set + 1]++;
+    }
+    for (size_t s = 0; s < plan->set_count; s++)
+        firsts[s + 1] += firsts[s];
+    const size_t total = firsts[plan->set_count];
+    if (!(list->entries = camber_alloc(plan->context, total, sizeof *list->entries)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < polyline_count; i++) {
+        const uint32_t class = class_at(features, polylines, i, &p);
+        for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
+            list->entries[firsts[by_class->pairs[k].set]++] = (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
     }
     camber_status status = CAMBER_OK;
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         if (plan->sets[s].sorted)
-            status = sort_entries(plan, plan->sets + s);
+            status = sort_entries(plan, plan->sets + s, list->entries + list->first_entries[s],
+                                  list->first_entries[s + 1] - list->first_entries[s]);
     return status;
 }
 
-/* Numbers the pairs of sets and classes, and lists the polylines of each set. */
-static camber_status list_entries(const camber_features *features, camber_plan *plan, const plan_classes *by_class) {
-    class_sets sets = {0};
-    camber_status status = number_pairs(features, plan, by_class);
-    if (status == CAMBER_OK)
-        status = group_by_class(features, plan, by_class->rows, &sets);
-    if (status == CAMBER_OK)
-        status = list_by_set(features, plan, &sets);
-    camber_free(plan->context, sets.pairs);
-    camber_free(plan->context, sets.first);
+void camber_plan_entries_free(camber_plan_entries *list) {
+    if (!list->context)
+        return;
+    camber_free(list->context, list->entries);
+    camber_free(list->context, list->first_entries);
+    *list = (camber_plan_entries){0};
+}
+
+/* Lists the polylines of each set, of all features. */
+static camber_status list_all(const camber_features *features, camber_plan *plan) {
+    const camber_class_sets *by_class = &plan->by_class;
+    const camber_status status = camber_plan_list(features, plan, NULL, features->polyline_count, &plan->all);
+    for (size_t p = 0; p < features->polyline_count; p++) {
+        const uint32_t class = features->feature_class[features->polyline_feature[p]];
+        if (by_class->first[class] == by_class->first[class + 1])
+            plan->undrawn += features->feature_counts[p];
+    }
     return status;
 }
 
 /* ---- The plan ---- */
 
-camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan) {
+camber_status camber_plan_evaluate(const camber_features *features, const camber_view *view, camber_plan *plan) {
     camber_context *context = features->context;
     *plan = (camber_plan){.context = context};
     plan->patterns = (camber_plan_patterns){.context = context, .sprites = features->sprites};
@@ -628,14 +627,24 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     status = CAMBER_OK;
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         status = match_set(features, view, plan, plan->sets + s, &rows);
+    if (status == CAMBER_OK && features->polyline_count > UINT32_MAX)
+        status = camber_fail(context, CAMBER_ERROR_LIMIT, "%zu polylines are more than 2^32; draw them in parts",
+                             features->polyline_count);
     if (status == CAMBER_OK)
-        status = list_entries(features, plan, &rows.by_class);
+        status = number_pairs(features, plan, &rows.by_class);
+    if (status == CAMBER_OK)
+        status = group_by_class(features, plan, rows.by_class.rows);
 done:
     camber_free(context, rows.by_class.keys);
     camber_free(context, rows.by_class.rows);
     camber_free(context, table->slots);
     camber_free(context, table->tuple);
     return status;
+}
+
+camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan) {
+    const camber_status status = camber_plan_evaluate(features, view, plan);
+    return status == CAMBER_OK ? list_all(features, plan) : status;
 }
 
 void camber_plan_destroy(camber_plan *plan) {
@@ -645,7 +654,9 @@ void camber_plan_destroy(camber_plan *plan) {
         camber_free(plan->context, plan->dashes[i]);
     camber_free(plan->context, plan->dashes);
     camber_free(plan->context, plan->dash_slots);
-    camber_free(plan->context, plan->entries);
+    camber_plan_entries_free(&plan->all);
+    camber_free(plan->context, plan->by_class.pairs);
+    camber_free(plan->context, plan->by_class.first);
     camber_free(plan->context, plan->pair_keys);
     camber_free(plan->context, plan->pair_rows);
     camber_free(plan->context, plan->strokes);

@@ -15,10 +15,9 @@
 typedef struct camber_plan_set {
     size_t first_layer, last_layer, layer_count; /* layers of the plan, linked by next */
     size_t first_row, row_count;
-    size_t first_pair, pair_count;   /* its classes, in order */
-    size_t first_paint;              /* into paints: row_count tuples of layer_count */
-    bool sorted;                     /* entries are in the order of pair_keys */
-    size_t first_entry, entry_count; /* into entries */
+    size_t first_pair, pair_count; /* its classes, in order */
+    size_t first_paint;            /* into paints: row_count tuples of layer_count */
+    bool sorted;                   /* entries are in the order of pair_keys */
 } camber_plan_set;
 
 typedef struct camber_plan_layer {
@@ -38,6 +37,24 @@ typedef struct camber_plan_layer {
 typedef struct camber_plan_entry {
     uint32_t polyline, pair;
 } camber_plan_entry;
+
+/* Polylines by set: set s has [first_entries[s], first_entries[s + 1]). In a set they are in input order, or in that of
+ * their features' keys where the set is sorted. */
+typedef struct camber_plan_entries {
+    camber_context *context;
+    camber_plan_entry *entries;
+    size_t *first_entries; /* set_count + 1 */
+} camber_plan_entries;
+
+typedef struct camber_set_pair {
+    uint32_t set, pair;
+} camber_set_pair;
+
+/* The sets that draw a class: [first[class], first[class + 1]) of pairs. */
+typedef struct camber_class_sets {
+    size_t *first;
+    camber_set_pair *pairs;
+} camber_class_sets;
 
 typedef struct camber_plan_dash {
     camber_dash dash; /* the lengths below */
@@ -69,12 +86,21 @@ typedef struct camber_plan {
     size_t pair_count;
     uint64_t
         key; /* a hash of the pairs' sets and classes: two plans of the same features with one key have equal entries */
-    camber_plan_entry *entries;
+    camber_class_sets by_class;
+    /* These two are of all features; camber_plan_evaluate leaves them out. */
+    camber_plan_entries all;
     size_t undrawn; /* features of which no layer draws anything */
 } camber_plan;
 
-/* Evaluates the style, once a set and class. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^24 rows).
- * camber_plan_destroy frees also what a failure left. */
+/* Evaluates the style, once a set and class, and lists nothing. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^24
+ * rows). camber_plan_destroy frees also what a failure left. */
+camber_status camber_plan_evaluate(const camber_features *features, const camber_view *view, camber_plan *plan);
+/* Lists what the plan draws of some polylines, in ascending order. NULL: of the first polyline_count.
+ * camber_plan_entries_free frees also what a failure left. */
+camber_status camber_plan_list(const camber_features *features, const camber_plan *plan, const uint32_t *polylines,
+                               size_t polyline_count, camber_plan_entries *list);
+void camber_plan_entries_free(camber_plan_entries *list);
+/* Does both, for all features. */
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
 void camber_plan_destroy(camber_plan *plan);
 

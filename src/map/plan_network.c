@@ -24,10 +24,20 @@ static double reach_of(const camber_stroke *stroke) {
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
+/* How far from its source line a stroke with an offset runs, at corners too. */
+static double offset_of(const camber_stroke *stroke) {
+    const double far = fabs((double)stroke->offset_px), limit = (double)stroke->miter_limit;
+    return fmin(far * (stroke->join == CAMBER_JOIN_MITER ? fmax(limit, 1.1) : 1.1), fmax(far, LARGEST_REACH_PX));
+}
+
+double camber_plan_stroke_reach(const camber_stroke *stroke) {
+    return reach_of(stroke) + offset_of(stroke);
+}
+
 double camber_plan_reach(const camber_plan *plan) {
     double reach = 0.0;
     for (size_t row = 0; row < plan->row_count; row++)
-        reach = fmax(reach, reach_of(plan->strokes + row));
+        reach = fmax(reach, camber_plan_stroke_reach(plan->strokes + row));
     return reach + (double)plan->translate_px;
 }
 
@@ -98,10 +108,10 @@ typedef struct entry_list {
     size_t count, capacity;
 } entry_list;
 
-static camber_status list_set(const camber_features *features, const camber_plan *plan, const camber_plan_set *set,
+static camber_status list_set(const camber_features *features, const camber_plan *plan, size_t set,
                               const copies *worlds, entry_list *list) {
-    for (size_t i = 0; i < set->entry_count; i++) {
-        const camber_plan_entry entry = plan->entries[set->first_entry + i];
+    for (size_t i = plan->all.first_entries[set]; i < plan->all.first_entries[set + 1]; i++) {
+        const camber_plan_entry entry = plan->all.entries[i];
         double first, last;
         if (!find_shifts(features, worlds, entry.polyline, &first, &last))
             continue;
@@ -116,32 +126,26 @@ static camber_status list_set(const camber_features *features, const camber_plan
     return CAMBER_OK;
 }
 
-static camber_status make_network(const camber_features *features, const entry_list *list,
-                                  camber_plan_network *geometry) {
+/* stays: the view that the network is for alone, and least the importance of the points that it keeps. NULL: any. */
+static camber_status make_network(const camber_features *features, size_t entry_count, const camber_view *stays,
+                                  float least, camber_plan_network *geometry) {
     static const size_t none[1] = {0};
     static const camber_network_entry nothing;
-    const camber_network_entry *entries = list->entries ? list->entries : &nothing;
     const camber_network_desc desc = {.points = features->points,
                                       .offsets = features->offsets ? features->offsets : none,
                                       .polyline_count = features->polyline_count,
                                       .importance = features->importance,
-                                      .entries = entries,
-                                      .entry_count = list->count,
+                                      .entries = geometry->entries ? geometry->entries : &nothing,
+                                      .entry_count = entry_count,
                                       .progress = geometry->has_arc_length ? features->progress : NULL,
-                                      .has_arc_length = geometry->has_arc_length};
-    camber_context *context = geometry->context;
-    if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
-        !(geometry->pairs = camber_alloc(context, list->count, sizeof *geometry->pairs)))
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < list->count; i++) {
-        geometry->polylines[i] = entries[i].polyline;
-        geometry->pairs[i] = entries[i].row;
-    }
+                                      .has_arc_length = geometry->has_arc_length,
+                                      .least_importance = least,
+                                      .step = stays ? camber_plan_network_step(stays) : 0.0};
     return camber_network_create(geometry->context, &desc, &geometry->network);
 }
 
-camber_status camber_plan_network_create(const camber_features *features, const camber_view *view,
-                                         const camber_plan *plan, camber_plan_network *geometry) {
+camber_status camber_plan_network_create(const camber_features *features, const camber_view *view, camber_plan *plan,
+                                         const camber_still *still, camber_plan_network *geometry) {
     *geometry = (camber_plan_network){.context = features->context,
                                       .set_count = plan->set_count,
                                       .has_arc_length = plan->has_arc_length,
@@ -154,12 +158,14 @@ camber_status camber_plan_network_create(const camber_features *features, const 
         return CAMBER_ERROR_MEMORY;
     for (size_t s = 0; status == CAMBER_OK && s < plan->set_count; s++) {
         geometry->first_entries[s] = list.count;
-        status = list_set(features, plan, plan->sets + s, &worlds, &list);
+        status = list_set(features, plan, s, &worlds, &list);
     }
     geometry->first_entries[plan->set_count] = list.count;
+    geometry->entries = list.entries;
+    camber_plan_entries_free(&plan->all);
     if (status == CAMBER_OK)
-        status = make_network(features, &list, geometry);
-    camber_free(geometry->context, list.entries);
+        status =
+            make_network(features, list.count, still ? view : NULL, still ? still->least_importance : 0.0f, geometry);
     return status;
 }
 
@@ -168,8 +174,7 @@ void camber_plan_network_destroy(camber_plan_network *geometry) {
         return;
     camber_network_destroy(geometry->network);
     camber_free(geometry->context, geometry->first_entries);
-    camber_free(geometry->context, geometry->pairs);
-    camber_free(geometry->context, geometry->polylines);
+    camber_free(geometry->context, geometry->entries);
     *geometry = (camber_plan_network){0};
 }
 
@@ -180,11 +185,11 @@ static void count_set(const camber_features *features, const camber_plan_network
                       camber_visible_lines *seen) {
     uint32_t before = UINT32_MAX, counted = UINT32_MAX;
     for (size_t i = first; i < end; i++) {
-        const uint32_t polyline = geometry->polylines[seen->lines.entries[i]];
+        const uint32_t polyline = geometry->entries[seen->lines.entries[i]].polyline;
         if (polyline == before)
             continue;
         before = polyline;
-        seen->points_in += features->offsets[polyline + 1] - features->offsets[polyline];
+        seen->points_in += camber_features_whole_count(features, polyline);
         /* A later line of a feature counts where its first line is not seen. */
         const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
         seen->feature_count += count || feature == counted ? count : 1;
@@ -201,7 +206,7 @@ static camber_status fill_rows(const camber_plan_network *geometry, const camber
               camber_alloc(geometry->context, geometry->set_count + 1, sizeof *seen->first_polylines)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < count; i++)
-        seen->rows[i] = plan->pair_rows[geometry->pairs[seen->lines.entries[i]]];
+        seen->rows[i] = plan->pair_rows[geometry->entries[seen->lines.entries[i]].row];
     size_t at = 0;
     for (size_t s = 0; s <= geometry->set_count; s++) {
         while (at < count && seen->lines.entries[at] < geometry->first_entries[s])

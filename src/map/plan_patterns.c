@@ -67,7 +67,7 @@ void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const c
                                          const camber_view *view, size_t layers_so_far, camber_color *below) {
     const camber_layer_paint paint = camber_style_layer_paint(layer, camber_view_style_zoom(view), NULL);
     camber_fill fill = {.color = paint.color};
-    const camber_sprite_image *image;
+    const camber_sprite_image *image = NULL;
     const bool patterned =
         camber_plan_patterns_find(patterns, layer, floor(camber_view_style_zoom(view)), NULL, &image);
     if (patterned) {
@@ -86,5 +86,11 @@ void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const c
         patterns->failed = true;
         return;
     }
-    patterns->fills[patterns->fill_count++] = (camber_plan_fill){layers_so_far, fill};
+    patterns->fills[patterns->fill_count++] = (camber_plan_fill){layers_so_far, fill, patterned ? image : NULL};
+}
+
+void camber_plan_patterns_move(camber_plan_patterns *patterns, const camber_view *view) {
+    for (size_t i = 0; i < patterns->fill_count; i++)
+        if (patterns->fills[i].image)
+            place_images(patterns->fills[i].image, view, &patterns->fills[i].fill);
 }

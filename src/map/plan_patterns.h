@@ -9,6 +9,7 @@
 typedef struct camber_plan_fill {
     size_t before; /* layer_count: behind the last */
     camber_fill fill;
+    const camber_sprite_image *image; /* NULL: the fill is of one colour */
 } camber_plan_fill;
 
 typedef struct camber_plan_patterns {
@@ -31,5 +32,8 @@ bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_styl
  * layer that comes next. */
 void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const camber_style_layer *layer,
                                          const camber_view *view, size_t layers_so_far, camber_color *below);
+
+/* Places the images of all backgrounds for another view of the same zoom and ratio. */
+void camber_plan_patterns_move(camber_plan_patterns *patterns, const camber_view *view);
 
 #endif

@@ -34,6 +34,10 @@ void camber_view_frame(camber_view *view, camber_box bounds, double fill, double
 /* The quadrangle of the world that is seen, as pairs of x, y: of a view with a pitch up to the far plane. */
 void camber_view_corners(const camber_view *view, double corners[8]);
 
+/* How far from what is seen a line may lie that reaches it, in world coordinates, whatever features say (read_for.c).
+ */
+double camber_view_margin(const camber_style *style, const camber_view *view, double simplify_px);
+
 /* The zoom to evaluate styles at: 0 to 24, the range of theirs. */
 double camber_view_style_zoom(const camber_view *view);
 

@@ -4,10 +4,12 @@
 #include <assert.h>
 #include <string.h>
 
-/* The bytes that segments, lists and spills may each take if memory has no bound. More segments than that are drawn in
- * slices, from the last one to the first. If lists or spills would take more, a band is halved; if the lists of a
- * single row of tiles do, the slice is halved. */
+/* The bytes that lists and spills may each take if memory has no bound. If they would take more, a band is halved; if
+ * the lists of a single row of tiles do, the slice is halved. */
 static const uint64_t MOST_BYTES = 256 * 1024 * 1024;
+/* The bytes that segments may take: a million of them without pitch. More are drawn in slices, from the last one to the
+ * first. */
+static const uint64_t MOST_SEGMENT_BYTES = 64 * 1024 * 1024;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster) {
     camber_raster *made = camber_alloc_zero(device->context, 1, sizeof *made);
@@ -53,6 +55,11 @@ uint64_t camber_raster_most_bytes(const camber_raster *raster) {
     const uint64_t largest = raster->device->info.largest_buffer_bytes, quarter = raster->memory.allowed_bytes / 4;
     const uint64_t most = largest < MOST_BYTES ? largest : MOST_BYTES;
     return quarter && quarter < most ? quarter : most;
+}
+
+uint64_t camber_raster_most_segment_bytes(const camber_raster *raster) {
+    const uint64_t most = camber_raster_most_bytes(raster);
+    return most < MOST_SEGMENT_BYTES ? most : MOST_SEGMENT_BYTES;
 }
 
 uint32_t camber_raster_widest(const camber_raster *raster) {

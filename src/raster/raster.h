@@ -18,8 +18,7 @@
 #include "tess/mesh.h"
 
 #include "camber_proof.h"
-#include "kernels/pitch_features.h"
-#include "kernels/pitch_images.h"
+#include "kernels/edge.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_raster_input {

@@ -13,10 +13,6 @@
 /* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A tile with more segments
  * than HEAVY is drawn by as many work-items as it has rows of cells. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
-/* The same for kernels in which a work-item takes a segment. */
-enum { CHUNK_OF_LANES = 512, CHUNKS_OF_LANES_MAX = 1024 };
-/* Kernels for GPUs: the work-items of a work-group, and how many jobs of the kernel for CPUs these do. */
-static const struct { size_t lanes, jobs; } lanes_of[STAGES] = {{64, 4}, {32, 1}, {64, 4}, {32, 1}, {128, 1}};
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
@@ -49,21 +45,12 @@ static camber_status settle(camber_raster *raster) {
     return status;
 }
 
-/* Whether the variant has kernels for GPUs, with a work-item for each pixel, and the device wants them. */
-static bool has_lanes(const camber_raster *raster) {
-    return raster->variant == 0 && raster->device->lanes == 1;
-}
-
-/* Starts a stage's kernel for so many jobs: a work-group of one work-item for each, or the groups of a GPU that do
- * them. */
+/* Starts a stage's kernel for so many jobs: a work-group of one work-item for each. */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
     const cl_kernel kernels[STAGES] = {raster->program->setup, raster->program->bin_count, raster->program->bin_scan,
                                        raster->program->bin_scatter, raster->program->rasterize};
-    const bool by_lanes = has_lanes(raster);
-    const size_t lanes = by_lanes ? lanes_of[stage].lanes : 1, jobs = by_lanes ? lanes_of[stage].jobs : 1;
-    const camber_launch launch = {
-        stage_name(stage), kernels[stage], args, arg_count, (job_count + jobs - 1) / jobs * lanes, lanes};
+    const camber_launch launch = {stage_name(stage), kernels[stage], args, arg_count, job_count, 1};
     cl_event event = NULL;
     if (job_count == 0)
         return CAMBER_OK;
@@ -112,18 +99,11 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
     return status;
 }
 
-/* Words that a tile has in each chunk: its count, and on GPUs a mark. */
-static size_t count_words(const camber_raster *raster) {
-    return has_lanes(raster) ? 2 : 1;
-}
-
 static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const camber_raster_area *area = &raster->band;
-    const bool by_lanes = has_lanes(raster);
-    const size_t least = by_lanes ? CHUNK_OF_LANES : CHUNK, chunks_max = by_lanes ? CHUNKS_OF_LANES_MAX : CHUNKS_MAX;
     const size_t tiles = (raster->tile_count + 15) / 16 * 16,
-                 most = raster->device->info.largest_buffer_bytes / (count_words(raster) * 4 * tiles);
-    const size_t wanted = (raster->segment_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
+                 most = raster->device->info.largest_buffer_bytes / (4 * tiles);
+    const size_t wanted = (raster->segment_count + CHUNK - 1) / CHUNK, bound = most < CHUNKS_MAX ? most : CHUNKS_MAX;
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (raster->segment_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
@@ -135,8 +115,8 @@ static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_c
 }
 
 static camber_status count_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
-    camber_status status = camber_raster_reserve(raster, BUFFER_COUNTS,
-                                                 count_words(raster) * 4 * c.tiles * (chunk_count ? chunk_count : 1));
+    camber_status status =
+        camber_raster_reserve(raster, BUFFER_COUNTS, 4 * (size_t)c.tiles * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.tiles);
     const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS),
@@ -157,7 +137,7 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     const size_t tiles = raster->tile_count;
     uint64_t sum = 0;
     cl_int code;
-    if (!camber_grow(device->context, &raster->starts, &raster->start_capacity, tiles + 1, sizeof *raster->starts))
+    if (!camber_grow(device->context, &raster->starts, &raster->start_capacity, tiles + 2, sizeof *raster->starts))
         return CAMBER_ERROR_MEMORY;
     cl_uint *totals = clEnqueueMapBuffer(device->queue, raster->buffers[BUFFER_TOTALS], CL_TRUE, CL_MAP_READ, 0,
                                          4 * tiles, 0, NULL, NULL, &code);
@@ -167,7 +147,8 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
         raster->starts[i] = (uint32_t)sum;
         sum += totals[i];
     }
-    raster->starts[tiles] = (uint32_t)sum;
+    /* One more than there are tiles, as rasterize looks at the next tile's list, too. */
+    raster->starts[tiles] = raster->starts[tiles + 1] = (uint32_t)sum;
     clEnqueueUnmapMemObject(device->queue, raster->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
     *fits = 4 * sum <= camber_raster_most_bytes(raster) ||
             (raster->band.height <= CAMBER_TILE_PX && raster->segment_count <= 16);
@@ -176,7 +157,7 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     if (sum > UINT32_MAX)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT, "%llu segments in tiles; draw less at once",
                            (unsigned long long)sum);
-    camber_status status = camber_raster_put(raster, BUFFER_STARTS, raster->starts, 4 * (tiles + 1));
+    camber_status status = camber_raster_put(raster, BUFFER_STARTS, raster->starts, 4 * (tiles + 2));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_LISTS, 4 * (sum ? (size_t)sum : 1));
     return status;
@@ -189,11 +170,10 @@ static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, 
 }
 
 static bool is_heavy(const camber_raster *raster, size_t tile) {
-    return has_lanes(raster) || raster->starts[tile + 1] - raster->starts[tile] > HEAVY;
+    return raster->starts[tile + 1] - raster->starts[tile] > HEAVY;
 }
 
-/* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. On GPUs every tile is cut into
- * rows. */
+/* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. */
 static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
@@ -288,7 +268,7 @@ static camber_status prepare_rich(camber_raster *raster, const camber_raster_sce
 
 static size_t segments_at_once(const camber_raster *raster) {
     const size_t segment_words = is_pitched(raster) ? CAMBER_PLANE_WORDS : CAMBER_SEGMENT_WORDS;
-    const size_t count = (size_t)(camber_raster_most_bytes(raster) / (4 * segment_words)) / 16 * 16;
+    const size_t count = (size_t)(camber_raster_most_segment_bytes(raster) / (4 * segment_words)) / 16 * 16;
     return count ? count : 16;
 }
 

@@ -54,8 +54,9 @@ struct camber_raster {
     double ms[STAGES];
 };
 
-/* The bytes that segments, lists and spills may each take. */
+/* The bytes that lists and spills may each take, and segments. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster);
+uint64_t camber_raster_most_segment_bytes(const camber_raster *raster);
 /* Makes a buffer at least so large. If it grows, its contents are lost. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
 /* Writes bytes to a buffer. They must stay until the drawing has been waited for. */

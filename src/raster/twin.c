@@ -22,12 +22,6 @@ static size_t record_number(int64_t i, const camber_setup_args *r) {
     return (size_t)(i < 0 ? 0 : i > last ? last : i);
 }
 
-static float as_float(uint32_t word) {
-    float value;
-    memcpy(&value, &word, sizeof value);
-    return value;
-}
-
 static bool ends_segment(const camber_record *b, const camber_setup_args *r) {
     const uint32_t starts = CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START;
     const uint32_t kind = camber_join_kind(b->join);
@@ -52,15 +46,15 @@ static void put_words(const camber_segment *s, float brush, float *made) {
                                                s->nax,   s->nay,   s->nbx, s->nby, s->half_width, s->reach,
                                                s->slope, s->curve, 0,      brush};
     memcpy(made, words, sizeof words);
-    made[CAMBER_SEGMENT_FLAGS] = as_float(s->flags);
+    made[CAMBER_SEGMENT_FLAGS] = camber_float_of(s->flags);
 }
 
 static void put_plane(const camber_segment *s, const camber_plane *p, float *made) {
     const float words[] = {
-        s->ax,       s->ay,       s->bx,         s->by,       s->ux,       s->uy,       s->nax,      s->nay,
-        s->nbx,      s->nby,      s->half_width, p->owner_a,  p->owner_b,  p->cut_a[0], p->cut_a[1], p->cut_a[2],
-        p->cut_a[3], p->cut_b[0], p->cut_b[1],   p->cut_b[2], p->cut_b[3], p->ends,     p->margin,   p->left[0],
-        p->left[1],  p->left[2],  p->right[0],   p->right[1], p->right[2], 0,           0,           0};
+        s->ax,         s->ay,      s->bx,         s->by,          s->ux,          s->uy,      s->nax,     s->nay,
+        s->nbx,        s->nby,     s->half_width, p->cut_a.owner, p->cut_b.owner, p->cut_a.x, p->cut_a.y, p->cut_a.at,
+        p->cut_a.wide, p->cut_b.x, p->cut_b.y,    p->cut_b.at,    p->cut_b.wide,  p->ends,    p->margin,  p->left[0],
+        p->left[1],    p->left[2], p->right[0],   p->right[1],    p->right[2],    0,          0,          0};
     _Static_assert(sizeof words == 4 * CAMBER_PLANE_WORDS, "all words of a plane");
     memcpy(made, words, sizeof words);
 }
@@ -203,7 +197,7 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
     if (status == CAMBER_OK)
         status = make_lists(&t);
     if (status == CAMBER_OK)
-        status = camber_twin_draw(&t);
+        status = scene->pitched ? camber_twin_draw_pitched(&t) : camber_twin_draw(&t);
     camber_free(context, ranges);
     if (status != CAMBER_OK) {
         camber_raster_stages_free(context, &made);

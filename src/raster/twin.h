@@ -4,8 +4,6 @@
 
 #include "raster/raster.h"
 
-#include <string.h>
-
 typedef struct camber_twin {
     camber_context *context;
     const camber_raster_scene *scene;
@@ -14,13 +12,8 @@ typedef struct camber_twin {
     uint32_t columns, rows; /* tiles */
 } camber_twin;
 
-static inline uint32_t camber_as_word(float value) {
-    uint32_t word;
-    memcpy(&word, &value, sizeof word);
-    return word;
-}
-
-/* Draws the area's tiles from the lists. */
+/* Draws the area's tiles from the lists; the second one in a picture with a pitch. */
 camber_status camber_twin_draw(const camber_twin *twin);
+camber_status camber_twin_draw_pitched(const camber_twin *twin);
 
 #endif

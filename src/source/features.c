@@ -5,7 +5,9 @@
  */
 #include "source/features.h"
 #include "lines/importance.h"
+#include "source/mercator.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,11 +92,60 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features->polyline_feature);
     camber_free(context, features->offsets);
     camber_free(context, features->progress);
+    camber_free(context, features->whole_counts);
     camber_free(context, features->importance);
     camber_free(context, features->points);
     if (features->sprites)
         features->free_sprites(features->sprites);
     camber_free(context, features);
+}
+
+void camber_features_release_points(camber_features *features) {
+    camber_free(features->context, features->importance);
+    camber_free(features->context, features->points);
+    features->importance = NULL;
+    features->points = NULL;
+    features->point_count = features->point_capacity = features->importance_capacity = 0;
+}
+
+bool camber_features_get_bounds(const camber_features *features, double bounds[4]) {
+    double west = INFINITY, north = INFINITY, east = -INFINITY, south = -INFINITY;
+    for (size_t i = 0; i < features->point_count; i++) {
+        const double x = features->points[2 * i], y = features->points[2 * i + 1];
+        west = x < west ? x : west;
+        east = x > east ? x : east;
+        north = y < north ? y : north;
+        south = y > south ? y : south;
+    }
+    if (!(west <= east && north <= south))
+        return false;
+    camber_mercator_unproject(west, south, &bounds[0], &bounds[1]);
+    camber_mercator_unproject(east, north, &bounds[2], &bounds[3]);
+    return true;
+}
+
+static bool is_of_files(const camber_features *features) {
+    for (size_t i = 0; i < features->class_count; i++)
+        if (features->classes[i].source != CAMBER_NO_SOURCE)
+            return false;
+    return true;
+}
+
+static bool reads_the_same(const camber_style *one, const camber_style *other) {
+    bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
+                one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
+                one->wants_polygons == other->wants_polygons;
+    for (size_t i = 0; same && i < one->property_count; i++)
+        same = strcmp(one->properties[i], other->properties[i]) == 0;
+    return same;
+}
+
+camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
+    if (style->sprite_count || features->sprites || !is_of_files(features) || !reads_the_same(features->style, style))
+        return camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
+                           "style: reads other properties or images than the one before; read the files again");
+    features->style = style;
+    return CAMBER_OK;
 }
 
 camber_features_stats camber_features_get_stats(const camber_features *features) {
@@ -103,6 +154,20 @@ camber_features_stats camber_features_get_stats(const camber_features *features)
 
 camber_features_times camber_features_get_times(const camber_features *features) {
     return features->times;
+}
+
+camber_features_mark camber_features_get_mark(const camber_features *features) {
+    return (camber_features_mark){features->point_count,      features->polyline_count, features->feature_count,
+                                  features->attribution_size, features->stats,          features->source};
+}
+
+void camber_features_reset(camber_features *features, const camber_features_mark *mark) {
+    features->point_count = mark->point_count;
+    features->polyline_count = mark->polyline_count;
+    features->feature_count = mark->feature_count;
+    camber_features_cut_attribution(features, mark->attribution_size);
+    features->stats = mark->stats;
+    features->source = mark->source;
 }
 
 /* FNV's low bits are weak for short keys; fold the high ones in. */
@@ -303,9 +368,8 @@ static const camber_value *values_of(const camber_features *features, const camb
     return features->style->property_count ? features->values + one->first_value : NULL;
 }
 
-static bool grow_classes(camber_features *features) {
+static bool hash_classes(camber_features *features, size_t slots) {
     interner *set = features->interned;
-    const size_t slots = set->class_slots * 2;
     uint32_t *classes = camber_alloc_zero(features->context, slots, sizeof *classes);
     if (!classes)
         return false;
@@ -321,6 +385,11 @@ static bool grow_classes(camber_features *features) {
     set->classes = classes;
     set->class_slots = slots;
     return true;
+}
+
+static bool grow_classes(camber_features *features) {
+    const interner *set = features->interned;
+    return hash_classes(features, 2 * set->class_slots);
 }
 
 static camber_status add_class(camber_features *features, const camber_feature_class *one, const camber_value *values) {
@@ -375,6 +444,43 @@ camber_status camber_features_find_class(camber_features *features, uint32_t lay
                                          const camber_value *values, uint32_t *class_index) {
     const camber_feature_class wanted = {.layer = layer, .geometry = geometry};
     return camber_features_find_class_of(features, &wanted, values, class_index);
+}
+
+camber_status camber_features_renumber_classes(camber_features *features) {
+    camber_context *context = features->context;
+    const size_t count = features->style->property_count, class_count = features->class_count;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    size_t kept = 0;
+    uint32_t *numbers = camber_alloc_zero(context, class_count, sizeof *numbers); /* + 1; 0: none yet */
+    camber_feature_class *classes = camber_alloc(context, class_count, sizeof *classes);
+    camber_value *values = camber_alloc(context, class_count * count, sizeof *values);
+    if (!numbers || !classes || !values)
+        goto done;
+    for (size_t i = 0; i < features->feature_count; i++) {
+        uint32_t *number = &numbers[features->feature_class[i]];
+        if (*number)
+            continue;
+        classes[kept] = features->classes[features->feature_class[i]];
+        if (count)
+            memcpy(values + kept * count, values_of(features, &classes[kept]), count * sizeof *values);
+        classes[kept].first_value = kept * count;
+        *number = (uint32_t)++kept;
+    }
+    for (size_t i = 0; i < features->feature_count; i++)
+        features->feature_class[i] = numbers[features->feature_class[i]] - 1;
+    for (size_t i = 0; i < kept; i++)
+        features->classes[i] = classes[i];
+    if (kept && count)
+        memcpy(features->values, values, kept * count * sizeof *values);
+    features->class_count = kept;
+    features->value_count = kept * count;
+    status =
+        hash_classes(features, ((const interner *)features->interned)->class_slots) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+done:
+    camber_free(context, values);
+    camber_free(context, classes);
+    camber_free(context, numbers);
+    return status;
 }
 
 /* ---- Features and polylines ---- */

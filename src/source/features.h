@@ -7,6 +7,7 @@
 #define CAMBER_SOURCE_FEATURES_H
 
 #include "camber_map.h"
+#include "source/region.h"
 #include "style/style.h"
 
 typedef enum camber_geometry_kind {
@@ -45,6 +46,9 @@ struct camber_features {
     float *progress;
     size_t progress_capacity;
 
+    /* polyline_count: the points that a polyline had before the set was thinned (thin.c). NULL: it is not */
+    uint32_t *whole_counts;
+
     uint32_t *feature_class; /* feature_count */
     size_t feature_count, feature_capacity;
 
@@ -56,8 +60,10 @@ struct camber_features {
     char **layer_names; /* source layers, in the order in which they were found */
     size_t layer_count, layer_capacity;
 
-    uint32_t source;   /* the source of classes that are found from now on; CAMBER_NO_SOURCE at first */
-    char *attribution; /* attribution_size bytes and a 0; NULL: none yet */
+    bool has_region;      /* files are read for the region alone */
+    camber_region region; /* what a scene needs: read_for.c */
+    uint32_t source;      /* the source of classes that are found from now on; CAMBER_NO_SOURCE at first */
+    char *attribution;    /* attribution_size bytes and a 0; NULL: none yet */
     size_t attribution_size, attribution_capacity;
     camber_features_stats stats;
     camber_features_times times;
@@ -68,6 +74,19 @@ struct camber_features {
 
     void *interned; /* hash tables of strings and classes (features.c) */
 };
+
+/* ---- A set as it was, for what fails half way ---- */
+
+typedef struct camber_features_mark {
+    size_t point_count, polyline_count, feature_count;
+    size_t attribution_size;
+    camber_features_stats stats;
+    uint32_t source;
+} camber_features_mark;
+
+camber_features_mark camber_features_get_mark(const camber_features *features);
+/* Takes out all that was added since the mark; classes that nothing uses any more stay. */
+void camber_features_reset(camber_features *features, const camber_features_mark *mark);
 
 /* ---- Filling a set, from whatever features are read. Failures are logged. ---- */
 
@@ -99,12 +118,30 @@ typedef enum camber_merge_rule {
 } camber_merge_rule;
 
 /* Merges the lines of first_polyline and after it, if merges, and weighs their points; counts the time of both. Where
- * the style goes by directions, ANY is DIRECTED. */
+ * the style goes by directions, ANY is DIRECTED. Lines outside the region of the set go. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule);
 /* Merges lines of first_polyline and after it. */
 camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule);
 /* Sets the importance of the points of first_polyline and of those after it. */
 camber_status camber_features_set_importance(camber_features *features, size_t first_polyline);
+/* Drops the lines of first_polyline and after it that do not touch the region (region.c). */
+camber_status camber_features_confine(camber_features *features, size_t first_polyline, const camber_region *region);
+/* Sorts the features of first_feature and after it, whose lines begin with first_polyline and have neither importance
+ * nor progress yet, by their keys; those of one key stay as they were. */
+camber_status camber_features_reorder(camber_features *features, size_t first_polyline, size_t first_feature,
+                                      const int64_t *keys);
+/* Gives back the memory that lines and points do not fill. */
+void camber_features_shrink(camber_features *features);
+/* Drops the points of less importance, but for the ends of lines: for pictures that leave them out, and none but such
+ * are drawn of the set from now on. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_features_thin(camber_features *features, float least_importance);
+/* The points that a polyline was read with. */
+static inline size_t camber_features_whole_count(const camber_features *features, size_t polyline) {
+    return features->whole_counts ? features->whole_counts[polyline]
+                                  : features->offsets[polyline + 1] - features->offsets[polyline];
+}
+/* Drops classes that no feature has, and numbers the others in the order in which features have them. */
+camber_status camber_features_renumber_classes(camber_features *features);
 
 #endif

@@ -111,6 +111,14 @@ static void take_metadata_row(json_t *about, sqlite3_stmt *row) {
     json_decref(inner);
 }
 
+/* The first row of a name counts. */
+static void keep_metadata_row(json_t *about, sqlite3_stmt *row) {
+    const char *name = about ? (const char *)sqlite3_column_text(row, 0) : NULL;
+    const char *value = name ? (const char *)sqlite3_column_text(row, 1) : NULL;
+    if (value && !json_object_get(about, name))
+        json_object_set_new(about, name, json_string(value));
+}
+
 /* Sets without the table of metadata are read all the same. */
 static camber_status read_metadata(camber_tile_set *set) {
     database *self = set->self;
@@ -119,14 +127,18 @@ static camber_status read_metadata(camber_tile_set *set) {
         return sqlite3_errcode(self->handle) == SQLITE_ERROR && !self->computes ? CAMBER_OK : fail(set);
     json_t *about = json_object();
     int step;
-    while ((step = sqlite3_step(rows)) == SQLITE_ROW)
+    if (set->takes_any)
+        set->about = json_object();
+    while ((step = sqlite3_step(rows)) == SQLITE_ROW) {
         take_metadata_row(about, rows);
+        keep_metadata_row(set->about, rows);
+    }
     camber_status status = step == SQLITE_DONE ? CAMBER_OK : fail(set);
     sqlite3_finalize(rows);
     if (status == CAMBER_OK)
         status = camber_tile_set_describe(set, about);
     const char *format = json_string_value(json_object_get(about, "format"));
-    if (status == CAMBER_OK && format && strcmp(format, "pbf") != 0 && strcmp(format, "mvt") != 0 &&
+    if (status == CAMBER_OK && format && !set->takes_any && strcmp(format, "pbf") != 0 && strcmp(format, "mvt") != 0 &&
         strcmp(format, "application/x-protobuf") != 0 && strcmp(format, "application/vnd.mapbox-vector-tile") != 0)
         status = camber_fail(set->context, CAMBER_ERROR_INPUT,
                              "%s: its tiles are %s; camber reads vector tiles (format pbf)", set->name, format);
@@ -142,6 +154,8 @@ static camber_status find_zooms(camber_tile_set *set) {
         return status;
     if (sqlite3_step(row) != SQLITE_ROW)
         status = fail(set);
+    else if (sqlite3_column_type(row, 0) == SQLITE_NULL && set->takes_any)
+        status = CAMBER_OK;
     else if (sqlite3_column_type(row, 0) == SQLITE_NULL)
         status = camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: it has no tiles; get the file again", set->name);
     if (status == CAMBER_OK) {
@@ -230,6 +244,25 @@ static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_inde
     *count = sort_tiles(made, found);
     *tiles = made;
     return CAMBER_OK;
+}
+
+camber_status camber_mbtiles_query(camber_tile_set *set, const char *sql,
+                                   camber_status (*take_row)(void *user, sqlite3_stmt *row), void *user,
+                                   bool *missing) {
+    const database *self = set->self;
+    sqlite3_stmt *rows = NULL;
+    if (missing && sqlite3_prepare_v2(self->handle, sql, -1, &rows, NULL) == SQLITE_ERROR && !self->computes) {
+        *missing = true;
+        return CAMBER_OK;
+    }
+    camber_status status = rows ? CAMBER_OK : prepare(set, sql, &rows);
+    int step;
+    while (status == CAMBER_OK && (step = sqlite3_step(rows)) != SQLITE_DONE) {
+        status = step == SQLITE_ROW ? take_row(user, rows) : fail(set);
+        set->context->spent.steps = 0;
+    }
+    sqlite3_finalize(rows);
+    return status;
 }
 
 static void close_database(camber_tile_set *set) {

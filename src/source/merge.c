@@ -169,66 +169,121 @@ static void find_straight_partners(merger *m) {
 
 /* ---- The merged lines ---- */
 
+/* The lines as they will be: chains of several lines are copied, and lines that stay alone move in their place. */
 typedef struct merged {
-    double *points;
-    size_t *offsets; /* ends of the lines, from 0 */
+    double *points; /* of chains of several lines, one after the other */
+    size_t point_count, all_points;
+    size_t *counts; /* by chain: its points */
     uint32_t *polyline_feature, *feature_counts;
-    size_t point_count, polyline_count;
 } merged;
 
-static void append_chain(const merger *m, const camber_chain *chain, merged *made) {
+static bool is_alone(const merger *m, const camber_chain *chain) {
+    return m->partner[chain->start ^ 1] == CAMBER_NO_END && !(chain->start & 1);
+}
+
+static void copy_chain(const merger *m, size_t index, merged *made) {
     const camber_features *features = m->features;
-    const size_t line = made->polyline_count;
+    const camber_chain *chain = &m->chains[index];
     uint32_t end = chain->start;
-    made->polyline_feature[line] = features->polyline_feature[m->first_polyline + chain->key];
-    made->feature_counts[line] = 0;
+    size_t sum = 0;
+    made->polyline_feature[index] = features->polyline_feature[m->first_polyline + chain->key];
+    made->feature_counts[index] = 0;
     do {
         size_t count;
         const double *points = line_points(m, end / 2, &count);
         /* Where lines meet one point is left; a ring has its seam twice. */
-        for (size_t i = end != chain->start; i < count; i++) {
+        for (size_t i = end != chain->start; i < count && made->points; i++) {
             const double *from = points + 2 * (end & 1 ? count - 1 - i : i);
             memcpy(made->points + 2 * made->point_count++, from, 2 * sizeof *from);
         }
-        made->feature_counts[line] += features->feature_counts[m->first_polyline + end / 2];
+        sum += count - (end != chain->start);
+        made->feature_counts[index] += features->feature_counts[m->first_polyline + end / 2];
         end = m->partner[end ^ 1];
     } while (end != CAMBER_NO_END && end != chain->start);
-    made->offsets[made->polyline_count++] = made->point_count;
+    made->counts[index] = sum;
+}
+
+/* Moves the points of lines that stay alone to the front, in their order. Returns how many. */
+static size_t gather_alone(const merger *m) {
+    camber_features *features = m->features;
+    size_t at = features->offsets[m->first_polyline];
+    for (size_t i = 0; i < m->chain_count; i++) {
+        size_t count;
+        if (!is_alone(m, &m->chains[i]))
+            continue;
+        const double *points = line_points(m, m->chains[i].start / 2, &count);
+        memmove(features->points + 2 * at, points, 2 * count * sizeof *points);
+        at += count;
+    }
+    return at;
+}
+
+/* Puts lines and chains to their places, from the last to the first, so that no line that waits is written over. */
+static void spread(const merger *m, const merged *made, size_t alone_end) {
+    camber_features *features = m->features;
+    size_t at = features->offsets[m->first_polyline] + made->all_points, copied = made->point_count;
+    for (size_t i = m->chain_count; i-- > 0;) {
+        const size_t count = made->counts[i];
+        at -= count;
+        if (is_alone(m, &m->chains[i])) {
+            alone_end -= count;
+            memmove(features->points + 2 * at, features->points + 2 * alone_end, 2 * count * sizeof *features->points);
+        } else {
+            copied -= count;
+            memcpy(features->points + 2 * at, made->points + 2 * copied, 2 * count * sizeof *features->points);
+        }
+    }
 }
 
 static void replace_lines(const merger *m, const merged *made) {
     camber_features *features = m->features;
-    const size_t first = m->first_polyline, first_point = features->offsets[first];
-    memcpy(features->points + 2 * first_point, made->points, 2 * made->point_count * sizeof *made->points);
-    memcpy(features->polyline_feature + first, made->polyline_feature,
-           made->polyline_count * sizeof *made->polyline_feature);
-    memcpy(features->feature_counts + first, made->feature_counts, made->polyline_count * sizeof *made->feature_counts);
-    for (size_t i = 0; i < made->polyline_count; i++)
-        features->offsets[first + i + 1] = first_point + made->offsets[i];
-    features->polyline_count = first + made->polyline_count;
-    features->point_count = first_point + made->point_count;
-    features->stats.merged_polylines += m->line_count - made->polyline_count;
+    const size_t first = m->first_polyline;
+    spread(m, made, gather_alone(m));
+    memcpy(features->polyline_feature + first, made->polyline_feature, m->chain_count * sizeof *made->polyline_feature);
+    memcpy(features->feature_counts + first, made->feature_counts, m->chain_count * sizeof *made->feature_counts);
+    for (size_t i = 0; i < m->chain_count; i++)
+        features->offsets[first + i + 1] = features->offsets[first + i] + made->counts[i];
+    features->polyline_count = first + m->chain_count;
+    features->point_count = features->offsets[first] + made->all_points;
+    features->stats.merged_polylines += m->line_count - m->chain_count;
+}
+
+/* Frees what finds partners once they are found. */
+static void forget_nodes(merger *m) {
+    camber_context *context = m->features->context;
+    camber_free(context, m->next);
+    camber_free(context, m->slots);
+    camber_free(context, m->met);
+    m->next = m->slots = NULL;
+    m->met = NULL;
 }
 
 static camber_status write_chains(const merger *m) {
     camber_context *context = m->features->context;
-    const size_t points = m->features->point_count - m->features->offsets[m->first_polyline];
     merged made = {0};
     camber_status status = CAMBER_ERROR_MEMORY;
-    if (!(made.points = camber_alloc(context, points, 2 * sizeof *made.points)) ||
-        !(made.offsets = camber_alloc(context, m->chain_count, sizeof *made.offsets)) ||
+    size_t copied = 0;
+    if (!(made.counts = camber_alloc(context, m->chain_count, sizeof *made.counts)) ||
         !(made.polyline_feature = camber_alloc(context, m->chain_count, sizeof *made.polyline_feature)) ||
         !(made.feature_counts = camber_alloc(context, m->chain_count, sizeof *made.feature_counts)))
         goto done;
+    for (size_t i = 0; i < m->chain_count; i++) {
+        copy_chain(m, i, &made); /* counts */
+        made.all_points += made.counts[i];
+        copied += is_alone(m, &m->chains[i]) ? 0 : made.counts[i];
+    }
+    if (!(made.points = camber_alloc(context, copied, 2 * sizeof *made.points)))
+        goto done;
     for (size_t i = 0; i < m->chain_count; i++)
-        append_chain(m, &m->chains[i], &made);
+        if (!is_alone(m, &m->chains[i]))
+            copy_chain(m, i, &made);
     replace_lines(m, &made);
     status = CAMBER_OK;
 done:
+    camber_free(context, made.points);
     camber_free(context, made.feature_counts);
     camber_free(context, made.polyline_feature);
-    camber_free(context, made.offsets);
-    camber_free(context, made.points);
+    camber_free(context, made.counts);
     return status;
 }
 
@@ -259,17 +314,18 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
     } else {
         find_partners(&m, rule == CAMBER_MERGE_DIRECTED);
     }
+    forget_nodes(&m);
     const camber_chains_desc chains = {
         .partner = m.partner, .line_count = m.line_count, .key_count = m.line_count, .visited = m.visited};
     status = camber_chains_find(context, &chains, &m.chains, &m.chain_count);
+    camber_free(context, m.visited);
+    m.visited = NULL;
     if (status == CAMBER_OK && m.chain_count < m.line_count)
         status = write_chains(&m);
 done:
+    forget_nodes(&m);
     camber_free(context, m.chains);
-    camber_free(context, m.next);
     camber_free(context, m.visited);
-    camber_free(context, m.slots);
-    camber_free(context, m.met);
     camber_free(context, m.partner);
     return status;
 }
@@ -281,9 +337,12 @@ camber_status camber_features_merge_and_weigh(camber_features *features, size_t 
     camber_status status = CAMBER_OK;
     if (merges)
         status = camber_features_merge(features, first_polyline, directed ? CAMBER_MERGE_DIRECTED : rule);
+    camber_features_shrink(features);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = camber_features_set_importance(features, first_polyline);
+    if (status == CAMBER_OK && features->has_region)
+        status = camber_features_confine(features, first_polyline, &features->region);
     features->times.merge_ms += merged_ms - start_ms;
     features->times.weigh_ms += camber_now_ms() - merged_ms;
     return status;

@@ -3,30 +3,25 @@
 #define _FILE_OFFSET_BITS 64
 
 #include "source/pmtiles.h"
-#include "source/tile_set.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { HEADER_BYTES = 127, DEEPEST = 4, NO_COMPRESSION = 1, GZIP = 2, VECTOR_TILES = 1 };
+enum { DEEPEST = 4, VECTOR_TILES = 1 };
 
 /* Real directories take some hundred kilobytes. */
 static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
 /* Steps of the budget that reading a directory counts for. */
 static const uint64_t DIRECTORY_STEPS = 4096;
 
-typedef struct range {
-    uint64_t offset, size;
-} range;
-
+typedef camber_pmtiles_range range;
 typedef camber_pmtiles_directory directory;
 
 typedef struct archive {
     int file;
     uint64_t size_bytes;
-    range root, metadata, leaves, tiles;
-    int directory_compression, tile_compression;
+    camber_pmtiles_header header;
     directory parsed_root;
     directory leaf; /* the last one that was read */
     range leaf_range;
@@ -126,8 +121,7 @@ camber_status camber_pmtiles_parse(camber_context *context, const void *bytes, s
                                    camber_pmtiles_directory *parsed, const char **why) {
     cursor c = {bytes, (const unsigned char *)bytes + size_bytes, false};
     const uint64_t announced = take_varint(&c);
-    /* An entry takes four bytes at least. */
-    if (c.failed || announced > size_bytes / 4) {
+    if (c.failed || announced > size_bytes / CAMBER_PMTILES_LEAST_ENTRY_BYTES) {
         *why = "a directory announces more entries than it holds";
         return CAMBER_ERROR_INPUT;
     }
@@ -183,11 +177,11 @@ static camber_status read_packed(camber_tile_set *set, range at, const char *wha
     archive *self = set->self;
     const char *why = NULL;
     camber_status status = read_range(set, at, LARGEST_DIRECTORY_BYTES, &self->packed, &why);
-    if (status == CAMBER_OK && !why && self->directory_compression == GZIP)
+    if (status == CAMBER_OK && !why && self->header.directory_compression == CAMBER_PMTILES_GZIP)
         status = camber_tile_set_gunzip(set, &self->packed, LARGEST_DIRECTORY_BYTES, &self->unpacked, &why);
     if (status != CAMBER_OK)
         return status;
-    *bytes = self->directory_compression == GZIP ? &self->unpacked : &self->packed;
+    *bytes = self->header.directory_compression == CAMBER_PMTILES_GZIP ? &self->unpacked : &self->packed;
     if (!why)
         return CAMBER_OK;
     return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s: %s; get the file again",
@@ -210,8 +204,8 @@ static camber_status read_directory(camber_tile_set *set, range at, directory *p
 }
 
 static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
-    const uint64_t room = UINT64_MAX - self->leaves.offset;
-    return (range){entry->offset <= room ? self->leaves.offset + entry->offset : UINT64_MAX, entry->size};
+    const uint64_t room = UINT64_MAX - self->header.leaves.offset;
+    return (range){entry->offset <= room ? self->header.leaves.offset + entry->offset : UINT64_MAX, entry->size};
 }
 
 /* Finds the last entry that does not begin behind the number; NULL: all do. */
@@ -229,6 +223,19 @@ static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t numb
 
 /* ---- Tiles ---- */
 
+camber_pmtiles_file camber_pmtiles_get_file(const camber_tile_set *set) {
+    const archive *self = set->self;
+    return (camber_pmtiles_file){self->file, self->size_bytes, self->header};
+}
+
+camber_status camber_pmtiles_read_entry(camber_tile_set *set, const camber_pmtiles_entry *entry, camber_bytes *bytes,
+                                        const char **why) {
+    const archive *self = set->self;
+    const uint64_t room = UINT64_MAX - self->header.tiles.offset;
+    const range at = {entry->offset <= room ? self->header.tiles.offset + entry->offset : UINT64_MAX, entry->size};
+    return read_range(set, at, LARGEST_BYTES, bytes, why);
+}
+
 static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     archive *self = set->self;
@@ -239,11 +246,8 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index 
         const camber_pmtiles_entry *entry = find_entry(in, number);
         if (!entry || (entry->run_length && number - entry->number >= entry->run_length))
             return CAMBER_OK;
-        if (entry->run_length) {
-            const uint64_t room = UINT64_MAX - self->tiles.offset;
-            const range at = {entry->offset <= room ? self->tiles.offset + entry->offset : UINT64_MAX, entry->size};
-            return read_range(set, at, LARGEST_BYTES, bytes, why);
-        }
+        if (entry->run_length)
+            return camber_pmtiles_read_entry(set, entry, bytes, why);
         const range at = leaf_of(self, entry);
         if (at.offset != self->leaf_range.offset || at.size != self->leaf_range.size || !self->leaf.entries) {
             const camber_status status = read_directory(set, at, &self->leaf);
@@ -264,7 +268,8 @@ typedef struct listing {
     size_t count, capacity;
 } listing;
 
-static camber_status list_entry(listing *list, const camber_pmtiles_entry *entry) {
+static camber_status list_entry(void *user, const camber_pmtiles_entry *entry) {
+    listing *list = user;
     const uint64_t last =
         entry->run_length - 1 <= UINT64_MAX - entry->number ? entry->number + (entry->run_length - 1) : UINT64_MAX;
     if (last < list->first || entry->number >= list->end)
@@ -283,39 +288,48 @@ static camber_status list_entry(listing *list, const camber_pmtiles_entry *entry
     return CAMBER_OK;
 }
 
-static camber_status list_directory(listing *list, const directory *in, int depth) {
-    const archive *self = list->set->self;
+static camber_status walk_directory(camber_tile_set *set, const camber_pmtiles_visitor *visitor, const directory *in,
+                                    int depth) {
+    const archive *self = set->self;
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < in->count && status == CAMBER_OK; i++) {
         const camber_pmtiles_entry *entry = &in->entries[i];
         if (entry->run_length) {
-            status = list_entry(list, entry);
+            status = visitor->take_entry(visitor->user, entry);
             continue;
         }
         const bool beyond =
-            entry->number >= list->end || (i + 1 < in->count && in->entries[i + 1].number <= list->first);
+            entry->number >= visitor->end || (i + 1 < in->count && in->entries[i + 1].number <= visitor->first);
         if (beyond)
             continue;
         directory leaf = {0};
         if (depth >= DEEPEST)
-            return fail(list->set, "its directories go round in circles");
-        if (!camber_budget_take_steps(list->set->context, DIRECTORY_STEPS))
-            return camber_fail(list->set->context, CAMBER_ERROR_LIMIT,
+            return fail(set, "its directories go round in circles");
+        if (!camber_budget_take_steps(set->context, DIRECTORY_STEPS))
+            return camber_fail(set->context, CAMBER_ERROR_LIMIT,
                                "%s: its directories take too many steps, or go round in circles; get the file again",
-                               list->set->name);
-        status = read_directory(list->set, leaf_of(self, entry), &leaf);
+                               set->name);
+        if (visitor->take_leaf)
+            status = visitor->take_leaf(visitor->user, entry, depth);
         if (status == CAMBER_OK)
-            status = list_directory(list, &leaf, depth + 1);
-        camber_free(list->set->context, leaf.entries);
+            status = read_directory(set, leaf_of(self, entry), &leaf);
+        if (status == CAMBER_OK)
+            status = walk_directory(set, visitor, &leaf, depth + 1);
+        camber_free(set->context, leaf.entries);
     }
     return status;
 }
 
-static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
+camber_status camber_pmtiles_walk(camber_tile_set *set, const camber_pmtiles_visitor *visitor) {
     const archive *self = set->self;
+    return walk_directory(set, visitor, &self->parsed_root, 1);
+}
+
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
     listing list = {.set = set, .zoom = zoom, .first = camber_pmtiles_number(zoom, 0, 0)};
     list.end = list.first + (UINT64_C(1) << 2 * zoom);
-    const camber_status status = list_directory(&list, &self->parsed_root, 1);
+    const camber_pmtiles_visitor visitor = {list.first, list.end, list_entry, NULL, &list};
+    const camber_status status = camber_pmtiles_walk(set, &visitor);
     if (status != CAMBER_OK) {
         camber_free(set->context, list.tiles);
         return status;
@@ -351,10 +365,35 @@ static range read_header_range(const unsigned char *bytes) {
     return (range){read_number(bytes, 8), read_number(bytes + 8, 8)};
 }
 
+static int32_t read_coordinate(const unsigned char *bytes) {
+    return (int32_t)(uint32_t)read_number(bytes, 4);
+}
+
+void camber_pmtiles_parse_header(const unsigned char bytes[CAMBER_PMTILES_HEADER_BYTES],
+                                 camber_pmtiles_header *header) {
+    *header = (camber_pmtiles_header){.root = read_header_range(bytes + 8),
+                                      .metadata = read_header_range(bytes + 24),
+                                      .leaves = read_header_range(bytes + 40),
+                                      .tiles = read_header_range(bytes + 56),
+                                      .addressed = read_number(bytes + 72, 8),
+                                      .entries = read_number(bytes + 80, 8),
+                                      .contents = read_number(bytes + 88, 8),
+                                      .clustered = bytes[96],
+                                      .directory_compression = bytes[97],
+                                      .tile_compression = bytes[98],
+                                      .tile_type = bytes[99],
+                                      .min_zoom = bytes[100],
+                                      .max_zoom = bytes[101],
+                                      .center_zoom = bytes[118],
+                                      .center = {read_coordinate(bytes + 119), read_coordinate(bytes + 123)}};
+    for (int i = 0; i < 4; i++)
+        header->bounds[i] = read_coordinate(bytes + 102 + 4 * i);
+}
+
 static const char *const compressions[] = {"unknown", "none", "gzip", "brotli", "zstd"};
 
 static camber_status check_compression(const camber_tile_set *set, int compression, const char *what) {
-    if (compression == NO_COMPRESSION || compression == GZIP)
+    if (compression == CAMBER_PMTILES_PLAIN || compression == CAMBER_PMTILES_GZIP)
         return CAMBER_OK;
     return camber_fail(set->context, CAMBER_ERROR_INPUT,
                        "%s: its %s are compressed with %s; camber reads gzip and none: make it again with one of them",
@@ -364,7 +403,7 @@ static camber_status check_compression(const camber_tile_set *set, int compressi
 static camber_status read_header(camber_tile_set *set) {
     archive *self = set->self;
     const char *why = NULL;
-    camber_status status = read_range(set, (range){0, HEADER_BYTES}, LARGEST_BYTES, &self->packed, &why);
+    camber_status status = read_range(set, (range){0, CAMBER_PMTILES_HEADER_BYTES}, LARGEST_BYTES, &self->packed, &why);
     if (status != CAMBER_OK)
         return status;
     const unsigned char *head = self->packed.data;
@@ -374,39 +413,36 @@ static camber_status read_header(camber_tile_set *set) {
     if (head[7] != 3)
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
                            set->name, head[7]);
-    self->root = read_header_range(head + 8);
-    self->metadata = read_header_range(head + 24);
-    self->leaves = read_header_range(head + 40);
-    self->tiles = read_header_range(head + 56);
-    self->directory_compression = head[97];
-    self->tile_compression = head[98];
-    const int type = head[99];
-    set->min_zoom = head[100];
-    set->max_zoom = head[101];
+    camber_pmtiles_parse_header(head, &self->header);
+    const int type = self->header.tile_type;
+    set->min_zoom = self->header.min_zoom;
+    set->max_zoom = self->header.max_zoom;
     for (int i = 0; i < 4; i++)
-        set->bounds[i] = (double)(int32_t)(uint32_t)read_number(head + 102 + 4 * i, 4) * 1e-7;
+        set->bounds[i] = (double)self->header.bounds[i] * 1e-7;
     set->has_bounds = set->bounds[0] < set->bounds[2] && set->bounds[1] < set->bounds[3] && set->bounds[0] >= -180 &&
                       set->bounds[2] <= 180 && set->bounds[1] >= -90 && set->bounds[3] <= 90;
     if (!set->has_bounds)
         memcpy(set->bounds, (double[4]){-180, -90, 180, 90}, sizeof set->bounds);
-    if (type != VECTOR_TILES && type != 0)
+    if (!set->takes_any && type != VECTOR_TILES && type != 0)
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: its tiles are pictures; camber reads vector tiles",
                            set->name);
     if (set->min_zoom > set->max_zoom || set->max_zoom > CAMBER_LARGEST_TILE_ZOOM)
         return fail(set, "its zooms make no sense");
-    status = check_compression(set, self->directory_compression, "directories");
-    return status == CAMBER_OK ? check_compression(set, self->tile_compression, "tiles") : status;
+    status = check_compression(set, self->header.directory_compression, "directories");
+    return status == CAMBER_OK ? check_compression(set, self->header.tile_compression, "tiles") : status;
 }
 
 static camber_status read_metadata(camber_tile_set *set) {
     archive *self = set->self;
     const camber_bytes *bytes;
-    if (self->metadata.size == 0)
+    if (self->header.metadata.size == 0)
         return CAMBER_OK;
-    camber_status status = read_packed(set, self->metadata, "its metadata", &bytes);
+    camber_status status = read_packed(set, self->header.metadata, "its metadata", &bytes);
     if (status != CAMBER_OK)
         return status;
     json_t *about = json_loadb((const char *)bytes->data, bytes->size_bytes, JSON_DECODE_INT_AS_REAL, NULL);
+    if (set->takes_any)
+        set->about = json_loadb((const char *)bytes->data, bytes->size_bytes, 0, NULL);
     if (json_is_object(about)) {
         /* The header's own zooms and bounds come last, since they are right. */
         json_object_del(about, "minzoom");
@@ -432,7 +468,7 @@ camber_status camber_pmtiles_open(camber_tile_set *set, const char *path) {
     camber_budget_open(set->context, self->size_bytes);
     status = read_header(set);
     if (status == CAMBER_OK)
-        status = read_directory(set, self->root, &self->parsed_root);
+        status = read_directory(set, self->header.root, &self->parsed_root);
     if (status == CAMBER_OK)
         status = read_metadata(set);
     return status;

@@ -11,20 +11,6 @@
 
 static const double PROGRESS_MS = 50;
 
-camber_features_mark camber_features_get_mark(const camber_features *features) {
-    return (camber_features_mark){features->point_count,      features->polyline_count, features->feature_count,
-                                  features->attribution_size, features->stats,          features->source};
-}
-
-void camber_features_reset(camber_features *features, const camber_features_mark *mark) {
-    features->point_count = mark->point_count;
-    features->polyline_count = mark->polyline_count;
-    features->feature_count = mark->feature_count;
-    camber_features_cut_attribution(features, mark->attribution_size);
-    features->stats = mark->stats;
-    features->source = mark->source;
-}
-
 /* ---- Tiles to features ---- */
 
 typedef struct reader {

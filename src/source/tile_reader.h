@@ -25,17 +25,4 @@ camber_status camber_features_read_tiles(camber_features *features, const camber
 /* The part of camber_features_read for files that camber_tile_set_knows. */
 camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc);
 
-/* ---- A set as it was, for what fails half way ---- */
-
-typedef struct camber_features_mark {
-    size_t point_count, polyline_count, feature_count;
-    size_t attribution_size;
-    camber_features_stats stats;
-    uint32_t source;
-} camber_features_mark;
-
-camber_features_mark camber_features_get_mark(const camber_features *features);
-/* Takes out all that was added since the mark; classes that nothing uses any more stay. */
-void camber_features_reset(camber_features *features, const camber_features_mark *mark);
-
 #endif

@@ -313,12 +313,13 @@ bool camber_tile_set_knows(const char *path) {
     return ends_with(path, ".mbtiles") || ends_with(path, ".pmtiles");
 }
 
-camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
-                                   camber_tile_set **set) {
+static camber_status open_file(camber_context *context, const char *path, camber_file_naming naming, bool takes_any,
+                               camber_tile_set **set) {
     camber_tile_set *made;
     if (make_set(context, path, &made) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
     made->naming = naming;
+    made->takes_any = takes_any;
     const camber_status status =
         ends_with(path, ".pmtiles") ? camber_pmtiles_open(made, path) : camber_mbtiles_open(made, path);
     if (status != CAMBER_OK) {
@@ -327,6 +328,16 @@ camber_status camber_tile_set_open(camber_context *context, const char *path, ca
     }
     *set = made;
     return CAMBER_OK;
+}
+
+camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
+                                   camber_tile_set **set) {
+    return open_file(context, path, naming, false, set);
+}
+
+camber_status camber_tile_set_open_any(camber_context *context, const char *path, camber_file_naming naming,
+                                       camber_tile_set **set) {
+    return open_file(context, path, naming, true, set);
 }
 
 camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
@@ -358,6 +369,7 @@ void camber_tile_set_close(camber_tile_set *set) {
     if (set->self)
         set->calls->close(set);
     json_decref(set->layers);
+    json_decref(set->about);
     camber_free(set->context, set->attribution);
     camber_bytes_free(&set->raw);
     camber_free(set->context, set->name);

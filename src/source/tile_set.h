@@ -43,6 +43,8 @@ struct camber_tile_set {
     double bounds[4]; /* west, south, east, north, degrees; the whole world where nothing is said */
     bool has_bounds;
     char *attribution; /* as it stands there, maybe HTML. NULL: not told */
+    bool takes_any;    /* tiles may be of any type, and about is kept */
+    json_t *about;     /* the metadata as they are, an object. NULL: none, or not kept */
     json_t *layers;    /* an array of objects with an "id". NULL: not told */
     void *self;        /* the kind's own */
     camber_bytes raw;
@@ -52,6 +54,9 @@ struct camber_tile_set {
  * format, tiles that are pictures), CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
                                    camber_tile_set **set);
+/* The same for tiles of any type, pictures too. */
+camber_status camber_tile_set_open_any(camber_context *context, const char *path, camber_file_naming naming,
+                                       camber_tile_set **set);
 /* Whether the path ends as such a file. */
 bool camber_tile_set_knows(const char *path);
 
@@ -82,6 +87,13 @@ void camber_tile_set_close(camber_tile_set *set);
 
 camber_status camber_mbtiles_open(camber_tile_set *set, const char *path);
 camber_status camber_pmtiles_open(camber_tile_set *set, const char *path);
+/* Calls take_row for each row of a query to an MBTiles file, a SELECT alone. Each row may take as many steps as a
+ * whole set of features elsewhere. A status that is not CAMBER_OK ends it. missing: NULL, or becomes true where the
+ * query does not fit the tables, which is then no failure. */
+struct sqlite3_stmt;
+camber_status camber_mbtiles_query(camber_tile_set *set, const char *sql,
+                                   camber_status (*take_row)(void *user, struct sqlite3_stmt *row), void *user,
+                                   bool *missing);
 
 /* Decompresses gzip or zlib, as far as the budget goes; limit_bytes is the most that comes out. *why: NULL, or why not.
  * Returns CAMBER_ERROR_LIMIT (the budget), CAMBER_ERROR_MEMORY. */

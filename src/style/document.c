@@ -333,6 +333,7 @@ camber_status camber_style_parse(camber_context *context, const char *json, size
     if (!d.compiler.style)
         return CAMBER_ERROR_MEMORY;
     d.compiler.style->context = context;
+    d.compiler.style->hash = camber_hash(CAMBER_HASH_START, json, size_bytes);
     const camber_status status = camber_document_read(&d, json, size_bytes);
     if (status == CAMBER_OK)
         *style = d.compiler.style;

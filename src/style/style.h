@@ -110,7 +110,8 @@ typedef struct camber_style_camera {
 
 struct camber_style {
     camber_context *context;
-    char *name; /* the document's own; NULL: none */
+    uint64_t hash; /* of the document's text */
+    char *name;    /* the document's own; NULL: none */
     camber_style_camera camera;
     json_t *state; /* for ["global-state", key]: objects with a default. NULL: none */
     camber_style_sprite *sprites;

@@ -155,7 +155,7 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, padded)
                                : camber_part_reserve_with_spare(mesh, part, padded);
     if (status == CAMBER_OK)
-        status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
+        status = camber_write_buffer_later(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
     if (status != CAMBER_OK)
         return status;
     const camber_section *section = mesh->held->sections + part->section;

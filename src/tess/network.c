@@ -6,8 +6,8 @@
  * without doubles.
  *
  *     1  check the entries, count their points, find their box
- *     2  store the points of each entry, stretch by stretch: an invalid point ends one, a repeated point is dropped
- *     3  with arc lengths: sum up how far along its line each point lies */
+ *     2  store the points of each entry, stretch by stretch: an invalid point ends one; repeated points are dropped,
+ * and those of too little importance. With arc lengths, sum up how far along its line each point lies */
 #include "tess/network.h"
 
 #include <assert.h>
@@ -54,40 +54,75 @@ typedef struct bounds {
     double x0, y0, x1, y1;
 } bounds;
 
-static void add_polyline(const camber_network_desc *desc, camber_network_entry entry, bounds *box) {
-    for (size_t i = desc->offsets[entry.polyline]; i < desc->offsets[entry.polyline + 1]; i++) {
+/* An importance that is not a number matters as much as any, and one below 0 as much as 0. */
+static bool matters(const camber_network_desc *desc, size_t point) {
+    return !desc->importance || !(desc->least_importance > 0.0f) || !(desc->importance[point] < desc->least_importance);
+}
+
+static bool is_place(const camber_network_desc *desc, camber_network_entry entry, size_t point) {
+    return is_valid(desc->points[2 * point] + entry.shift_x, desc->points[2 * point + 1]);
+}
+
+/* Returns how many points may be stored: those that matter, and the ends. The box has these, and with arc lengths all,
+ * so that it is the same where the caller has dropped the others already. */
+static size_t add_polyline(const camber_network_desc *desc, camber_network_entry entry, bounds *box) {
+    const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
+    size_t stored = 2;
+    for (size_t i = begin; i < end; i++) {
         const double x = desc->points[2 * i] + entry.shift_x, y = desc->points[2 * i + 1];
-        if (!is_valid(x, y))
+        if (!is_valid(x, y)) {
+            stored += 2;
+            continue;
+        }
+        const bool stays = matters(desc, i);
+        stored += stays;
+        if (!stays && !desc->has_arc_length && i > begin && i + 1 < end && is_place(desc, entry, i - 1) &&
+            is_place(desc, entry, i + 1))
             continue;
         box->x0 = x < box->x0 ? x : box->x0;
         box->x1 = x > box->x1 ? x : box->x1;
         box->y0 = y < box->y0 ? y : box->y0;
         box->y1 = y > box->y1 ? y : box->y1;
     }
+    return stored;
+}
+
+/* Sets the step and where step 0 lies: at a multiple of a step that was given. */
+static void choose_step(camber_network *n, double step, const bounds *box) {
+    const double extent = fmax(box->x1 - box->x0, box->y1 - box->y0);
+    n->x0 = box->x0;
+    n->y0 = box->y0;
+    n->step = fmax(extent, LEAST_EXTENT) / CAMBER_NETWORK_STEPS;
+    if (!(step > 0.0) || !isfinite(step))
+        return;
+    while (extent / step > CAMBER_NETWORK_STEPS - 2.0)
+        step *= 2.0;
+    n->step = step;
+    n->x0 = floor(box->x0 / step) * step;
+    n->y0 = floor(box->y0 / step) * step;
 }
 
 /* Checks the entries, counts their points, and sets the box's origin and the step. */
-static camber_status check_entries_and_find_box(camber_network *n, const camber_network_desc *desc) {
+static camber_status check_entries_and_find_box(camber_network *n, const camber_network_desc *desc, size_t *capacity) {
+    size_t stored = 0;
     bounds box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n->entry_count; i++) {
         const camber_network_entry entry = entry_of(desc, i);
         const camber_status status = check_entry(n->context, desc, &entry, i);
         if (status != CAMBER_OK)
             return status;
-        add_polyline(desc, entry, &box);
+        stored += add_polyline(desc, entry, &box);
         n->stats.points += desc->offsets[entry.polyline + 1] - desc->offsets[entry.polyline];
     }
     n->stats.polylines = n->entry_count;
-    if (n->stats.points > MOST_POINTS || n->entry_count > MOST_POINTS)
+    *capacity = stored < n->stats.points ? stored : n->stats.points;
+    if (*capacity > MOST_POINTS || n->entry_count > MOST_POINTS)
         return camber_fail(n->context, CAMBER_ERROR_LIMIT,
                            "network: %zu points in %zu polylines are more than 32-bit indices hold; draw them in parts",
-                           n->stats.points, n->entry_count);
+                           *capacity, n->entry_count);
     if (box.x0 > box.x1)
         box = (bounds){0, 0, 0, 0};
-    const double extent = fmax(box.x1 - box.x0, box.y1 - box.y0);
-    n->x0 = box.x0;
-    n->y0 = box.y0;
-    n->step = fmax(extent, LEAST_EXTENT) / CAMBER_NETWORK_STEPS;
+    choose_step(n, desc->step, &box);
     return CAMBER_OK;
 }
 
@@ -96,25 +131,67 @@ static int32_t to_step(double offset, double step) {
     return (int32_t)(steps < CAMBER_NETWORK_STEPS ? steps : CAMBER_NETWORK_STEPS);
 }
 
+/* A point in steps. */
+typedef struct step_point {
+    int32_t x, y;
+} step_point;
+
+static step_point step_of(const camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
+                          size_t point) {
+    const double *from = desc->points + 2 * point;
+    return (step_point){to_step(from[0] + entry.shift_x - n->x0, n->step), to_step(from[1] - n->y0, n->step)};
+}
+
+static double distance(step_point a, step_point b) {
+    return hypot((double)b.x - a.x, (double)b.y - a.y);
+}
+
 /* Stores a point, or drops it if it lies on the same step as the one before, which then keeps the larger importance. An
  * importance that is NaN counts as infinite. */
-static void store_point(camber_network *n, const double *point, double shift_x, float importance) {
-    const int32_t x = to_step(point[0] + shift_x - n->x0, n->step), y = to_step(point[1] - n->y0, n->step);
+static void store_point(camber_network *n, step_point at, double along, float importance) {
     camber_stretch *stretch = n->stretches + n->stretch_count;
     const float weight = importance >= 0.0f ? importance : importance < 0.0f ? 0.0f : INFINITY;
-    if (n->point_count > stretch->first && n->x[n->point_count - 1] == x && n->y[n->point_count - 1] == y) {
+    if (n->point_count > stretch->first && n->x[n->point_count - 1] == at.x && n->y[n->point_count - 1] == at.y) {
         float *kept = n->importance + n->point_count - 1;
         *kept = weight > *kept ? weight : *kept;
         n->stats.repeated_points++;
         return;
     }
-    n->x[n->point_count] = x;
-    n->y[n->point_count] = y;
+    n->x[n->point_count] = at.x;
+    n->y[n->point_count] = at.y;
+    if (n->lengths)
+        n->lengths[n->point_count] = (float)along;
     n->importance[n->point_count++] = weight;
-    stretch->x0 = x < stretch->x0 ? x : stretch->x0;
-    stretch->x1 = x > stretch->x1 ? x : stretch->x1;
-    stretch->y0 = y < stretch->y0 ? y : stretch->y0;
-    stretch->y1 = y > stretch->y1 ? y : stretch->y1;
+    stretch->x0 = at.x < stretch->x0 ? at.x : stretch->x0;
+    stretch->x1 = at.x > stretch->x1 ? at.x : stretch->x1;
+    stretch->y0 = at.y < stretch->y0 ? at.y : stretch->y0;
+    stretch->y1 = at.y > stretch->y1 ? at.y : stretch->y1;
+}
+
+/* Finds the total length of the line that a stretch with arc lengths is part of, and how far along it the stretch
+ * begins. Without progress the stretch is its whole line. With it, progress gives the shares of the line's length at
+ * which the stretch begins and ends, as where tiles cut a line:
+ *
+ *     line      |--------------------------------|     total
+ *     stretch         |-----------|                    length = (progress[1] - progress[0]) * total
+ *                progress[0]   progress[1]
+ *
+ * Shares that make no sense are ignored. */
+static double measure_stretch(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
+                              size_t first, size_t end) {
+    const float *progress = desc->progress ? desc->progress + 2 * (size_t)entry.polyline : NULL;
+    const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;
+    const bool is_part = from >= 0.0 && from < 1.0 && part > LEAST_PART && part <= 1.0 - from + LEAST_PART;
+    double length = 0.0;
+    step_point before = step_of(n, desc, entry, first);
+    for (size_t i = first + 1; i < end; i++) {
+        const step_point at = step_of(n, desc, entry, i);
+        length += distance(before, at);
+        before = at;
+    }
+    const double total = is_part ? length / part : length;
+    n->totals[n->stretch_count] = (float)total;
+    return is_part ? from * total : 0.0;
 }
 
 /* Stores the valid points [first, end) as a stretch. Its ends have infinite importance: they always stay. */
@@ -125,8 +202,18 @@ static void store_stretch(camber_network *n, const camber_network_desc *desc, ca
     camber_stretch *stretch = n->stretches + n->stretch_count;
     *stretch =
         (camber_stretch){(uint32_t)n->point_count, entry.row << CAMBER_POINT_ROW_SHIFT, INT32_MAX, INT32_MAX, -1, -1};
-    for (size_t i = first; i < end; i++)
-        store_point(n, desc->points + 2 * i, entry.shift_x, desc->importance ? desc->importance[i] : INFINITY);
+    double along = n->lengths ? measure_stretch(n, desc, entry, first, end) : 0.0;
+    step_point before = step_of(n, desc, entry, first);
+    for (size_t i = first; i < end; i++) {
+        const bool stays = i == first || i + 1 == end || matters(desc, i);
+        if (!stays && !n->lengths)
+            continue;
+        const step_point at = step_of(n, desc, entry, i);
+        along += n->lengths ? distance(before, at) : 0.0;
+        before = at;
+        if (stays)
+            store_point(n, at, along, desc->importance ? desc->importance[i] : INFINITY);
+    }
     const size_t count = n->point_count - stretch->first;
     n->importance[stretch->first] = n->importance[n->point_count - 1] = INFINITY;
     if (closes && count > 2)
@@ -138,16 +225,25 @@ static void store_stretch(camber_network *n, const camber_network_desc *desc, ca
     n->stretch_count++;
 }
 
+typedef struct capacities {
+    size_t stretches, totals;
+} capacities;
+
+static bool grow_stretches(camber_network *n, size_t count, capacities *room) {
+    return camber_grow(n->context, &n->stretches, &room->stretches, count, sizeof *n->stretches) &&
+           (!n->lengths || camber_grow(n->context, &n->totals, &room->totals, count, sizeof *n->totals));
+}
+
 /* Stores an entry's points, a stretch between each two invalid points. */
 static camber_status store_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
-                                 size_t *stretch_capacity) {
+                                 capacities *room) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     n->stats.empty_polylines += begin == end;
     size_t first = begin;
     for (size_t i = begin; i <= end; i++) {
         if (i < end && is_valid(desc->points[2 * i] + entry.shift_x, desc->points[2 * i + 1]))
             continue;
-        if (!camber_grow(n->context, &n->stretches, stretch_capacity, n->stretch_count + 2, sizeof *n->stretches))
+        if (!grow_stretches(n, n->stretch_count + 2, room))
             return CAMBER_ERROR_MEMORY;
         if (i > first)
             store_stretch(n, desc, entry, first, i, !desc->keep_open && first == begin && i == end);
@@ -157,67 +253,29 @@ static camber_status store_entry(camber_network *n, const camber_network_desc *d
     return CAMBER_OK;
 }
 
-static double length_into(const camber_network *n, size_t point) {
-    return hypot((double)n->x[point] - n->x[point - 1], (double)n->y[point] - n->y[point - 1]);
-}
-
-/* Sums up arc lengths along a stretch. Without progress the stretch is its whole line. With it, progress gives the
- * shares of the line's length at which the stretch begins and ends, as where tiles cut a line:
- *
- *     line      |--------------------------------|     total
- *     stretch         |-----------|                    length = (progress[1] - progress[0]) * total
- *                progress[0]   progress[1]
- *
- * Shares that make no sense are ignored. */
-static void measure_stretch(camber_network *n, size_t stretch, const float *progress) {
-    const size_t first = n->stretches[stretch].first, end = n->stretches[stretch + 1].first;
-    const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;
-    const bool is_part = from >= 0.0 && from < 1.0 && part > LEAST_PART && part <= 1.0 - from + LEAST_PART;
-    double length = 0.0;
-    for (size_t i = first + 1; i < end; i++)
-        length += length_into(n, i);
-    const double total = is_part ? length / part : length;
-    double along = is_part ? from * total : 0.0;
-    for (size_t i = first; i < end; i++) {
-        along += i > first ? length_into(n, i) : 0.0;
-        n->lengths[i] = (float)along;
-    }
-    n->totals[stretch] = (float)total;
-}
-
-static camber_status measure_stretches(camber_network *n, const camber_network_desc *desc) {
-    if (!(n->lengths = camber_alloc(n->context, n->point_count, sizeof *n->lengths)) ||
-        !(n->totals = camber_alloc(n->context, n->stretch_count, sizeof *n->totals)))
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < n->entry_count; i++)
-        for (size_t r = n->entry_stretches[i]; r < n->entry_stretches[i + 1]; r++)
-            measure_stretch(n, r, desc->progress ? desc->progress + 2 * entry_of(desc, i).polyline : NULL);
-    return CAMBER_OK;
-}
-
-static camber_status store_entries(camber_network *n, const camber_network_desc *desc) {
+static camber_status store_entries(camber_network *n, const camber_network_desc *desc, size_t points) {
     camber_context *context = n->context;
-    const size_t points = n->stats.points;
-    size_t stretch_capacity = 0;
+    capacities room = {0};
     if (!(n->x = camber_alloc(context, points, sizeof *n->x)) ||
         !(n->y = camber_alloc(context, points, sizeof *n->y)) ||
         !(n->importance = camber_alloc(context, points, sizeof *n->importance)) ||
         !(n->entry_stretches = camber_alloc(context, n->entry_count + 1, sizeof *n->entry_stretches)) ||
         !(n->entry_rows = camber_alloc(context, n->entry_count, sizeof *n->entry_rows)) ||
-        !camber_grow(context, &n->stretches, &stretch_capacity, n->entry_count + 1, sizeof *n->stretches))
+        (desc->has_arc_length && !(n->lengths = camber_alloc(context, points, sizeof *n->lengths))) ||
+        !grow_stretches(n, n->entry_count + 1, &room))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < n->entry_count; i++) {
         const camber_network_entry entry = entry_of(desc, i);
         n->entry_stretches[i] = (uint32_t)n->stretch_count;
         n->entry_rows[i] = entry.row;
         n->row_count = entry.row + 1 > n->row_count ? entry.row + 1 : n->row_count;
-        const camber_status status = store_entry(n, desc, entry, &stretch_capacity);
+        const camber_status status = store_entry(n, desc, entry, &room);
         if (status != CAMBER_OK)
             return status;
     }
     n->entry_stretches[n->entry_count] = (uint32_t)n->stretch_count;
     n->stretches[n->stretch_count] = (camber_stretch){.first = (uint32_t)n->point_count};
-    return desc->has_arc_length ? measure_stretches(n, desc) : CAMBER_OK;
+    return CAMBER_OK;
 }
 
 camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
@@ -231,9 +289,10 @@ camber_status camber_network_create(camber_context *context, const camber_networ
     made->holders = 1;
     made->serial = context->next_serial++;
     made->entry_count = desc->entries ? desc->entry_count : desc->polyline_count;
-    camber_status status = check_entries_and_find_box(made, desc);
+    size_t capacity = 0;
+    camber_status status = check_entries_and_find_box(made, desc, &capacity);
     if (status == CAMBER_OK)
-        status = store_entries(made, desc);
+        status = store_entries(made, desc, capacity);
     if (status == CAMBER_OK)
         *network = made;
     else

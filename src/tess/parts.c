@@ -352,15 +352,15 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
                   {mesh->has_offsets ? source_line->info : part->info, polylines->info + first}};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         if (status == CAMBER_OK)
-            status = camber_write_buffer(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
+            status = camber_write_buffer_later(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
         if (status == CAMBER_OK && given < words)
-            status = camber_write_buffer(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
+            status = camber_write_buffer_later(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
     }
     /* classify writes a join word for each slot. Those of the sentinels around them are read by neighbours, too. */
     if (status == CAMBER_OK && !mesh->has_offsets)
-        status = camber_write_buffer(device, part->joins, 0, 4, zeros);
+        status = camber_write_buffer_later(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK && !mesh->has_offsets)
-        status = camber_write_buffer(device, part->joins, 4 * (words - 1), 4, zeros);
+        status = camber_write_buffer_later(device, part->joins, 4 * (words - 1), 4, zeros);
     part->uploaded = status == CAMBER_OK;
     return status;
 }

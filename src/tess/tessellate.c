@@ -122,7 +122,7 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     camber_status status =
-        camber_write_buffer(device, part->bases, 0, 16 * (part->slot_count / device->block), part->host_bases);
+        camber_write_buffer_later(device, part->bases, 0, 16 * (part->slot_count / device->block), part->host_bases);
     if (status == CAMBER_OK)
         status = reserve_output(mesh, part);
     if (status != CAMBER_OK)
@@ -189,7 +189,7 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     if (status != CAMBER_OK)
         return status;
     memcpy(mesh->host_rows, rows, count * sizeof *rows);
-    return camber_write_buffer(device, mesh->rows, 0, count * sizeof *rows, rows);
+    return camber_write_buffer_later(device, mesh->rows, 0, count * sizeof *rows, mesh->host_rows);
 }
 
 /* Makes a part's slots, then finds how much output it has. *fits is false, and there are no slots, where they are too
@@ -304,6 +304,8 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
                              device->info.name, records, part->record_count);
     if (status == CAMBER_OK)
         status = emit_unless_empty(mesh, part, program);
+    if (status != CAMBER_OK)
+        clFinish(device->queue); /* what is written later is read from the host's arrays */
     part->slot_count = slots;
     part->record_count = records;
     part->vertex_count = vertices;
@@ -368,8 +370,10 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted |= status != CAMBER_OK;
     }
-    if (status != CAMBER_OK)
+    if (status != CAMBER_OK) {
         mesh->mesh_info = nothing;
+        clFinish(mesh->device->queue); /* what is written later is read from the source's arrays */
+    }
     if (!mesh->holds_polylines)
         mesh->polylines = NULL; /* read during the call only */
     mesh->done = status == CAMBER_OK;

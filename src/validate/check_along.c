@@ -20,7 +20,11 @@ static const camber_ramp_stop shades[] = {{0.1f, {1, 0, 0, 1}},    {0.4f, {0.2f,
                                           {0.6f, {0.8f, 0, 0, 1}}, {0.6f, {0.1f, 0, 0, 1}}, {0.9f, {1, 0, 0, 1}}};
 static const camber_ramp_stop panes[] = {
     {0.1f, {1, 0, 0, 0.2f}}, {0.5f, {0.5f, 0, 0, 0.9f}}, {0.5f, {1, 0, 0, 0.4f}}, {1, {1, 0, 0, 1}}};
-static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}};
+/* From dark to light and back within a pixel or two. */
+static const camber_ramp_stop steps[] = {{0.2f, {0.1f, 0, 0, 1}}, {0.22f, {1, 0, 0, 1}}, {0.45f, {1, 0, 0, 1}},
+                                         {0.46f, {0, 0, 0, 1}},   {0.7f, {0, 0, 0, 1}},  {0.715f, {1, 0, 0, 1}},
+                                         {0.74f, {0.3f, 0, 0, 1}}};
+static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}, {steps, 7}};
 
 #define WHITE .color = {1, 1, 1, 1}
 
@@ -37,6 +41,7 @@ static const struct {
     {"round dashes", CAMBER_CAP_ROUND, {.width_px = 5, .dash = dashes + 1, WHITE}, {2.4, 0.004, 0.0005}},
     {"a trim", CAMBER_CAP_ROUND, {.width_px = 7, .trim_start = 0.31f, .trim_end = 0.62f, WHITE}, {0.7, 0.004, 0.0005}},
     {"a ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps, WHITE}, {0.3, 0.002, 0.0005}},
+    {"a steep ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 2, WHITE}, {0.65, 0.004, 0.0005}},
     {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 1, WHITE}, {0.3, 0.002, 0.0005}},
 };
 
@@ -145,7 +150,7 @@ camber_status camber_check_along(camber_validation *v) {
     const camber_validation_desc *desc = v->desc;
     camber_status status = CAMBER_OK;
     for (size_t r = 0; r < v->devices.count; r++)
-        for (size_t e = 0; e < v->devices.list[r].drawer_count && v->devices.list[r].drawers[e].in_gl; e++)
+        for (size_t e = 0; e < v->devices.list[r].drawer_count; e++)
             for (int method = 0; method < 3; method++)
                 for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_OK; i++)
                     if ((desc->method < 0 || desc->method == method) &&

@@ -170,7 +170,7 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
     return status;
 }
 
-/* Kernels that draw: the device's own, or those in the shape that a GPU's have, as other work-groups do. */
+/* Kernels that draw: with the device's own vectors, or with those of the other width. */
 typedef struct kernels {
     const char *name, *how;
     camber_drawing_path path;
@@ -209,10 +209,11 @@ static camber_status check_methods(camber_validation *v, const camber_subject *s
     return status;
 }
 
-static camber_status check_groups(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
-                                  const char *name) {
-    camber_device *device = checked->groups[0].device;
-    kernels on = {.name = name, .how = ", a pixel a work-item"};
+/* With the vectors that the n-th of the device's other work-groups was opened with. */
+static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                 const char *name, size_t n) {
+    camber_device *device = checked->groups[n].device;
+    kernels on = {.name = name, .how = checked->groups[n].lanes == 8 ? ", with 8 lanes" : ", with 16 lanes"};
     camber_status made = camber_renderer_create(device, NULL, NULL, &on.path.renderer);
     if (made == CAMBER_OK)
         made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);
@@ -234,9 +235,8 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
                 continue;
             for (int i = 0; i < VARIANTS && status == CAMBER_OK; i++)
                 status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
-            const bool is_cpu = camber_device_get_info(checked->device).type == CAMBER_DEVICE_TYPE_CPU;
-            if (status == CAMBER_OK && (!is_cpu || v->desc->full))
-                status = check_groups(v, s, checked, drawer->name);
+            for (size_t n = 0; n < CAMBER_CHECKED_GROUPS && status == CAMBER_OK && v->desc->full; n++)
+                status = check_lanes(v, s, checked, drawer->name, n);
         }
     return status;
 }

@@ -4,9 +4,13 @@
 #include "validate/samples.h"
 #include "validate/scenes.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Two layers at this alpha let less than a half through, and more than nothing. */
+static const float TRANSLUCENT = 0.6f;
 
 /* A subject in one style: its truth, and its pictures on one device with one method. */
 typedef struct job {
@@ -19,7 +23,9 @@ typedef struct job {
     bool is_shared; /* other sharing paths are tried too: the style does not matter to them */
     camber_samples samples;
     camber_pixel_bounds bounds;
-    uint8_t *first, *own, *other; /* of the first back end, of this one, of another path to it */
+    uint8_t *first, *own,
+        *other;     /* of the first back end, of this one, of another path to it or drawn in another way */
+    uint8_t *twice; /* drawn twice, translucent */
 } job;
 
 /* A few straight edges of a ramp can be off by more than many; what a camera sees does not depend on it. */
@@ -36,10 +42,10 @@ static camber_drawing drawing_of(const job *j, camber_overlap overlap) {
                             .overlap = overlap};
 }
 
-static camber_status draw(const job *j, const camber_drawing_path *path, camber_overlap overlap, uint8_t *levels) {
-    const camber_drawing drawing = drawing_of(j, overlap);
+static camber_status draw(const job *j, const camber_drawing_path *path, const camber_drawing *drawing,
+                          uint8_t *levels) {
     const camber_status status = camber_subject_tessellate(j->s, path->mesh, &j->desc);
-    return status == CAMBER_OK ? camber_draw_levels(path, &drawing, levels) : status;
+    return status == CAMBER_OK ? camber_draw_levels(path, drawing, levels) : status;
 }
 
 /* ---- Against the truth ---- */
@@ -141,7 +147,8 @@ static camber_status check_path(job *j, camber_checked_drawer *drawer, size_t pa
                            drawer->paths[0].name, j->checked->name, drawer->name);
     bool differ = false;
     size_t pixel = 0;
-    camber_status drawn = draw(j, &drawer->paths[path], CAMBER_OVERLAP_FLATTEN, j->other);
+    const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_FLATTEN);
+    camber_status drawn = draw(j, &drawer->paths[path], &drawing, j->other);
     if (drawn == CAMBER_OK)
         drawn = meshes_differ(drawer, path, &check.finding, &differ);
     camber_status status = drawn;
@@ -187,8 +194,45 @@ static camber_status check_united(job *j, const camber_checked_drawer *drawer) {
     camber_check check =
         camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: united, on %s, %s", j->s->name,
                            camber_method_get_name(j->desc.method), j->style, j->checked->name, drawer->name);
-    const camber_status status = draw(j, &drawer->paths[0], CAMBER_OVERLAP_UNITE, j->other);
+    const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_UNITE);
+    const camber_status status = draw(j, &drawer->paths[0], &drawing, j->other);
     return status == CAMBER_OK ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
+}
+
+/* The opaque layer, j->other, tells how much two translucent ones let through. Levels are rounded there, in the layers
+ * and in the picture. */
+static bool layers_differ(const job *j, camber_finding *finding, size_t *pixel) {
+    enum { MOST = 2 };
+    for (size_t i = 0; i < (size_t)j->s->width * j->s->height; i++) {
+        const double through = 1.0 - TRANSLUCENT * j->other[i] / 255.0, expected = 255.0 * (1.0 - through * through);
+        if (fabs(j->twice[i] - expected) <= MOST)
+            continue;
+        *pixel = i;
+        *finding = (camber_finding){.stage = "layers", .field = "level", .got = j->twice[i], .expected = expected};
+        snprintf(finding->what, sizeof finding->what,
+                 "layers: pixel %zu, %zu: level %u of two layers at %.1f, not %.1f, since one that is opaque has %u",
+                 i % j->s->width, i / j->s->width, j->twice[i], (double)TRANSLUCENT, expected, j->other[i]);
+        return true;
+    }
+    return false;
+}
+
+static camber_status check_translucent(job *j, const camber_checked_drawer *drawer) {
+    camber_check check =
+        camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: two translucent layers, on %s, %s", j->s->name,
+                           camber_method_get_name(j->desc.method), j->style, j->checked->name, drawer->name);
+    camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_UNITE);
+    drawing.passes = 2;
+    drawing.alpha = TRANSLUCENT;
+    size_t pixel = 0;
+    camber_status status = draw(j, &drawer->paths[0], &drawing, j->twice);
+    if (status == CAMBER_OK && layers_differ(j, &check.finding, &pixel)) {
+        check.result = CAMBER_RESULT_FAILED;
+        status = show_pixel(j, j->other, j->twice, pixel, &check.finding);
+    }
+    if (status == CAMBER_OK)
+        camber_results_add(&j->v->results, &check);
+    return status;
 }
 
 /* Neighbouring segments share their edges to the last bit. */
@@ -217,11 +261,14 @@ static camber_status check_drawn(job *j, size_t which) {
     camber_check check =
         camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
                            camber_method_get_name(j->desc.method), j->style, j->checked->name, drawer->name);
-    camber_status status = draw(j, &drawer->paths[0], CAMBER_OVERLAP_FLATTEN, j->own);
+    const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_FLATTEN);
+    camber_status status = draw(j, &drawer->paths[0], &drawing, j->own);
     if (status == CAMBER_OK)
         status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
     if (status == CAMBER_OK && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
         status = check_united(j, drawer);
+    if (status == CAMBER_OK && j->desc.method == CAMBER_METHOD_STRIP && j->is_shared)
+        status = check_translucent(j, drawer);
     const bool counts = drawer->in_gl && j->desc.method != CAMBER_METHOD_FAN;
     if (status == CAMBER_OK && j->is_drawn_once && counts)
         status = check_once(j, drawer);
@@ -341,11 +388,13 @@ camber_status camber_check_pixels(camber_validation *validation, const camber_su
     j.first = malloc(area);
     j.own = malloc(area);
     j.other = malloc(area);
-    if (!j.first || !j.own || !j.other)
+    j.twice = malloc(area);
+    if (!j.first || !j.own || !j.other || !j.twice)
         status = CAMBER_ERROR_MEMORY;
     const size_t count = !subject->scene || subject->network ? 1 : sizeof styles / sizeof *styles;
     for (size_t number = 0; number < count && status == CAMBER_OK; number++)
         status = check_number(&j, number);
+    free(j.twice);
     free(j.other);
     free(j.own);
     free(j.first);

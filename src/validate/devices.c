@@ -126,6 +126,7 @@ static camber_status open_plain(camber_validation *v, camber_checked_device *che
     camber_status status = open_alone(v, &desc, &checked->device, &checked->mesh);
     for (size_t i = 0; i < CAMBER_CHECKED_GROUPS && status == CAMBER_OK; i++) {
         desc.work_group_size = checked->groups[i].size = group_sizes[i];
+        desc.lanes = checked->groups[i].lanes = i % 2 ? 16 : 8;
         status = open_alone(v, &desc, &checked->groups[i].device, &checked->groups[i].mesh);
     }
     return status;

@@ -30,10 +30,10 @@ struct camber_checked_device {
     camber_device *device;
     camber_mesh *mesh;
     struct {
-        uint32_t size;
+        uint32_t size, lanes;
         camber_device *device;
         camber_mesh *mesh;
-    } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes */
+    } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes, and vectors of each width */
     camber_checked_drawer drawers[CAMBER_FIXTURE_DRAWERS]; /* drawer_count */
     size_t drawer_count;
     /* By camber_method: meshes of the subject at hand differ from the twin's, and are not drawn. */

@@ -14,7 +14,8 @@ bool camber_levels_take(void *user, const uint8_t *rgba, uint32_t first_row, uin
 static camber_paint *make_paints(const camber_drawing *drawing) {
     camber_paint *paints = calloc(drawing->stroke_count + 1, sizeof *paints);
     for (size_t row = 0; paints && row < drawing->stroke_count; row++)
-        paints[row] = (camber_paint){.width_px = drawing->strokes[row].width_px, .color = {1, 1, 1, 1}};
+        paints[row] = (camber_paint){.width_px = drawing->strokes[row].width_px,
+                                     .color = {1, 1, 1, drawing->alpha > 0 ? drawing->alpha : 1}};
     return paints;
 }
 
@@ -25,11 +26,12 @@ camber_status camber_draw_levels(const camber_drawing_path *path, const camber_d
     if (!paints)
         return CAMBER_ERROR_MEMORY;
     const camber_pass pass = {.mesh = path->mesh, .paints = paints, .paint_count = count, .overlap = drawing->overlap};
+    const camber_pass passes[CAMBER_DRAWING_PASSES_MAX] = {pass, pass};
     const camber_frame frame = {.width = drawing->width,
                                 .height = drawing->height,
                                 .background = {0, 0, 0, 1},
-                                .passes = &pass,
-                                .pass_count = 1,
+                                .passes = passes,
+                                .pass_count = drawing->passes ? (size_t)drawing->passes : 1,
                                 .coverage = drawing->coverage};
     const camber_status status = camber_renderer_render(path->renderer, &frame, camber_levels_take, &kept, NULL);
     free(paints);

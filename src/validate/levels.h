@@ -1,4 +1,4 @@
-/* One channel of a picture, in memory: a mesh drawn opaque, white on black. */
+/* One channel of a picture, in memory: a mesh drawn white on black. */
 #ifndef CAMBER_VALIDATE_LEVELS_H
 #define CAMBER_VALIDATE_LEVELS_H
 
@@ -19,9 +19,13 @@ typedef struct camber_drawing {
     uint32_t width, height; /* px */
     camber_coverage coverage;
     camber_overlap overlap;
+    int passes;  /* 0: one; each draws the whole mesh, over the one before */
+    float alpha; /* of the passes; 0: 1, opaque */
 } camber_drawing;
 
-/* Draws the path's mesh in one pass. levels takes width * height. */
+enum { CAMBER_DRAWING_PASSES_MAX = 2 };
+
+/* Draws the path's mesh. levels takes width * height. */
 camber_status camber_draw_levels(const camber_drawing_path *path, const camber_drawing *drawing, uint8_t *levels);
 /* Counts the overdraw of the same, line by line. */
 camber_status camber_draw_count(const camber_drawing_path *path, const camber_drawing *drawing, camber_overdraw *sum);

@@ -3,10 +3,10 @@
  * in line-tests/ or line-tests/cl/ of the build tree. */
 #include "core.h"
 #include "pixelmatch.h"
+#include "png_file.h"
 
 #include <dirent.h>
 #include <jansson.h>
-#include <png.h>
 #include <sys/wait.h>
 
 enum { USUAL_PX = 512, PATH_SIZE = 1024, STYLES_MAX = 256 };
@@ -99,19 +99,13 @@ typedef struct rgba {
 } rgba;
 
 static bool read_png(const char *path, rgba *read) {
-    png_image image = {.version = PNG_IMAGE_VERSION};
-    if (!png_image_begin_read_from_file(&image, path))
-        return false;
-    image.format = PNG_FORMAT_RGBA;
-    *read = (rgba){image.width, image.height, malloc(PNG_IMAGE_SIZE(image))};
-    return read->pixels && png_image_finish_read(&image, NULL, read->pixels, 0, NULL);
+    const png_pixels found = png_pixels_read(path);
+    *read = (rgba){found.width, found.height, found.rgba};
+    return found.rgba != NULL;
 }
 
 static void write_png(const char *path, const rgba *written) {
-    png_image image = {
-        .version = PNG_IMAGE_VERSION, .width = written->width, .height = written->height, .format = PNG_FORMAT_RGBA};
-    if (!png_image_write_to_file(&image, path, 0, written->pixels, 0, NULL))
-        printf("%s cannot be written: %s\n", path, image.message);
+    png_pixels_write(path, written->pixels, written->width, written->height);
 }
 
 /* ---- Close-ups ---- */

@@ -2,7 +2,8 @@
 # Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
 # must end with 1 and name a check that failed, or be ended by what the broken kernel did.
 # test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS] [K/N: every N-th row, from the K-th on]
-# kernels/join.h and kernels/cull.h are compiled into kernels and CPU twin alike, so that pixels and the window tell.
+# kernels/join.h and kernels/cull.h are compiled into kernels and CPU twin alike, so that pixels and the window tell;
+# kernels/stroke*, features.h and images.h into shaders as well.
 set -u
 sources=$1
 only=${2:-}
@@ -29,6 +30,13 @@ build() { # [FILE THAT HAS CHANGED]
     ninja -C "$tmp/build" "${targets[@]}" >"$tmp/build.log" 2>&1
 }
 
+# Puts the build of the sources as they are back, as old as it was: it is not compiled again for each row.
+restore() { # FILE
+    rm -rf "$tmp/build"
+    cp -a "$tmp/whole" "$tmp/build"
+    cp -p "$sources/$1" "$tmp/sources/$1"
+}
+
 # Runs validate; its report is in $tmp/tap. One back end and half of the windows tell as much.
 backend=auto
 drawer=()
@@ -46,7 +54,7 @@ validate_until_failure() {
     process=$!
     if awk '{ print } /^not ok/ { failed = 1 } failed && /^  [.][.][.]$/ { exit } END { exit !failed }' \
         <"$tmp/pipe" >"$tmp/tap"; then
-        kill "$process"
+        kill "$process" 2>"$tmp/killed"
         wait "$process" 2>"$tmp/killed"
         return 1
     fi
@@ -107,21 +115,22 @@ mutant() {
     else
         fail "$file: $what: does not build: $(grep -m 3 -i error "$tmp/build.log")"
     fi
-    cp "$sources/$file" "$tmp/sources/$file"
+    restore "$file"
 }
 
 # ---- The build that is broken ----
 
 for part in .ci CMakeLists.txt LICENSE README.md CHANGELOG.md kernels shaders src bench tests; do
-    cp -r "$sources/$part" "$tmp/sources/" || exit 1
+    cp -rp "$sources/$part" "$tmp/sources/" || exit 1
 done
-options=(-DCAMBER_MAP=OFF -DCAMBER_TESTS=OFF -DCAMBER_WARM=OFF -DCAMBER_KERNEL_FILES=ON)
-command -v ccache >/dev/null && options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache)
+# Nearly all of the time is compilers': C that takes half as long to compile is fast enough.
+options=(-DCAMBER_MAP=OFF -DCAMBER_TESTS=OFF -DCAMBER_WARM=OFF -DCAMBER_KERNEL_FILES=ON -DCMAKE_C_FLAGS_RELEASE=-O1)
 if ! cmake -S "$tmp/sources" -B "$tmp/build" -G Ninja "${options[@]}" >"$tmp/build.log" 2>&1 || ! build; then
     tail -20 "$tmp/build.log"
     echo "FAILED: the sources do not build"
     exit 1
 fi
+cp -a "$tmp/build" "$tmp/whole" || exit 1
 validate
 case $? in
 0) echo "passes: the sources as they are, $(sed -n 's/^1\.\.//p' "$tmp/tap") checks" ;;
@@ -149,9 +158,9 @@ mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_P
 mutant strip kernels/scan.cl "runs that begin half as far" 'total[from][lane] - own' '(total[from][lane] - own) / 2u'
 mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins_before[first + n - 1]' 'joins_before[first + n]'
 reports=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip kernels/emit.cl "a missing break" 'CAMBER_RECORD_BREAK};' '0u};'
+mutant strip kernels/emit.cl "a missing break" '? CAMBER_RECORD_BREAK | (' '? ('
 reports=()
-mutant strip kernels/emit.cl "a start that is placed like an end" 'CAMBER_RECORD_START, 0u' '0u, 0u'
+mutant strip kernels/emit.cl "a start that is placed like an end" ': CAMBER_RECORD_START | point' ': point'
 mutant strip kernels/classify.cl "a line that forgets its ends" 'info_before[i - 1]' 'info_before[i]'
 mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, sr, e + 1, e)' \
     'put_triangle(indices + 3, sr, e, e + 1)'
@@ -214,47 +223,52 @@ mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' 
 
 mutant strip shaders/stroke.vert "cuts at the tangent of another angle" 'return 2.0 * q / ' 'return q / '
 mutant strip shaders/stroke.vert "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
-mutant strip shaders/stroke.vert "butt ends without a pad" '== BUTT ? PAD_PX' '== BUTT ? 0.0'
+mutant strip shaders/stroke.vert "butt ends without a pad" '== CAMBER_ENDS_BUTT ? CAMBER_PAD_PX' '== CAMBER_ENDS_BUTT ? 0.0'
 mutant kite shaders/stroke.vert "kites cut on the outer side" 'is_cut && inner ? cut' 'is_cut && !inner ? cut'
 mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer * cos(angle))' 'vec2(-sin(angle), outer * cos(angle))'
 mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
 mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
 mutant strip shaders/stroke.vert "a tight start placed by the end of no length" 'is_again ? i - 2' 'is_again ? i - 1'
-mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
-mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
-mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'
+mutant strip shaders/stroke.vert "no pad" 'half_width + CAMBER_PAD_PX' 'half_width'
+
+# ---- The formulas of strokes, which shaders, kernels and twin share: pixels tell ----
+
+mutant strip kernels/stroke_setup.inl "the slope of an edge" 'slope = safe * scale' 'slope = 0.8f * safe * scale'
+mutant strip kernels/stroke_setup.inl "the corner of a pixel" 'bend * bend * e->curve' 'bend * e->curve'
 reports=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip shaders/stroke.frag "half the width" 'covered_band(half_width, d, side)' 'covered_band(0.9 * half_width, d, side)'
+mutant strip kernels/stroke.h "half the width" 'half_width - at->d, 1.0f) +' '0.9f * half_width - at->d, 1.0f) +'
 reports=()
-mutant strip shaders/stroke.vert "the sine of a turn" '2.0 * q * scale' 'q * scale'
-mutant strip shaders/stroke.frag "the wrong side of a bisector" 'v_turns.yw * y' '-v_turns.yw * y'
-mutant strip shaders/stroke.vert "square caps of a whole width" 'SQUARE ? half_width' 'SQUARE ? 2.0 * half_width'
-mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * turn.x' 'bevel ? half_width'
-mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(beyond.x' 'y + (bend(beyond.x'
-mutant strip shaders/stroke.vert "caps of thin lines" '0.785398 * half_width + 1.2' '1.2'
+mutant strip kernels/stroke_ends.h "the sine of a turn" '2.0f * q * scale' 'q * scale'
+mutant strip shaders/stroke.frag "the wrong side of a bisector" 'p.cb * at.past_b + p.sb * at.y' 'p.cb * at.past_b - p.sb * at.y'
+mutant strip kernels/stroke_setup.inl "square caps of a whole width" 'CAMBER_ENDS_SQUARE ? half_width' \
+    'CAMBER_ENDS_SQUARE ? 2.0f * half_width'
+mutant strip kernels/stroke.h "bevels that reach too far" 'l->bevel ? half_width * c' 'l->bevel ? half_width'
+mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
+mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
 mutant kite shaders/stroke.vert "kites that lie over each other" 'is_cut && inner ? cut : kind' 'is_cut && inner ? 0.5 * cut : kind'
 mutant strip shaders/stroke.frag "united lines: no edge between whole and part" '* (area * (1.0 - area)), area, area)' \
     '* area, area, area)'
-mutant strip shaders/stroke.frag "united lines: both sides face the same way" 'vec2 off = vec2(arc.y - arc.x, y)' \
-    'vec2 off = vec2(arc.y - arc.x, abs(y))'
+mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 'in_y = at->y * scale' \
+    'in_y = CAMBER_FABS(at->y) * scale'
 mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area * (1.0 - area)), area, area)' \
     'area * (1.0 - area)), 0.0, area)'
-mutant strip shaders/flatten.frag "united lines: edges that face alike are added up" 'cosine < 0.0 ? min(sum, 1.0)' \
-    'cosine > 0.0 ? min(sum, 1.0)'
-mutant strip shaders/flatten.frag "united lines: every two edges face alike" 'abs(cosine))' '1.0)'
-mutant strip shaders/flatten.frag "united lines: one over the other" 'abs(cosine))' '0.0)'
+mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
+    'cosine > 0.0f ? apart : more'
+mutant strip kernels/union.h "united lines: every two edges face alike" 'weight = CAMBER_FABS(cosine)' 'weight = one'
+mutant strip kernels/union.h "united lines: one over the other" 'weight = CAMBER_FABS(cosine)' 'weight = none'
 
 # Paints along lines, and bands beside them.
-mutant strip shaders/stroke.frag "gaps that are not cut out" 'max(area - gap, 0.0)' 'area'
-mutant strip shaders/stroke.frag "a fade half as wide" 'fade = v_band.y + 1.0' 'fade = 0.5 * v_band.y + 1.0'
-mutant strip shaders/stroke.frag "dashes that do not end" 'covered((t - dash.x) * scale, edge) - covered((t - dash.y) * scale, edge)' \
-    'covered((t - dash.x) * scale, edge)'
-mutant strip shaders/stroke.frag "the nearest round dash" 'max(dash.x - t, t - dash.y)' 'max(dash.x - t, t - dash.x)'
-mutant strip shaders/stroke.frag "the period of dashes" 'period * floor(' '1.1 * period * floor('
-mutant strip shaders/stroke.frag "what is trimmed and what is not" 'covered((along - v_trim.x)' 'covered((v_trim.x - along)'
-mutant strip shaders/stroke.frag "a place along the line" 'v_measure.x + clamp(x, 0.0, v_shape.x)' 'v_measure.x + clamp(x, 0.0, 0.5 * v_shape.x)'
-mutant strip shaders/stroke.frag "steps at the pixel before" 'float from = along - edge.x / scale' 'float from = along + edge.x / scale'
-mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, next_color, part)' 'color'
+mutant strip kernels/features.h "gaps that are not cut out" 'area > gap ? area - gap' 'area > gap ? area'
+mutant strip kernels/features.h "a fade half as wide" '(e->blur + 1.0f)' '(0.5f * e->blur + 1.0f)'
+mutant strip kernels/features.h "dashes that do not end" 'camber_cut_along(p, at, place - CAMBER_DASH_TO(e, i))' '0.0f'
+mutant strip kernels/features.h "the nearest round dash" '(least < to ? least : to)' 'least'
+mutant strip kernels/features.h "the period of dashes" 'at - e->period * ' 'at - 1.1f * e->period * '
+mutant strip kernels/features.h "what is trimmed and what is not" 'at->along - e->trim_from)' 'e->trim_from - at->along)'
+mutant strip kernels/features.h "a place along the line" '(least < p->length ? least : most)' '0.5f * (least < p->length ? least : most)'
+mutant strip kernels/features.h "steps at the pixel before" 'from = along - extent' 'from = along + extent'
+mutant strip kernels/features.h "colours at the ends of pieces" \
+    'CAMBER_STOP_COLOR(e, i, k) * (1.0f - part) + CAMBER_STOP_COLOR(e, next, k) * part) * share' \
+    'CAMBER_STOP_COLOR(e, i, k)) * share'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
 mutant strip kernels/arc_length_scan.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
@@ -273,31 +287,29 @@ mutant strip kernels/bin_count.cl "a tile too few in a span" 'x <= span >> 8' 'x
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
     'lists[starts[tile + 1] - 1u - own[tile]++]'
-mutant strip kernels/tile_state.cl "cells that are done too early" 'most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX' \
-    'most_of(c->level[0][3][i]) < 0.3f'
-mutant strip kernels/tile_state.cl "cells that are full too early" 'most_of(through) < CAMBER_NOTHING_PX' 'most_of(through) < 0.5f'
-mutant strip kernels/tile_state.cl "what lies below shines through" 'c->level[level][3][i] = through * (1.0f - area)' \
-    'c->level[level][3][i] = through'
-mutant strip kernels/tile_state.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
-mutant strip kernels/tile_state.cl "united lines: areas that are not summed" 'c->brush[1][i] += ' 'c->brush[1][i] = '
-mutant strip kernels/rasterize_sixteen.cl "tight joins that cut strokes narrower than their mesh" ' & (limit * c < outer)' ''
-mutant strip kernels/rasterize_sixteen.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
-mutant strip kernels/bin_gpu.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
-mutant strip kernels/rasterize_gpu.cl "cells that are full without a look" '& (next <= SIXTEEN)' '& (next > SIXTEEN)'
-mutant strip kernels/setup_gpu.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
+mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++' 'k + 1u < count; k++'
+mutant strip kernels/rasterize.cl "rows of cells that lie abreast, from the top" 'v * (CAMBER_LANES / CAMBER_CELL_PX)' '0 * v'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
-# ---- Coverage, which these kernels and their twin share: pixels tell ----
+# ---- Coverage, tiles and cells, which these kernels and their twin share: pixels tell ----
 
-mutant strip kernels/segment.h "the slope of an edge" 's.slope = linear ? one : one / p' 's.slope = linear ? one : 0.8f / p'
-mutant strip kernels/coverage.h "the corner of a pixel" 'bend * bend * curve' 'bend * curve'
-mutant strip kernels/coverage.h "half the width" 'camber_inside_edge(p, half_width - d)' 'camber_inside_edge(p, 0.9f * half_width - d)'
-mutant strip kernels/coverage.h "a bend to the wrong side" '*bent = y - bend' '*bent = y + bend'
-mutant strip kernels/coverage.h "a cut on the wrong side" '((fb >= 0.0f) & (past_b > p->owner_b))' '((fb < 0.0f) & (past_b > p->owner_b))'
-mutant strip kernels/coverage.h "tight joins: the inner side on the outer one" '*slope = tight ? (s > 0.0f ? more : -more)' \
-    '*slope = tight ? (s > 0.0f ? -more : more)'
-mutant strip kernels/coverage.h "caps of thin lines" '0.5f + 0.785398f * half_width + past' '0.5f + past'
-mutant strip kernels/coverage.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
+mutant strip kernels/tile_state.h "cells that are done too early" 'camber_most_of(most) < CAMBER_NOTHING_PX' \
+    'camber_most_of(most) < 0.5f'
+mutant strip kernels/tile_state.h "what lies below shines through" 'c->level[level][i][3][v] = through * (1.0f - area)' \
+    'c->level[level][i][3][v] = through'
+mutant strip kernels/tile_state.h "united lines: areas that are not summed" 'c->sums[i][0][v] += ' 'c->sums[i][0][v] = '
+mutant strip kernels/tile_state.h "cells that keep what they had" 'cells & ~c->brushed; left' 'cells & c->brushed; left'
+mutant strip kernels/cells.h "cells that are whole too soon" 'h - p->side.extent - reach : always' 'h - p->side.extent : always'
+mutant strip kernels/cells.h "cells beside the line" 'h + p->side.extent + reach + bend' '0.5f * h'
+mutant strip kernels/stroke_setup.inl "the slope of an edge" 'slope = safe * scale' 'slope = 0.8f * safe * scale'
+mutant strip kernels/stroke.h "half the width, of lines wider than a pixel" 'p->half_width - at->d, 1.0f)' \
+    '0.9f * p->half_width - at->d, 1.0f)'
+mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
+mutant strip kernels/stroke_flat.h "a cut on the wrong side" 'at->fb >= CAMBER_TIE(at)' 'at->fb < CAMBER_TIE(at)'
+mutant strip kernels/stroke_setup.inl "tight joins: the inner side on the outer one" 'tight ? (s > 0.0f ? more : -more)' \
+    'tight ? (s > 0.0f ? -more : more)'
+mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
+mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
 mutant strip kernels/segment.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
 drawer=()

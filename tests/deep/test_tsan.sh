@@ -9,6 +9,7 @@ build() {
     mkdir -p "$folder"
     if ! { cmake -S "$source" -B "$folder" -G Ninja -DCAMBER_TESTS=ON -DCAMBER_SANITIZE=THREAD -DCMAKE_BUILD_TYPE=Release "$@" &&
         { ! grep -q '^CAMBER_MAP:.*=ON$' "$folder/CMakeCache.txt" || targets+=(test_readers); } &&
+        { ! grep -q '^MICROHTTPD_FOUND:.*=1$' "$folder/CMakeCache.txt" || targets+=(test_draw_queue test_tile_cache); } &&
         cmake --build "$folder" --target "${targets[@]}"; } >"$folder/build.log" 2>&1; then
         tail -n 50 "$folder/build.log"
         exit 1
@@ -63,8 +64,8 @@ run() {
     # A run that a signal ends joins no thread.
     export TSAN_OPTIONS=report_thread_leaks=0:exitcode=99:halt_on_error=1:atexit_sleep_ms=0:suppressions=$source/tests/fixtures/tsan.supp:print_suppressions=0
     begin
-    for test in test_picture_error test_readers test_threads; do
-        [ -e "$folder/tests/$test" ] || continue # no test_readers in a build without maps
+    for test in test_picture_error test_readers test_threads test_draw_queue test_tile_cache; do
+        [ -e "$folder/tests/$test" ] || continue # not in a build without maps, or without a server
         status=0
         "${fixed[@]}" "$folder/tests/$test" || status=$?
         [ "$status" = 0 ] || exit "$status"

@@ -424,9 +424,13 @@ static void test_descriptions(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    const camber_device_desc bad[] = {{.work_group_size = 1},         {.work_group_size = 32},
-                                      {.work_group_size = 255},       {.work_group_size = 512},
-                                      {.largest_buffer_bytes = 4095}, {.largest_buffer_bytes = 1}};
+    const camber_device_desc bad[] = {{.lanes = 4},
+                                      {.work_group_size = 1},
+                                      {.work_group_size = 32},
+                                      {.work_group_size = 255},
+                                      {.work_group_size = 512},
+                                      {.largest_buffer_bytes = 4095},
+                                      {.largest_buffer_bytes = 1}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         camber_device *const untouched = (camber_device *)(void *)&h;
         camber_device *device = untouched;

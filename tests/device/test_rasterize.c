@@ -357,22 +357,19 @@ static void test_steps(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
-/* The shape that kernels have on a GPU, on whatever device there is: the twin's bytes, and the same picture, in slices
- * too. */
-static void test_lanes(void **state) {
-    const fixture *e = *state;
-    fixture lanes = {.context = e->context};
-    const camber_device_desc desc = {.work_group_size = 64},
-                             small = {.work_group_size = 64, .largest_buffer_bytes = 300 * 1024};
-    assert_int_equal(camber_device_create(e->context, &desc, &lanes.on.device), CAMBER_OK);
-    assert_int_equal(lanes.on.device->lanes, 1);
-    assert_int_equal(camber_renderer_create(lanes.on.device, NULL, NULL, &lanes.on.renderer[CAMBER_FIXTURE_OPENCL]),
+/* Vectors of every width, whatever the device has: the twin's bytes, and the same picture, in slices too. */
+static void compare_lanes(const fixture *e, uint32_t lanes) {
+    fixture other = {.context = e->context};
+    const camber_device_desc desc = {.lanes = lanes}, small = {.lanes = lanes, .largest_buffer_bytes = 300 * 1024};
+    assert_int_equal(camber_device_create(e->context, &desc, &other.on.device), CAMBER_OK);
+    assert_int_equal(other.on.device->lanes, lanes);
+    assert_int_equal(camber_renderer_create(other.on.device, NULL, NULL, &other.on.renderer[CAMBER_FIXTURE_OPENCL]),
                      CAMBER_OK);
     for (int which = 0; which < SCENES; which++) {
         drawing d = begin_drawing();
         fill_scene(&d.lines, which);
-        camber_mesh *mesh = make_mesh(&lanes, lanes.on.renderer[CAMBER_FIXTURE_OPENCL], &d, (camber_method)(which % 3));
-        compare_with_twin(&lanes, &d, mesh, which % 2, (camber_raster_area){32 * (uint32_t)which, 64, 500, 333});
+        camber_mesh *mesh = make_mesh(&other, other.on.renderer[CAMBER_FIXTURE_OPENCL], &d, (camber_method)(which % 3));
+        compare_with_twin(&other, &d, mesh, which % 2, (camber_raster_area){32 * (uint32_t)which, 64, 500, 333});
         camber_mesh_destroy(mesh);
         d.passes[0].overlap = which % 2 ? CAMBER_OVERLAP_ACCUMULATE : CAMBER_OVERLAP_UNITE;
         d.passes[1].opacity = 0.5f;
@@ -382,15 +379,33 @@ static void test_lanes(void **state) {
         picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
         assert_int_equal(compare_on(e, &desc, &d, 3, &whole), 1);
         assert_true(compare_on(e, &small, &d, 3, &whole) > 1);
-        d.frame.pitch_deg = 50; /* which falls back to the other shape */
+        d.frame.pitch_deg = 50;
         picture tilted = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
         assert_int_equal(compare_on(e, &desc, &d, 3, &tilted), 1);
         picture_free(&tilted);
         picture_free(&whole);
         camber_made_scene_free(&d.lines);
     }
-    camber_renderer_destroy(lanes.on.renderer[CAMBER_FIXTURE_OPENCL]);
-    camber_device_destroy(lanes.on.device);
+    camber_renderer_destroy(other.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    camber_device_destroy(other.on.device);
+}
+
+/* The lanes that the device itself has are those of all other tests. */
+static void test_lanes(void **state) {
+    const fixture *e = *state;
+    compare_lanes(e, e->on.device->lanes == 16 ? 8 : 16);
+}
+
+/* Kernels as they are built for a GPU draw the same picture. */
+static void test_groups(void **state) {
+    const fixture *e = *state;
+    const camber_device_desc desc = {.work_group_size = 64};
+    drawing d = begin_drawing();
+    fill_scene(&d.lines, 3);
+    picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 2, CAMBER_METHOD_STRIP);
+    assert_int_equal(compare_on(e, &desc, &d, 2, &whole), 1);
+    picture_free(&whole);
+    camber_made_scene_free(&d.lines);
 }
 
 /* ---- Loads ---- */
@@ -445,10 +460,10 @@ static void test_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),          cmocka_unit_test(test_lanes),   cmocka_unit_test(test_gl),
-        cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),   cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),   cmocka_unit_test(test_slices),
-        cmocka_unit_test(test_bound),         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_twin),   cmocka_unit_test(test_lanes),         cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_gl),     cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_steps),  cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_slices), cmocka_unit_test(test_bound),         cmocka_unit_test(test_refused),
     };
     return FIXTURE_CL_RUN(tests);
 }

@@ -65,13 +65,14 @@ static void check_view(const camber_options *o) {
 
 /* Checks what camber_options says of its members. */
 static void check_values(const camber_options *o) {
-    REQUIRE(is_within(o->format, -1, 1) && is_within(o->theme, -1, 1) && is_within(o->method, -1, 2));
+    REQUIRE(is_within(o->format, -1, 3) && is_within(o->theme, -1, 1) && is_within(o->method, -1, 2));
     REQUIRE(is_within(o->coverage, 0, 1) && is_within(o->backend, 0, 2) && is_within(o->sharing, 0, 3));
     REQUIRE(is_within(o->draw, 0, 2) && is_within(o->completion, -1, 1));
     REQUIRE(may_be(o->zoom, -2, 30) && may_be(o->bearing_deg, -1e6, 1e6) && may_be(o->pitch_deg, 0, 85));
     REQUIRE(is_within(o->simplify_px, 0, 1e6) && is_within(o->width_px, 0, 16384));
     REQUIRE(is_within(o->fan_tolerance_px, 0, 16384));
-    REQUIRE(o->threads <= 1024 && is_within(o->runs, 1, 100000) && is_within(o->windows, 8, 100000));
+    REQUIRE(o->quality <= 100 && o->threads <= 1024 && is_within(o->runs, 1, 100000) &&
+            is_within(o->windows, 8, 100000));
     REQUIRE(o->memory_bytes == 0 || is_within((double)o->memory_bytes, 65536, 1099511627776.0));
 }
 
@@ -93,7 +94,18 @@ static void check_done(const camber_options *o) {
         REQUIRE(o->input_count == 2);
         return;
     }
+    if (o->verb == CAMBER_VERB_TILES && camber_options_tiles_action(o))
+        return;
     check_view(o);
+    if (o->verb == CAMBER_VERB_SERVE)
+        REQUIRE(o->input_count && o->most_ratio <= 8 && o->most_px <= 16384);
+    if (o->verb == CAMBER_VERB_TILES) {
+        REQUIRE(o->output && (o->input_count || o->style) && is_within(o->format, 0, 2));
+        REQUIRE(o->min_zoom <= o->max_zoom && o->max_zoom <= 24);
+        for (size_t i = 0; i < o->place_count; i++)
+            REQUIRE(is_within(o->places[i].zoom, 0, 24) && !(o->places[i].column >> o->places[i].zoom) &&
+                    !(o->places[i].row >> o->places[i].zoom));
+    }
     REQUIRE(o->verb != CAMBER_VERB_INFO || o->input_count == 0);
     if (o->verb == CAMBER_VERB_RENDER || o->verb == CAMBER_VERB_TESSELLATE)
         REQUIRE(o->output && (o->input_count || o->style));

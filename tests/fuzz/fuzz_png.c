@@ -117,7 +117,7 @@ static void on_error(png_structp png, png_const_charp message) {
 /* As it was, but for a colour above its alpha, which no straight colour gives. */
 static void check_pixel(const uint8_t *read, const uint8_t *given, bool opaque) {
     const unsigned alpha = given[3];
-    REQUIRE(opaque || read[3] == alpha);
+    REQUIRE(read[3] == (opaque ? 255 : alpha));
     for (int c = 0; c < 3; c++) {
         const unsigned most = given[c] < alpha ? given[c] : alpha;
         REQUIRE(opaque ? read[c] == given[c] : (read[c] * alpha + 127) / 255 == most);
@@ -133,7 +133,7 @@ static void check_texts(png_structp png, png_infop info, const picture *from) {
 
 static void check_file(const fuzz_bytes *file, const picture *from) {
     file_reader source = {file, 0};
-    const uint32_t width = from->desc.width, pixel_bytes = from->desc.opaque ? 3 : 4;
+    const uint32_t width = from->desc.width;
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, on_error, NULL);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     uint8_t *row = malloc((size_t)4 * width);
@@ -141,11 +141,16 @@ static void check_file(const fuzz_bytes *file, const picture *from) {
     png_set_read_fn(png, &source, give_bytes);
     png_read_info(png, info);
     REQUIRE(png_get_image_width(png, info) == width && png_get_image_height(png, info) == from->desc.height);
-    REQUIRE(png_get_rowbytes(png, info) == (size_t)pixel_bytes * width && png_get_bit_depth(png, info) == 8);
+    REQUIRE(!from->desc.opaque || !(png_get_color_type(png, info) & PNG_COLOR_MASK_ALPHA));
+    REQUIRE(!from->desc.opaque || !png_get_valid(png, info, PNG_INFO_tRNS));
+    png_set_expand(png); /* palettes */
+    png_set_add_alpha(png, 255, PNG_FILLER_AFTER);
+    png_read_update_info(png, info);
+    REQUIRE(png_get_rowbytes(png, info) == (size_t)4 * width && png_get_bit_depth(png, info) == 8);
     for (uint32_t y = 0; y < from->desc.height; y++) {
         png_read_row(png, row, NULL);
         for (uint32_t x = 0; x < width; x++)
-            check_pixel(row + (size_t)pixel_bytes * x, from->rgba + 4 * ((size_t)width * y + x), from->desc.opaque);
+            check_pixel(row + (size_t)4 * x, from->rgba + 4 * ((size_t)width * y + x), from->desc.opaque);
     }
     png_read_end(png, info);
     REQUIRE(source.at == file->size);

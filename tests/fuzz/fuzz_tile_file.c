@@ -1,4 +1,10 @@
+/* Files of tiles as input, as a style's source, and as archives.
+ *
+ * Input: the bytes of a file and its ending. Whatever they are, reading ends with lines that hold together, or with one
+ * message, and leaves nothing beside the file. */
 #include "fuzz_tile_file.h"
+
+#include "camber_tiles.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -55,6 +61,28 @@ static void read_source(fuzz_run *run, const char *path, const char *scheme) {
     camber_style_destroy(style);
 }
 
+/* Whatever an archive is, it is shown, verified and converted, or refused in one line. */
+static void look_at_archive(fuzz_run *run, const char *path) {
+    camber_tiles_findings *found = NULL;
+    camber_tiles_info *info = NULL;
+    char out[96], beside[128];
+    if (fuzz_done(run, camber_tiles_verify(run->context, path, &found)))
+        camber_tiles_findings_destroy(found);
+    if (fuzz_done(run, camber_tiles_show(run->context, path, &info))) {
+        uint64_t tiles = 0;
+        for (size_t i = 0; i < info->zoom_count; i++)
+            tiles += info->zooms[i].tiles;
+        REQUIRE(tiles <= info->tiles);
+        camber_tiles_info_destroy(info);
+    }
+    snprintf(out, sizeof out, "%s.out.pmtiles", path);
+    const camber_tiles_merge_desc merge = {.parts = &path, .part_count = 1, .output = out, .force = true};
+    (void)fuzz_done(run, camber_tiles_merge(run->context, &merge));
+    unlink(out);
+    for (size_t i = 0; camber_tiles_beside(out, i, beside, sizeof beside); i++)
+        REQUIRE(access(beside, F_OK) != 0);
+}
+
 /* Reading a file leaves nothing beside it. */
 static void require_alone(const char *path) {
     static const char *const tails[] = {"-journal", "-wal", "-shm"};
@@ -72,6 +100,7 @@ void fuzz_read_tiles(fuzz_run *run, const void *bytes, size_t size, const char *
     REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
     read_input(run, path);
     read_source(run, path, scheme);
+    look_at_archive(run, path);
     require_alone(path);
     unlink(path);
 }

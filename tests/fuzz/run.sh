@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes, each target for some seconds: run.sh FOLDER SECONDS [TARGET...]
 #
+# An input that takes a minute is a hang: the clock is the wall's, and tests beside it may have the processors.
+#
 # A run starts from the inputs in tests/fuzz; what it finds on top grows in FOLDER/corpus, and inputs that break
 # something land in FOLDER/broken.
 set -u
@@ -21,7 +23,7 @@ fuzz() {
     done
     [ ! -f "$here/$target.dict" ] || options+=("-dict=$here/$target.dict")
     before=$(ls "$folder/broken")
-    "$program" "$folder/corpus/$target" "${kept[@]}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    "$program" "$folder/corpus/$target" "${kept[@]}" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 \
         -malloc_limit_mb=512 -max_len=4096 -reload=0 -print_final_stats=1 -artifact_prefix="$folder/broken/$target-" \
         "${options[@]}" >"$log" 2>&1
     local status=$?

@@ -1,9 +1,9 @@
 /* line-pattern and background-pattern of styles, from sprites in a folder to pixels. */
 #include "pictures.h"
+#include "png_file.h"
 
 #include "camber_map.h"
 
-#include <png.h>
 #include <stdio.h>
 
 enum { SIDE = 256 };
@@ -30,9 +30,8 @@ static void write_sprite(const folder *f, const char *name, uint32_t scale) {
             memset(px, 255, 3);
         px[3] = 255;
     }
-    png_image image = {.version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGBA};
     snprintf(path, sizeof path, "%s/%s.png", f->path, name);
-    assert_true(png_image_write_to_file(&image, path, 0, rgba, 0, NULL));
+    assert_true(png_pixels_write(path, rgba, width, height));
     free(rgba);
     snprintf(json, sizeof json,
              "{\"a\":{\"x\":0,\"y\":0,\"width\":%u,\"height\":%u,\"pixelRatio\":%u},"

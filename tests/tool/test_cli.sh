@@ -102,6 +102,17 @@ expect 2 "input for info" info "$osm"
 expect 2 "unknown extension" render "$osm" -o a.gif
 expect 2 "png from tessellate" tessellate "$osm" -o a.png
 expect 2 "glb from render" render "$osm" -o a.glb
+expect 2 "glb by its format" render "$osm" -o a.png --format glb
+expect 2 "png8 from tessellate" tessellate "$osm" -o a.glb --format png8
+expect 2 "a WebP that is a PNG" render "$osm" -o a.webp --format png8
+expect 2 "a PNG that is a WebP" render "$osm" -o a.png --format webp
+expect 2 "the quality of a PNG" render "$osm" -o a.png --quality 80
+expect 2 "no quality" render "$osm" -o a.webp --quality 0
+expect 2 "too much quality" render "$osm" -o a.webp --quality 101
+expect 2 "a WebP that is too wide" render "$osm" -o a.webp --size 16384x10
+says '16383\|no WebP'
+expect 2 "a png8 that is too large" render "$osm" -o a.png --format png8 --size 20000x20000
+says '268435456'
 expect 2 "JSON and picture on standard output" render "$osm" -o - --json
 for size in 0x0 0x5 5x0 1000000x1000000 1000000x5 65536x5 65535x65535 5 5x 5x5x5 -5x5 axb 5x5a 99999999999x5 ''; do
     expect 2 "size '$size'" render "$osm" -o a.png --size "$size"
@@ -249,6 +260,29 @@ expect 0 "without shared buffers" render "$osm" -o - --size 300x200 --sharing co
 cmp -s "$tmp/stdout" "$tmp/in/gl.png" || fail "other bytes than with them"
 expect 0 "to standard output" render "$osm" -o - --size 300x200
 cmp -s "$tmp/stdout" "$tmp/in/city.png" || fail "other bytes than in a file"
+expect 0 "png8" render "$osm" -o few.png --size 300x200 --format png8
+is_png few.png 300 200
+has few.png PLTE "camber [0-9]"
+[ "$(stat -c %s few.png)" -lt "$(stat -c %s city.png)" ] || fail "is longer than all colours"
+expect 0 "png8 to standard output" render "$osm" -o - --size 300x200 --format png8
+cmp -s "$tmp/stdout" few.png || fail "other bytes than in a file"
+expect 0 "one colour" render "$osm" -o blank.png --size 300x200 --center 0,0 --zoom 12
+[ "$(stat -c %s blank.png)" -lt 250 ] || fail "$(stat -c %s blank.png) bytes of one colour"
+rm blank.png
+run "$tool" render "$osm" -o city.webp --size 300x200
+if grep -q 'no WebP' "$tmp/stderr"; then
+    verify 2
+else
+    name=WebP
+    verify 0
+    [ "$(head -c 4 city.webp)$(head -c 12 city.webp | tail -c 4)" = RIFFWEBP ] || fail "is no WebP"
+    expect 0 "a lossless WebP" render "$osm" -o all.WEBP --size 300x200 --quality 100
+    [ "$(stat -c %s city.webp)" -lt "$(stat -c %s all.WEBP)" ] || fail "is longer than all pixels"
+    expect 0 "WebP to standard output" render "$osm" -o - --size 300x200 --format webp
+    cmp -s "$tmp/stdout" city.webp || fail "other bytes than in a file"
+    rm city.webp all.WEBP
+fi
+rm few.png
 expect 0 "ratio" render "$osm" -o ratio.PNG --size 100x50 --ratio 2
 is_png ratio.PNG 200 100
 ln -s city.png link.png
@@ -910,6 +944,7 @@ if [ -w /dev/full ]; then
     expect 73 "a device, not forced" render "$osm" -o /dev/full --format png
     expect 74 "a full disk" render "$osm" -o /dev/full --format png -f
     [ -c /dev/full ] || fail "the device is gone"
+    expect 74 "a full disk, png8" render "$osm" -o /dev/full --format png8 -f
     expect 74 "a full disk, GLB" tessellate "$osm" -o /dev/full --format glb -f
     for words in "render $osm -o - --size 64x64" "render $osm -o a.png -f --json" "info" "info --json" "--help"; do
         run sh -c "'$tool' $words >/dev/full"

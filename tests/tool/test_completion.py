@@ -107,8 +107,8 @@ def cases():
     yield ["camber", "te"], ["tessellate"], ["render"]
     yield ["camber", "help", ""], ["render", "bench"], ["roads.gpkg"]
     yield ["camber", "render", ""], ["roads.gpkg", "two words.json"], ["render", "--size"]
-    yield ["camber", "render", "--format", ""], ["png", "glb"], ["roads.gpkg"]
-    yield ["camber", "render", "--format", "p"], ["png"], ["glb"]
+    yield ["camber", "render", "--format", ""], ["png", "png8", "webp", "glb"], ["roads.gpkg"]
+    yield ["camber", "render", "--format", "p"], ["png", "png8"], ["glb"]
     yield ["camber", "render", "roads.gpkg", "--method", ""], ["strip", "kite", "fan"], ["roads.gpkg"]
     yield ["camber", "validate", "--backend", ""], ["auto", "egl", "osmesa"], ["gl"]
     yield ["camber", "bench", "--draw", ""], ["auto", "gl", "cl"], []
@@ -135,7 +135,7 @@ def main():
         check("bash", words, has, lacks, complete_in_bash(words))
     # To bash an = is a word of its own.
     check("bash", "--format=", ["png", "glb"], ["roads.gpkg"], complete_in_bash(["camber", "render", "--format", "="]))
-    check("bash", "--format=p", ["png"], ["glb"], complete_in_bash(["camber", "render", "--format", "=", "p"]))
+    check("bash", "--format=p", ["png", "png8"], ["glb"], complete_in_bash(["camber", "render", "--format", "=", "p"]))
     check("bash", "--root", ["a_folder"], ["roads.gpkg"], complete_in_bash(["camber", "render", "--root", ""]))
     for verb in ("render", "tessellate", "compare", "validate", "bench", "info", "style"):
         wanted, found = options_of(verb), complete_in_bash(["camber", verb, "--"])

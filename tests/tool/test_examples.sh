@@ -9,7 +9,8 @@ map=$3
 folder=$(mktemp -d)
 out=${4:-$folder/pictures}
 mkdir -p "$out"
-trap 'rm -rf "$folder"' EXIT
+server=
+trap '[ -z "$server" ] || kill "$server"; rm -rf "$folder"' EXIT
 # Another test installs from the same folder; its list of files is put back.
 manifest=$build/install_manifest.txt
 [ ! -f "$manifest" ] || cp "$manifest" "$folder/manifest"
@@ -21,7 +22,7 @@ unset LD_PRELOAD
 cmake -S "$source/examples" -B "$folder/build" -G Ninja -DCMAKE_PREFIX_PATH="$folder/usr" -DCMAKE_C_FLAGS=-Werror \
     >"$folder/log" 2>&1 && cmake --build "$folder/build" >>"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
 for file in "$source"/examples/*.c; do
-    [ "$(wc -l <"$file")" -lt 80 ] || { echo "$file is too long for an example"; exit 1; }
+    [ "$(wc -l <"$file")" -le 100 ] || { echo "$file is too long for an example"; exit 1; }
 done
 
 # README.md quotes what stands in the file between its marks.
@@ -43,6 +44,26 @@ cd "$out"
 "$folder/build/hello"
 "$folder/build/validate"
 [ "$map" != ON ] || "$folder/build/map" "$source/tests/data/santa_cruz/osm.mbtiles"
+
+# A tile from the example's own server.
+ask_for_tile() {
+    local port=$((20000 + RANDOM % 20000))
+    "$folder/build/tiles" "$source/tests/data/santa_cruz/osm.mbtiles" "$port" &
+    server=$!
+    for _ in $(seq 300); do
+        ! (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null || break
+        sleep 0.1
+    done
+    exec 3<>"/dev/tcp/127.0.0.1/$port"
+    printf 'GET /12/659/1593.png HTTP/1.0\r\n\r\n' >&3
+    cat <&3 >tile.http
+    exec 3>&-
+    kill "$server"
+    wait "$server" || true
+    server=
+    head -n 1 tile.http | grep -q '200 OK' && grep -q IEND tile.http || { echo "the example tiles gives no tile"; exit 1; }
+}
+[ "$map" != ON ] || ask_for_tile
 status=0
 [ ! -x "$folder/build/texture" ] || "$folder/build/texture" || status=$?
 [ "$status" = 0 ] || [ "$status" = 77 ] || exit "$status"

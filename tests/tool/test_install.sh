@@ -131,6 +131,9 @@ fi
 for style in roads-light roads-dark openmaptiles-light openmaptiles-dark transit-light transit-dark; do
     "$folder/usr/bin/camber" style check "$folder/usr/share/camber/styles/$style.json"
 done
+for job in slurm.sh batch.sh mpirun.sh job.yaml batch.json; do
+    [ -r "$folder/usr/share/camber/cluster/$job" ] || { echo "not installed: cluster/$job"; exit 1; }
+done
 # GDAL comes with the first file, and what is wrong where it cannot come is one line.
 if ldd "$folder/usr/bin/camber" | grep libgdal; then echo "the tool links GDAL from the start"; exit 1; fi
 echo '{"type":"LineString","coordinates":[[0,0],[1,1]]}' >"$folder/line.geojson"

@@ -141,6 +141,46 @@ static void test_polylines(void **state) {
                         sizeof(double) * 2 * (499 % 7 + 1));
 }
 
+/* Thinning leaves the points that matter, the ends of lines, and the neighbours of what is no place. */
+static void test_thin(void **state) {
+    fixture *it = *state;
+    camber_features *f = it->features;
+    const camber_value none[2] = {{0}};
+    const double zigzag[] = {0.1, 0.1, 0.2, 0.101, 0.3, 0.1, 0.4, 0.2, 0.5, 0.1},
+                 gap[] = {0.1, 0.5, 0.2, 0.5, NAN, 0.5, 0.4, 0.5, 0.5, 0.5, 0.6, 0.5};
+    uint32_t layer, class_index;
+    assert_int_equal(camber_features_find_layer(f, "roads", &layer), CAMBER_OK);
+    assert_int_equal(camber_features_find_class(f, layer, CAMBER_GEOMETRY_LINE, none, &class_index), CAMBER_OK);
+    for (int i = 0; i < 100; i++) {
+        assert_int_equal(camber_features_add_feature(f, class_index), CAMBER_OK);
+        assert_int_equal(camber_features_add_polyline(f, zigzag, 5), CAMBER_OK);
+        assert_int_equal(camber_features_add_polyline(f, gap, 6), CAMBER_OK);
+    }
+    assert_int_equal(camber_features_set_importance(f, 0), CAMBER_OK);
+    for (size_t i = 0; i < f->point_count; i++) /* so that only places decide in the second line */
+        f->importance[i] = i % 11 < 5 ? f->importance[i] : 0.0f;
+    assert_int_equal(camber_features_thin(f, 0.0f), CAMBER_OK);
+    assert_int_equal(f->point_count, 1100);
+    assert_int_equal(camber_features_thin(f, 0.01f), CAMBER_OK);
+    assert_int_equal(f->point_count, 100 * (4 + 5));
+    assert_int_equal(f->point_capacity, f->point_count);
+    for (size_t p = 0; p < f->polyline_count; p++) {
+        const double *points = f->points + 2 * f->offsets[p];
+        assert_int_equal(f->offsets[p + 1] - f->offsets[p], p % 2 ? 5 : 4);
+        assert_int_equal(camber_features_whole_count(f, p), p % 2 ? 6 : 5);
+        assert_memory_equal(points, p % 2 ? gap : zigzag, 2 * sizeof *points);
+        if (p % 2)
+            assert_memory_equal(points + 2, gap + 2, 6 * sizeof *points);
+        else
+            assert_memory_equal(points + 2, zigzag + 4, 6 * sizeof *points);
+    }
+    assert_int_equal(camber_features_thin(f, 1.0f), CAMBER_OK);
+    assert_int_equal(f->point_count, 100 * (2 + 5));
+    assert_int_equal(camber_features_whole_count(f, 0), 5);
+    assert_int_equal(camber_features_add_polyline(f, zigzag, 5), CAMBER_OK);
+    assert_int_equal(f->offsets[f->polyline_count], 100 * (2 + 5) + 5);
+}
+
 /* A style without properties makes one class a layer and geometry. */
 static void test_no_properties(void **state) {
     fixture *it = *state;
@@ -157,6 +197,46 @@ static void test_no_properties(void **state) {
 }
 
 /* Each once, as plain text; what failed takes its own out again. */
+/* The box of all lines, in degrees. */
+static void test_bounds(void **state) {
+    fixture *it = *state;
+    const double lines[] = {0.5, 0.5, 0.75, 0.25}, more[] = {0.25, 0.5, 0.5, 0.375};
+    double bounds[4] = {1, 2, 3, 4};
+    uint32_t layer, class_index;
+    const camber_value values[2] = {{0}};
+    assert_false(camber_features_get_bounds(it->features, bounds));
+    assert_true(bounds[0] == 1 && bounds[3] == 4);
+    assert_int_equal(camber_features_find_layer(it->features, "roads", &layer), CAMBER_OK);
+    assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, values, &class_index),
+                     CAMBER_OK);
+    assert_int_equal(camber_features_add_feature(it->features, class_index), CAMBER_OK);
+    assert_int_equal(camber_features_add_polyline(it->features, lines, 2), CAMBER_OK);
+    assert_int_equal(camber_features_add_polyline(it->features, more, 2), CAMBER_OK);
+    assert_true(camber_features_get_bounds(it->features, bounds));
+    assert_true(bounds[0] == -90 && bounds[2] == 90 && fabs(bounds[1]) < 1e-9);
+    assert_true(fabs(bounds[3] - 66.51326) < 1e-5);
+}
+
+/* Another style that reads the same is taken; one that reads other properties is not. */
+static void test_restyle(void **state) {
+    static char *turned[] = {"bridge", "highway"};
+    fixture *it = *state;
+    struct camber_style same = it->style, order = it->style, fewer = it->style, directed = it->style,
+                        pictured = it->style;
+    order.properties = turned;
+    fewer.property_count = 1;
+    directed.directed = true;
+    pictured.sprite_count = 1;
+    const struct camber_style *const others[] = {&order, &fewer, &directed, &pictured};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        assert_int_equal(camber_features_restyle(it->features, others[i]), CAMBER_ERROR_ARGUMENT);
+        assert_ptr_equal(it->features->style, &it->style);
+    }
+    assert_int_equal(camber_features_restyle(it->features, &same), CAMBER_OK);
+    assert_ptr_equal(it->features->style, &same);
+    assert_int_equal(camber_features_restyle(it->features, &it->style), CAMBER_OK);
+}
+
 static void test_attribution(void **state) {
     fixture *it = *state;
     camber_features *set = it->features;
@@ -234,7 +314,10 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_strings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_classes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_polylines, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_thin, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_no_properties, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_bounds, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_restyle, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_attribution, set_up, tear_down),
         cmocka_unit_test(test_out_of_memory),
     };

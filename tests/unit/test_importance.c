@@ -206,6 +206,40 @@ static void test_shared_nodes(void **state) {
     }
 }
 
+/* So many points that nodes are found share by share: a long line, and short ones that end at some of its points. */
+static void test_many_nodes(void **state) {
+    enum { LONG = 9000000, EACH = 1000, SHORT = LONG / EACH };
+    const size_t total = LONG + 2 * SHORT;
+    double *points = malloc(2 * total * sizeof *points);
+    float *importance = malloc(total * sizeof *importance);
+    size_t *offsets = malloc((SHORT + 2) * sizeof *offsets);
+    host h;
+    camber_context *context = host_context(&h);
+    (void)state;
+    assert_true(points && importance && offsets);
+    for (size_t i = 0; i < LONG; i++) {
+        points[2 * i] = (double)i;
+        points[2 * i + 1] = (double)(i % 2);
+    }
+    offsets[0] = 0;
+    for (size_t k = 0; k < SHORT; k++) {
+        const size_t at = LONG + 2 * k;
+        offsets[k + 1] = at;
+        memcpy(points + 2 * at, points + 2 * (k * EACH + 500), 2 * sizeof *points);
+        points[2 * at + 2] = (double)k;
+        points[2 * at + 3] = -5.0;
+    }
+    offsets[SHORT + 1] = total;
+    assert_int_equal(camber_importance_weigh(context, points, offsets, SHORT + 1, importance), CAMBER_OK);
+    for (size_t i = 1; i < LONG - 1; i++)
+        if (isinf(importance[i]) != (i % EACH == 500))
+            fail_msg("point %zu: %g", i, (double)importance[i]);
+    host_done(&h, context);
+    free(offsets);
+    free(importance);
+    free(points);
+}
+
 /* Offsets that do not begin at 0: what lies before is left alone. */
 static void test_part_of_a_set(void **state) {
     (void)state;
@@ -278,10 +312,15 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_brute_force),   cmocka_unit_test(test_known_lines),
-        cmocka_unit_test(test_rings),         cmocka_unit_test(test_shared_nodes),
-        cmocka_unit_test(test_part_of_a_set), cmocka_unit_test(test_worst_case_is_bounded),
-        cmocka_unit_test(test_not_numbers),   cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_brute_force),
+        cmocka_unit_test(test_known_lines),
+        cmocka_unit_test(test_rings),
+        cmocka_unit_test(test_shared_nodes),
+        cmocka_unit_test(test_many_nodes),
+        cmocka_unit_test(test_part_of_a_set),
+        cmocka_unit_test(test_worst_case_is_bounded),
+        cmocka_unit_test(test_not_numbers),
+        cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,6 @@
 /* PNG: what is written, read back by libpng and chunk by chunk. */
 #include "core.h"
-
-#include <png.h>
+#include "png_file.h"
 
 static const camber_png_text TEXTS[] = {
     {"Software", "camber"},
@@ -24,17 +23,13 @@ static byte_list write_png(camber_context *context, const camber_png_desc *desc,
 
 /* The pixels as RGBA, straight, by libpng's own reader. */
 static uint8_t *read_png(const byte_list *file, uint32_t width, uint32_t height, bool alpha) {
-    png_image image = {.version = PNG_IMAGE_VERSION};
-    assert_true(png_image_begin_read_from_memory(&image, file->bytes, file->size));
-    assert_int_equal(image.width, width);
-    assert_int_equal(image.height, height);
-    assert_int_equal(image.format, alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB);
-    image.format = PNG_FORMAT_RGBA;
-    uint8_t *rgba = malloc(PNG_IMAGE_SIZE(image));
-    assert_non_null(rgba);
-    assert_true(png_image_finish_read(&image, NULL, rgba, 0, NULL));
-    assert_int_equal(image.warning_or_error, 0);
-    return rgba;
+    const png_pixels read = png_pixels_decode(file->bytes, file->size);
+    assert_non_null(read.rgba);
+    assert_false(read.warned);
+    assert_int_equal(read.width, width);
+    assert_int_equal(read.height, height);
+    assert_true(read.alpha == alpha);
+    return read.rgba;
 }
 
 /* Every premultiplied pair of a channel and an alpha: straight = round(255 * channel / alpha). */
@@ -88,7 +83,7 @@ static void test_opaque_is_rgb(void **state) {
                 const camber_png_desc desc = {
                     .width = WIDTH, .height = HEIGHT, .opaque = opaque, .compression = compression};
                 byte_list file = write_png(context, &desc, rgba, rows);
-                uint8_t *back = read_png(&file, WIDTH, HEIGHT, !opaque);
+                uint8_t *back = read_png(&file, WIDTH, HEIGHT, false); /* no pixel needs an alpha */
                 assert_memory_equal(back, rgba, sizeof rgba);
                 free(back);
                 free(file.bytes);
@@ -236,10 +231,101 @@ static void test_sink_refuses(void **state) {
     host_done(&h, context);
 }
 
+/* Pictures beyond 2^22 px are written as they come. */
+enum { STREAM_WIDTH = 65535, STREAM_HEIGHT = 65 };
+
+static uint8_t *make_stream_rows(bool translucent) {
+    uint8_t *rgba = malloc(4 * (size_t)STREAM_WIDTH * STREAM_HEIGHT);
+    uint64_t seed = 11;
+    assert_non_null(rgba);
+    for (size_t i = 0; i < (size_t)STREAM_WIDTH * STREAM_HEIGHT; i++) {
+        const uint8_t level = i % 997 == 0 ? (uint8_t)camber_random_bits(&seed) : (uint8_t)(i >> 12);
+        memcpy(rgba + 4 * i, (const uint8_t[4]){level, level, level, translucent ? level : 255}, 4);
+    }
+    return rgba;
+}
+
+static void test_stream(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    for (int opaque = 0; opaque < 2; opaque++) {
+        uint8_t *rgba = make_stream_rows(!opaque);
+        const camber_png_desc desc = {
+            .width = STREAM_WIDTH, .height = STREAM_HEIGHT, .opaque = opaque, .texts = TEXTS, .text_count = 2};
+        byte_list file = write_png(context, &desc, rgba, 7);
+        uint8_t *back = read_png(&file, STREAM_WIDTH, STREAM_HEIGHT, !opaque);
+        for (size_t i = 0; i < (size_t)STREAM_WIDTH * STREAM_HEIGHT; i++) {
+            const uint8_t *given = rgba + 4 * i, straight = given[3] ? 255 : 0;
+            const uint8_t expected[4] = {straight, straight, straight, given[3]};
+            assert_memory_equal(back + 4 * i, opaque ? given : expected, 4);
+        }
+        free(back);
+        free(file.bytes);
+        free(rgba);
+    }
+    host_done(&h, context);
+}
+
+static void test_stream_refused(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    uint8_t *rgba = make_stream_rows(false);
+    const camber_png_desc desc = {.width = STREAM_WIDTH, .height = STREAM_HEIGHT, .opaque = true};
+    byte_list whole = write_png(context, &desc, rgba, STREAM_HEIGHT);
+    for (size_t at = 0; at < whole.size; at += at < 60 ? 11 : at + 60 > whole.size ? 5 : whole.size / 7) {
+        byte_list file = {.refuse_at = at};
+        camber_png *png = NULL;
+        camber_status status = camber_png_create(context, &desc, (camber_sink){byte_list_write, &file}, &png);
+        if (status == CAMBER_OK)
+            status = camber_png_write_rows(png, rgba, STREAM_HEIGHT);
+        if (status == CAMBER_OK)
+            status = camber_png_finish(png);
+        assert_int_equal(status, CAMBER_ERROR_IO);
+        if (png)
+            assert_int_equal(camber_png_finish(png), CAMBER_ERROR_IO);
+        camber_png_destroy(png);
+        assert_true(file.size <= at);
+        assert_int_equal(h.errors, 0);
+        free(file.bytes);
+    }
+    free(whole.bytes);
+    free(rgba);
+    host_done(&h, context);
+}
+
+static camber_status try_stream(camber_context *context, void *user) {
+    const camber_png_desc desc = {.width = STREAM_WIDTH, .height = STREAM_HEIGHT, .opaque = true};
+    byte_list file = {.refuse_at = SIZE_MAX};
+    camber_png *png = NULL;
+    camber_status status = camber_png_create(context, &desc, (camber_sink){byte_list_write, &file}, &png);
+    if (status == CAMBER_OK)
+        status = camber_png_write_rows(png, user, STREAM_HEIGHT);
+    if (status == CAMBER_OK)
+        status = camber_png_finish(png);
+    camber_png_destroy(png);
+    free(file.bytes);
+    return status;
+}
+
+static void test_stream_memory(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    uint8_t *rgba = make_stream_rows(false);
+    each_allocation_fails(&h, try_stream, context, rgba);
+    free(rgba);
+    host_done(&h, context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_unpremultiply), cmocka_unit_test(test_opaque_is_rgb), cmocka_unit_test(test_chunks),
-        cmocka_unit_test(test_arguments),     cmocka_unit_test(test_row_counts),    cmocka_unit_test(test_sink_refuses),
+        cmocka_unit_test(test_stream),        cmocka_unit_test(test_stream_refused),
+        cmocka_unit_test(test_stream_memory), cmocka_unit_test(test_unpremultiply),
+        cmocka_unit_test(test_opaque_is_rgb), cmocka_unit_test(test_chunks),
+        cmocka_unit_test(test_arguments),     cmocka_unit_test(test_row_counts),
+        cmocka_unit_test(test_sink_refuses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -346,8 +346,77 @@ static void test_hostile_input(void **state) {
     host_done(&h, context);
 }
 
+enum { MANY = 4000, MANY_POINTS = 9 * MANY };
+
+/* Lines that begin where the one before ends, or repeat a point, or have an invalid one; most have none of it. */
+static size_t make_many(float *points, uint32_t *offsets, uint32_t *rows) {
+    uint32_t state = 1;
+    size_t count = 0;
+    for (size_t i = 0; i < MANY; i++) {
+        offsets[i] = (uint32_t)count;
+        rows[i] = (uint32_t)(i / 700);
+        state = state * 1664525u + 1013904223u;
+        const size_t points_here = 1 + (state >> 24) % 9, odd = (state >> 16) % 500;
+        for (size_t k = 0; k < points_here; k++, count++) {
+            const bool is_again = count > 0 && ((k == 0 && i % 3 == 0) || (odd == 0 && k == 1));
+            points[2 * count] = is_again ? points[2 * count - 2] : odd == 1 && k == 2 ? NAN : (float)(count % 1000);
+            points[2 * count + 1] = is_again ? points[2 * count - 1] : (float)(count % 777);
+        }
+    }
+    offsets[MANY] = (uint32_t)count;
+    return count;
+}
+
+/* Cleans an open line point by point. Gives how many slots. */
+static size_t clean(const float *points, size_t count, uint32_t row, slot *slots) {
+    size_t made = 0;
+    bool begins = true;
+    for (size_t i = 0; i < count; i++) {
+        const float x = points[2 * i], y = points[2 * i + 1];
+        if (!(fabsf(x) <= 1e9f && fabsf(y) <= 1e9f)) {
+            begins = true;
+            continue;
+        }
+        if (!begins && x == slots[made - 1].x && y == slots[made - 1].y)
+            continue;
+        if (!begins)
+            slots[made - 1].info &= ~CAMBER_POINT_LAST;
+        slots[made++] = (slot){x, y, row << CAMBER_POINT_ROW_SHIFT | LAST | (begins ? CAMBER_POINT_FIRST : 0u)};
+        begins = false;
+    }
+    return made;
+}
+
+/* Lines are put in bundles where all their points are plain, and one by one elsewhere: nobody can tell. */
+static void test_many(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    static float points[2 * MANY_POINTS];
+    static uint32_t offsets[MANY + 1], rows[MANY], starts[MANY];
+    static slot wanted[MANY_POINTS];
+    const size_t count = make_many(points, offsets, rows);
+    size_t slots = 0;
+    for (size_t i = 0; i < MANY; i++) {
+        starts[i] = (uint32_t)slots;
+        slots += clean(points + 2 * offsets[i], offsets[i + 1] - offsets[i], rows[i], wanted + slots);
+    }
+    for (int open = 0; open < 2; open++) {
+        camber_polylines *p = make(context, &(camber_polylines_desc){points, count, offsets, MANY, rows, open == 1});
+        assert_slots(p, wanted, slots);
+        assert_memory_equal(p->first_slots, starts, sizeof starts);
+        assert_memory_equal(p->polyline_rows, rows, sizeof rows);
+        const camber_polylines_stats s = camber_polylines_get_stats(p);
+        assert_int_equal(s.kept_points, slots);
+        assert_true(s.repeated_points > 0 && s.invalid_points > 0 && s.dots > 0);
+        camber_polylines_destroy(p);
+    }
+    host_done(&h, context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_many),
         cmocka_unit_test(test_plain),
         cmocka_unit_test(test_repeated_points),
         cmocka_unit_test(test_invalid_points_split),

@@ -1,4 +1,6 @@
 /* Reading files: real ones against counts made by other programs, small ones written here, and bad ones. */
+#include "file_reading.h"
+
 #include "gdal/vector_file.h"
 #include "source/mercator.h"
 
@@ -6,99 +8,26 @@
 
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <cmocka.h>
 
 static char *properties[] = {"highway", "type", "MTFCC", "bridge", "tunnel", "layer", CAMBER_PLAIN_PROPERTY};
 enum { HIGHWAY, TYPE, MTFCC, BRIDGE, TUNNEL, LAYER, PLAIN, PROPERTIES };
 
-typedef struct fixture {
-    camber_context *context;
-    struct camber_style style;
-    camber_features *features;
-    size_t errors, warnings;
-    char error[1024];
-    bool keep_apart;
-    char folder[64], path[128];
-} fixture;
-
-static void take_log(void *user, camber_log_level level, const char *message) {
-    fixture *it = user;
-    it->errors += level == CAMBER_LOG_ERROR;
-    it->warnings += level == CAMBER_LOG_WARNING;
-    if (level == CAMBER_LOG_ERROR)
-        snprintf(it->error, sizeof it->error, "%s", message);
-    assert_null(strchr(message, '\n'));
-}
+typedef file_reading fixture;
 
 static int set_up(void **state) {
     fixture *it = calloc(1, sizeof *it);
     assert_non_null(it);
-    const camber_context_desc desc = {.log = take_log, .log_user = it};
-    assert_int_equal(camber_context_create(&desc, &it->context), CAMBER_OK);
-    it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = PROPERTIES};
-    assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
-    snprintf(it->folder, sizeof it->folder, "/tmp/camber-test-XXXXXX");
-    assert_non_null(mkdtemp(it->folder));
+    reading_start(it, properties, PROPERTIES);
     *state = it;
     return 0;
 }
 
 static int tear_down(void **state) {
     fixture *it = *state;
-    DIR *folder = opendir(it->folder);
-    for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s", it->folder, entry->d_name);
-        if (entry->d_name[0] != '.' && unlink(path) != 0)
-            rmdir(path);
-    }
-    if (folder)
-        closedir(folder);
-    rmdir(it->folder);
-    camber_features_destroy(it->features);
-    camber_context_destroy(it->context);
+    reading_end(it);
     free(it);
     return 0;
-}
-
-static void start_again(fixture *it) {
-    camber_features_destroy(it->features);
-    assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
-    it->errors = it->warnings = 0;
-    it->error[0] = 0;
-}
-
-static const char *in_folder(fixture *it, const char *name) {
-    snprintf(it->path, sizeof it->path, "%s/%s", it->folder, name);
-    return it->path;
-}
-
-static const char *write_file(fixture *it, const char *name, const void *bytes, size_t size) {
-    FILE *file = fopen(in_folder(it, name), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-    return it->path;
-}
-
-static camber_status read_path(fixture *it, const char *path) {
-    const camber_source_desc desc = {.path = path, .keep_apart = it->keep_apart};
-    return camber_features_read(it->features, &desc);
-}
-
-static void expect_ok(const fixture *it, camber_status status) {
-    if (status != CAMBER_OK)
-        fail_msg("%s: %s", camber_status_get_name(status), it->error);
 }
 
 /* Reads a GeoJSON of one geometry into an empty set. */

@@ -501,6 +501,28 @@ static void test_simplification(void **state) {
     close_town(&t);
 }
 
+/* Counts outlive the lines that were counted. */
+static void test_released_lines(void **state) {
+    (void)state;
+    town t;
+    open_town(&t, ALL);
+    add_px(&t, add_class(&t, "a", 0), (const double[]){100, 100, 200, 120, 300, 100}, 3);
+    camber_scene *scene = make_scene(&t, WORLD);
+    const camber_scene_info before = camber_scene_get_info(scene);
+    camber_scene_release_lines(scene);
+    const camber_scene_info after = camber_scene_get_info(scene);
+    assert_int_equal(after.layers, 1);
+    assert_int_equal(after.features, 1);
+    assert_int_equal(after.polylines, before.polylines);
+    assert_int_equal(after.points, 3);
+    assert_int_equal(after.points_in, 3);
+    /* They come again when they are asked for. */
+    assert_int_equal(camber_scene_project(scene), CAMBER_OK);
+    assert_int_equal(camber_scene_get_lines(scene)->point_count, 3);
+    camber_scene_destroy(scene);
+    close_town(&t);
+}
+
 /* ---- Fitted views ---- */
 
 static void test_fit_is_to_what_is_drawn(void **state) {
@@ -648,6 +670,7 @@ int main(void) {
         cmocka_unit_test(test_antimeridian),
         cmocka_unit_test(test_no_jitter_at_zoom_22),
         cmocka_unit_test(test_simplification),
+        cmocka_unit_test(test_released_lines),
         cmocka_unit_test(test_fit_is_to_what_is_drawn),
         cmocka_unit_test(test_fit_follows_the_zoom),
         cmocka_unit_test(test_nothing_to_draw),

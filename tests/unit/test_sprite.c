@@ -1,9 +1,8 @@
 /* Sprites: what their sheets and indices hold, and those that lie about it. */
 #include "core.h"
+#include "png_file.h"
 
 #include "source/sprite.h"
-
-#include <png.h>
 
 typedef struct desk {
     host h;
@@ -34,9 +33,8 @@ static void write_sheet(const desk *d, const char *name, uint32_t side) {
                              : "\x40\x40\x40\x00",
                4);
     }
-    png_image image = {.version = PNG_IMAGE_VERSION, .width = 3 * side, .height = side, .format = PNG_FORMAT_RGBA};
     snprintf(path, sizeof path, "%s/%s", d->folder, name);
-    assert_true(png_image_write_to_file(&image, path, 0, rgba, 0, NULL));
+    assert_true(png_pixels_write(path, rgba, 3 * side, side));
     free(rgba);
 }
 

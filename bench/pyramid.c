@@ -1,0 +1,225 @@
+/* Lines of a city in three classes, as a style of camber's, as GeoJSON that Mapnik keeps in memory, and as shapefiles
+ * with an index for renderd, whose Mapnik is older. */
+#define _XOPEN_SOURCE 700 /* mkdtemp */
+
+#include "pyramid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAJOR "'motorway','trunk','primary','motorway_link','trunk_link','primary_link'"
+#define MIDDLE "'secondary','tertiary','secondary_link','tertiary_link'"
+
+enum { FIRST_ZOOM = 10, ZOOMS = 7 }; /* 10 to 16 */
+
+/* From the lowest on: as a road map has them, a casing below all fills, both wider at higher zooms. */
+static const struct {
+    const char *name, *where, *color, *casing;
+    double width_px[ZOOMS];
+} classes[] = {
+    {"minor",
+     "highway IS NOT NULL AND highway NOT IN (" MAJOR "," MIDDLE ")",
+     "#ffffff",
+     "#c0b6a5",
+     {0.5, 0.6, 0.8, 1.1, 1.7, 2.8, 5}},
+    {"middle", "highway IN (" MIDDLE ")", "#fbe3a4", "#d0ac5e", {1, 1.2, 1.6, 2.1, 3, 4.4, 7.5}},
+    {"major", "highway IN (" MAJOR ")", "#f6c177", "#c98a42", {1.3, 1.6, 2.1, 2.7, 3.8, 5.5, 9}},
+};
+static const double casing_px[ZOOMS] = {0.4, 0.5, 0.6, 0.8, 1.1, 1.4, 1.8};
+enum { CLASSES = sizeof classes / sizeof *classes, LAYERS = 2 * CLASSES, COMMAND_SIZE = 4096 };
+#define BACKGROUND "#f6f2ea"
+
+/* Layers from the lowest on: the casings of all classes, then their fills. */
+static double width_at(size_t layer, size_t zoom) {
+    return classes[layer % CLASSES].width_px[zoom] + (layer < CLASSES ? casing_px[zoom] : 0);
+}
+
+static const char *color_of(size_t layer) {
+    return layer < CLASSES ? classes[layer].casing : classes[layer % CLASSES].color;
+}
+
+/* ["motorway", ...] of SQL's list. */
+static void add_names(json_t *array, const char *sql) {
+    char names[512];
+    snprintf(names, sizeof names, "%s", sql);
+    for (char *name = strtok(names, "',"); name; name = strtok(NULL, "',"))
+        json_array_append_new(array, json_string(name));
+}
+
+static json_t *make_filter(size_t at) {
+    json_t *names = json_array();
+    if (at != 1)
+        add_names(names, MAJOR);
+    if (at != 2)
+        add_names(names, MIDDLE);
+    json_t *match = json_pack("[s, [s, s], o, b, b]", "match", "get", "highway", names, at != 0, at == 0);
+    return json_pack("[s, [s, s], o]", "all", "has", "highway", match);
+}
+
+/* Steps between a style's zooms: a tile of 256 px has one more. */
+static json_t *make_widths(size_t layer) {
+    json_t *step = json_pack("[s, [s], f]", "step", "zoom", width_at(layer, 0));
+    for (size_t zoom = 1; zoom < ZOOMS; zoom++) {
+        json_array_append_new(step, json_real(FIRST_ZOOM + (double)zoom - 1.5));
+        json_array_append_new(step, json_real(width_at(layer, zoom)));
+    }
+    return step;
+}
+
+static bool write_style(const bench_pyramid *p) {
+    json_t *layers = json_pack("[{s:s, s:s, s:{s:s}}]", "id", "ground", "type", "background", "paint",
+                               "background-color", BACKGROUND);
+    for (size_t i = 0; i < LAYERS; i++) {
+        char id[64];
+        snprintf(id, sizeof id, "%s %s", classes[i % CLASSES].name, i < CLASSES ? "casing" : "fill");
+        json_array_append_new(layers,
+                              json_pack("{s:s, s:s, s:o, s:{s:s, s:s}, s:{s:s, s:o}}", "id", id, "type", "line",
+                                        "filter", make_filter(i % CLASSES), "layout", "line-join", "round", "line-cap",
+                                        "round", "paint", "line-color", color_of(i), "line-width", make_widths(i)));
+    }
+    json_t *style = json_pack("{s:i, s:{}, s:o}", "version", 8, "sources", "layers", layers);
+    const bool written = json_dump_file(style, p->style, JSON_INDENT(1)) == 0;
+    json_decref(style);
+    return written;
+}
+
+bool bench_pyramid_open(bench_pyramid *p) {
+    snprintf(p->folder, sizeof p->folder, "/tmp/camber_bench.XXXXXX");
+    if (!mkdtemp(p->folder))
+        return false;
+    snprintf(p->style, sizeof p->style, "%s/lines.json", p->folder);
+    return write_style(p);
+}
+
+void bench_pyramid_close(const bench_pyramid *p) {
+    const char *const arguments[] = {"rm", "-r", p->folder, NULL};
+    free(bench_child_run(arguments, NULL, NULL).output);
+}
+
+/* ---- Runs ---- */
+
+json_t *bench_pyramid_draw(const bench *b, const bench_pyramid *p, const char *name, const char *const *options) {
+    char output[128], low[16], high[16];
+    const char *arguments[32] = {b->tool,      "tiles",  p->city,         "-o",     output,       "-f",
+                                 "-q",         "--json", "--style",       p->style, "--min-zoom", low,
+                                 "--max-zoom", high,     "--attribution", ""};
+    size_t count = 16;
+    snprintf(output, sizeof output, "%s/%s", p->folder, name);
+    snprintf(low, sizeof low, "%d", p->min_zoom);
+    snprintf(high, sizeof high, "%d", p->max_zoom);
+    while (*options && count < sizeof arguments / sizeof *arguments - 1)
+        arguments[count++] = *options++;
+    const bench_child child = bench_child_run(arguments, NULL, NULL);
+    json_t *said = child.output ? json_loads(child.output, 0, NULL) : NULL;
+    free(child.output);
+    if (child.status != 0 || !said) {
+        fprintf(stderr, "camber tiles %s: exit status %d\n", output, child.status);
+        json_decref(said);
+        return NULL;
+    }
+    json_object_set_new(said, "wall_ms", json_real(child.wall_ms));
+    return said;
+}
+
+double bench_pyramid_shell(const bench_pyramid *p, const char *command) {
+    char whole[COMMAND_SIZE + 128];
+    snprintf(whole, sizeof whole, "cd %s && { %s; }", p->folder, command);
+    const char *const arguments[] = {"sh", "-c", whole, NULL};
+    const bench_child child = bench_child_run(arguments, NULL, NULL);
+    free(child.output);
+    return child.status == 0 ? child.wall_ms : -1;
+}
+
+/* ---- Peers ---- */
+
+/* A rule for each zoom, whose scale lies within its bounds. */
+static void write_rules(size_t layer, FILE *file) {
+    const double world = 559082264.028; /* scale denominator of zoom 0 with tiles of 256 px */
+    for (size_t zoom = 0; zoom < ZOOMS; zoom++) {
+        const double scale = world / (double)(1 << (FIRST_ZOOM + zoom));
+        fprintf(file,
+                "<Rule><MinScaleDenominator>%.0f</MinScaleDenominator><MaxScaleDenominator>%.0f</MaxScaleDenominator>"
+                "<LineSymbolizer stroke=\"%s\" stroke-width=\"%g\" stroke-linejoin=\"round\" "
+                "stroke-linecap=\"round\"/></Rule>\n",
+                0.7 * scale, 1.4 * scale, color_of(layer), width_at(layer, zoom));
+    }
+}
+
+static bool write_map(const bench_pyramid *p, const char *type) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s.xml", p->folder, type);
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return false;
+    fprintf(file, "<Map srs=\"epsg:3857\" background-color=\"" BACKGROUND "\">\n");
+    for (size_t i = 0; i < LAYERS; i++) {
+        fprintf(file, "<Style name=\"%zu\">", i);
+        write_rules(i, file);
+        fprintf(file,
+                "</Style>\n<Layer name=\"%zu\" srs=\"epsg:3857\"><StyleName>%zu</StyleName><Datasource>"
+                "<Parameter name=\"type\">%s</Parameter><Parameter name=\"file\">%s/%s.%s</Parameter>"
+                "</Datasource></Layer>\n",
+                i, i, type, p->folder, classes[i % CLASSES].name, strcmp(type, "shape") == 0 ? "shp" : type);
+    }
+    fprintf(file, "</Map>\n");
+    return fclose(file) == 0;
+}
+
+bool bench_pyramid_write_maps(const bench_pyramid *p) {
+    for (size_t i = 0; i < CLASSES; i++) {
+        char command[COMMAND_SIZE];
+        snprintf(command, sizeof command,
+                 "ogr2ogr -q -f GeoJSON %s.geojson %s lines -where \"%s\" -select highway -t_srs EPSG:3857 "
+                 "-lco COORDINATE_PRECISION=2 2>ogr.log && ogr2ogr -q %s.shp %s.geojson 2>ogr.log && "
+                 "{ ! command -v shapeindex || shapeindex %s.shp 2>index.log; }",
+                 classes[i].name, p->city, classes[i].where, classes[i].name, classes[i].name, classes[i].name);
+        if (bench_pyramid_shell(p, command) < 0)
+            return false;
+    }
+    return write_map(p, "geojson") && write_map(p, "shape");
+}
+
+static json_t *run_peer(const char *const *arguments, const char *input) {
+    const bench_child child = bench_child_run(arguments, NULL, input);
+    json_t *said = child.status == 0 && child.output ? json_loads(child.output, 0, NULL) : NULL;
+    free(child.output);
+    return said;
+}
+
+json_t *bench_pyramid_mapnik(const bench_pyramid *p, const char *format) {
+    char xml[128], box[128], low[16], high[16];
+    static const char program[] = CAMBER_BENCH_PEERS "/mapnik_tiles.mjs";
+    const char *const arguments[] = {"node", program, xml, box, low, high, format, NULL};
+    snprintf(xml, sizeof xml, "%s/geojson.xml", p->folder);
+    snprintf(box, sizeof box, "%.7f,%.7f,%.7f,%.7f", p->box[0], p->box[1], p->box[2], p->box[3]);
+    snprintf(low, sizeof low, "%d", p->min_zoom);
+    snprintf(high, sizeof high, "%d", p->max_zoom);
+    setenv("NODE_PATH", CAMBER_BENCH_NPM, 1);
+    return run_peer(arguments, NULL);
+}
+
+/* The tile that a place lies in. */
+static int tile_of(double share, int zoom) {
+    const int last = (1 << zoom) - 1, tile = (int)floor(share * (1 << zoom));
+    return tile < 0 ? 0 : tile > last ? last : tile;
+}
+
+static double share_of_latitude(double latitude) {
+    const double pi = 3.14159265358979323846;
+    return (1 - asinh(tan(latitude * pi / 180)) / pi) / 2;
+}
+
+json_t *bench_pyramid_renderd(const bench_pyramid *p, const char *format) {
+    char xml[128], ranges[2048];
+    size_t used = 0;
+    static const char program[] = CAMBER_BENCH_PEERS "/renderd_tiles.sh";
+    const char *const arguments[] = {"sh", program, p->folder, xml, format, NULL};
+    snprintf(xml, sizeof xml, "%s/shape.xml", p->folder);
+    for (int zoom = p->min_zoom; zoom <= p->max_zoom; zoom++)
+        used +=
+            (size_t)snprintf(ranges + used, sizeof ranges - used, "%d %d %d %d %d\n", zoom,
+                             tile_of((p->box[0] + 180) / 360, zoom), tile_of((p->box[2] + 180) / 360, zoom),
+                             tile_of(share_of_latitude(p->box[3]), zoom), tile_of(share_of_latitude(p->box[1]), zoom));
+    return run_peer(arguments, ranges);
+}

@@ -1,0 +1,136 @@
+/* The vectors that the rasterizer computes with: types and conversions that depend on how many lanes a vector has.
+ *
+ * CAMBER_LANES is 1 in C and in shaders, as the twin takes one segment or pixel at a time. On a device it is 8 or 16 (4
+ * works, too): its build says so. A formula over camber_real, camber_words and camber_mask has the same bits in each
+ * lane, whatever their number. Where a formula takes lanes together, as the largest of them, it has to say whose they
+ * are. */
+#ifndef CAMBER_KERNELS_LANES_H
+#define CAMBER_KERNELS_LANES_H
+
+#include "layout.h"
+
+#ifdef CAMBER_DEVICE
+
+#ifndef CAMBER_LANES
+#define CAMBER_LANES 16
+#endif
+
+/* The name of a vector type or of its conversion: CAMBER_OF_LANES(float) is float16 where there are 16 lanes. */
+#define CAMBER_PASTE_LANES(name, lanes) name##lanes
+#define CAMBER_PASTED_LANES(name, lanes) CAMBER_PASTE_LANES(name, lanes)
+#define CAMBER_OF_LANES(name) CAMBER_PASTED_LANES(name, CAMBER_LANES)
+
+typedef CAMBER_OF_LANES(float) camber_real;
+typedef CAMBER_OF_LANES(uint) camber_words;
+typedef CAMBER_OF_LANES(int) camber_mask; /* all bits of a lane, or none */
+typedef CAMBER_OF_LANES(ulong) camber_long_words;
+
+#define CAMBER_TO_REAL(x) CAMBER_OF_LANES(convert_float)(x) /* of words or of integers */
+#define CAMBER_TO_WORDS(x) CAMBER_OF_LANES(convert_uint)(x) /* of reals from 0 on, cut to whole numbers */
+#define CAMBER_TO_INTEGERS(x) CAMBER_OF_LANES(convert_int)(x)
+#define CAMBER_TO_LONG_WORDS(x) CAMBER_OF_LANES(convert_ulong)(x)
+#define CAMBER_AS_REAL(x) CAMBER_OF_LANES(as_float)(x)
+#define CAMBER_AS_WORDS(x) CAMBER_OF_LANES(as_uint)(x)
+#define CAMBER_AS_INTEGERS(x) CAMBER_OF_LANES(as_int)(x)
+#define CAMBER_LOAD(at, from) CAMBER_OF_LANES(vload)(at, from)
+#define CAMBER_STORE(vector, at, to) CAMBER_OF_LANES(vstore)(vector, at, to)
+#define CAMBER_ANY(mask) any(mask)
+#define CAMBER_ALL(mask) all(mask)
+#define CAMBER_BITS(x) as_uint(x) /* of one float */
+#define CAMBER_ALL_LANES(flag) ((camber_mask)((flag) ? -1 : 0))
+
+#elif defined(CAMBER_GLSL)
+
+#define CAMBER_LANES 1
+#define camber_real float
+#define camber_words uint
+#define camber_mask bool
+#define CAMBER_REAL(x) float(x)
+#define CAMBER_WORD(x) uint(x)
+#define CAMBER_TO_REAL(x) float(x)
+#define CAMBER_TO_INTEGERS(x) int(x)
+#define CAMBER_AS_INTEGERS(x) int(x)
+#define CAMBER_ALL_LANES(flag) (flag)
+#define CAMBER_MORE(a, b) max(a, b)
+#define CAMBER_LESS(a, b) min(a, b)
+#define CAMBER_COLOR(color) inout float color[4]
+
+#else
+
+#undef CAMBER_LANES
+#define CAMBER_LANES 1
+
+typedef float camber_real;
+typedef camber_u32 camber_words;
+typedef int camber_mask; /* 1 or 0 */
+
+CAMBER_FN camber_u32 camber_bits_of(float value) {
+    union {
+        float value;
+        camber_u32 bits;
+    } word = {value};
+    return word.bits;
+}
+
+CAMBER_FN float camber_float_of(camber_u32 bits) {
+    union {
+        camber_u32 bits;
+        float value;
+    } word = {bits};
+    return word.value;
+}
+
+#define CAMBER_TO_REAL(x) ((float)(x))
+#define CAMBER_TO_WORDS(x) ((camber_u32)(x))
+#define CAMBER_TO_INTEGERS(x) ((camber_i32)(x))
+#define CAMBER_AS_REAL(x) camber_float_of(x)
+#define CAMBER_AS_WORDS(x) camber_bits_of(x)
+#define CAMBER_AS_INTEGERS(x) ((camber_i32)(x))
+#define CAMBER_LOAD(at, from) ((from)[at])
+#define CAMBER_STORE(vector, at, to) ((void)((to)[at] = (vector)))
+#define CAMBER_ANY(mask) ((mask) != 0)
+#define CAMBER_ALL(mask) ((mask) != 0)
+#define CAMBER_BITS(x) camber_bits_of(x)
+#define CAMBER_ALL_LANES(flag) ((flag) != 0)
+
+#endif
+
+#ifndef CAMBER_GLSL
+#define CAMBER_REAL(x) ((camber_real)(x))
+#define CAMBER_WORD(x) ((camber_words)(x))
+#define CAMBER_MORE(a, b) ((a) > (b) ? (a) : (b))
+#define CAMBER_LESS(a, b) ((a) < (b) ? (a) : (b))
+#define CAMBER_COLOR(color) camber_real color[4]
+#endif
+#define CAMBER_TRUNCATE(x) CAMBER_TO_REAL(CAMBER_TO_INTEGERS(x))
+/* The low 16 bits of join words, as numbers with a sign. */
+#define CAMBER_TURNS(joins) CAMBER_TO_REAL(CAMBER_AS_INTEGERS((joins) << 16) >> 16)
+
+/* The largest of a vector's lanes: of reals, and of integers. */
+#if CAMBER_LANES == 1
+CAMBER_FN float camber_most_of(camber_real x) {
+    return x;
+}
+#else
+#if CAMBER_LANES == 16
+#define CAMBER_FOLD_LANES(x) CAMBER_MORE((x).lo, (x).hi)
+#else
+#define CAMBER_FOLD_LANES(x) (x)
+#endif
+
+CAMBER_FN float camber_most_of(camber_real x) {
+    const float8 eight = CAMBER_FOLD_LANES(x);
+    const float4 four = CAMBER_MORE(eight.lo, eight.hi);
+    const float2 two = CAMBER_MORE(four.lo, four.hi);
+    return CAMBER_MORE(two.x, two.y);
+}
+
+CAMBER_FN int camber_largest_of(camber_mask x) {
+    const int8 eight = CAMBER_FOLD_LANES(x);
+    const int4 four = CAMBER_MORE(eight.lo, eight.hi);
+    const int2 two = CAMBER_MORE(four.lo, four.hi);
+    return CAMBER_MORE(two.x, two.y);
+}
+#endif
+
+#endif

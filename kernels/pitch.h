@@ -1,0 +1,101 @@
+/* How a camera with a pitch sees places, directions and ends of the plane.
+ *
+ * Positions in the plane count from the point that the camera looks at, those seen from the picture's middle. C, OpenCL
+ * C and GLSL compile it. */
+#ifndef CAMBER_KERNELS_PITCH_H
+#define CAMBER_KERNELS_PITCH_H
+
+#include "stroke.h"
+
+/* The least depth at which a point is projected. */
+#define CAMBER_PITCH_LEAST 1e-3f
+
+/* The camera. */
+CAMBER_STRUCT(camber_eye) {
+    float x, y;   /* half the picture's size, px */
+    float cosine; /* cosine of the pitch */
+    float fall;   /* by how much depth falls for each px of the plane towards the viewer */
+};
+
+CAMBER_FN camber_real camber_pitch_depth(camber_eye e, camber_real y) {
+    const camber_real depth = 1.0f - e.fall * y, least = CAMBER_REAL(CAMBER_PITCH_LEAST);
+    return CAMBER_MORE(depth, least);
+}
+
+CAMBER_FN void camber_pitch_see(camber_eye e, camber_real x, camber_real y, CAMBER_OUT(camber_real) seen_x,
+                                CAMBER_OUT(camber_real) seen_y) {
+    const camber_real by_depth = 1.0f / camber_pitch_depth(e, y);
+    CAMBER_AT(seen_x) = x * by_depth;
+    CAMBER_AT(seen_y) = y * e.cosine * by_depth;
+}
+
+/* The width in the picture of a line through a point of the plane, px. */
+CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_real y, camber_real ux, camber_real uy,
+                                         camber_real half_width) {
+    const camber_real across = (ux - e.fall * (y * ux - x * uy)) / e.cosine;
+    const camber_real seen = CAMBER_SQRT(uy * uy + across * across), least = CAMBER_REAL(1e-15f);
+    return 2.0f * half_width / (camber_pitch_depth(e, y) * CAMBER_MORE(seen, least));
+}
+
+/* The end of a segment at a place of the plane. turns: 1 at B, -1 at A; c and s: cosine and sine of half the turn. */
+CAMBER_STRUCT(camber_pitch_end) {
+    camber_real x, y, ux, uy, half_width, c, s;
+    camber_words end;
+    float turns;
+};
+
+/* The direction in the picture of the plane's direction u, at the end's place. */
+CAMBER_FN void camber_pitch_direction(camber_eye e, CAMBER_IN(camber_pitch_end) s, camber_real ux, camber_real uy,
+                                      CAMBER_OUT(camber_real) seen_x, CAMBER_OUT(camber_real) seen_y) {
+    const camber_real x = ux * camber_pitch_depth(e, s->y) + e.fall * s->x * uy, y = e.cosine * uy;
+    const camber_real length = CAMBER_SQRT(x * x + y * y), least = CAMBER_REAL(1e-20f);
+    const camber_real scale = 1.0f / CAMBER_MORE(length, least);
+    CAMBER_AT(seen_x) = x * scale;
+    CAMBER_AT(seen_y) = y * scale;
+}
+
+/* Which side of the bisector the segment draws at an end, and its cut in the picture. Where the join is seen narrower
+ * than a pixel, the cut divides the pixels between both segments: its normal, its position, and a share, 1 where the
+ * line is wide and the plane's bisector divides the pixels, down to 0. */
+CAMBER_STRUCT(camber_pitch_cut) {
+    camber_real owner, x, y, at, wide;
+};
+
+CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, CAMBER_OUT(camber_pitch_cut) cut) {
+    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), h = s->half_width;
+    const camber_real cosine = s->c * s->c - s->s * s->s, turned = 2.0f * s->turns * s->c * s->s;
+    const camber_real other_x = s->ux * cosine - s->uy * turned, other_y = s->ux * turned + s->uy * cosine;
+    const camber_real width = camber_pitch_width(e, s->x, s->y, s->ux, s->uy, h);
+    const camber_real other = camber_pitch_width(e, s->x, s->y, other_x, other_y, h);
+    const camber_real narrowest = CAMBER_LESS(width, other);
+    camber_real along_x, along_y, behind_x, behind_y, seen_x, seen_y;
+    camber_pitch_direction(e, s, s->ux, s->uy, CAMBER_REF(along_x), CAMBER_REF(along_y));
+    camber_pitch_direction(e, s, other_x, other_y, CAMBER_REF(behind_x), CAMBER_REF(behind_y));
+    camber_pitch_see(e, s->x, s->y, CAMBER_REF(seen_x), CAMBER_REF(seen_y));
+    const camber_real sum_x = along_x + behind_x, sum_y = along_y + behind_y;
+    const camber_real length = CAMBER_SQRT(sum_x * sum_x + sum_y * sum_y);
+    const camber_mask bends = length > 1e-5f;
+    const camber_real scale = one / (bends ? length : one);
+    const camber_real x = bends ? sum_x * scale : along_x, y = bends ? sum_y * scale : along_y;
+    const camber_mask is_cap = CAMBER_END_CLASS(s->end) == CAMBER_CLASS_CAP;
+    const camber_mask wide = CAMBER_EITHER(is_cap, 1.0f - e.fall * s->y < CAMBER_PITCH_LEAST);
+    const camber_mask kept = camber_owner_side(CAMBER_END_IS_LAST(s->end), s->c, s->s, 0.5f * narrowest);
+    cut->x = wide ? none : s->turns * x;
+    cut->y = wide ? none : s->turns * y;
+    cut->at = wide ? none : s->turns * (x * seen_x + y * seen_y);
+    cut->wide = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
+    cut->owner = camber_owner_from(is_cap, CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept));
+}
+
+/* How far a stroke reaches past an end, px of the plane. */
+CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber_real sine, camber_real half_width) {
+    const camber_real one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-5f), aside = CAMBER_FABS(sine);
+    const camber_words kind = CAMBER_END_KIND(end), ends_as = CAMBER_END_CLASS(end);
+    const camber_real tip = CAMBER_EITHER(kind == CAMBER_ENDS_MITER, kind == CAMBER_ENDS_SPLIT_MITER)
+                                ? aside / CAMBER_MORE(c, least)
+                                : aside;
+    const camber_real whole = CAMBER_MORE(tip, one), cap = kind == CAMBER_ENDS_BUTT ? CAMBER_REAL(0.0f) : one;
+    return half_width * (ends_as == CAMBER_CLASS_CAP ? cap : ends_as == CAMBER_CLASS_SPLIT ? whole : tip);
+}
+
+#endif

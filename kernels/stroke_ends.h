@@ -1,0 +1,103 @@
+/* How segments end: the bits that say so, and what follows from a join's word and turn. C, OpenCL C and GLSL compile
+ * it; in GLSL and C a camber_real is one segment's number, on a device it may be those of several segments. */
+#ifndef CAMBER_KERNELS_STROKE_ENDS_H
+#define CAMBER_KERNELS_STROKE_ENDS_H
+
+#include "lanes.h"
+
+/* Builds for the device, and variants of shaders, say what they have; in C the file that draws says it. */
+#ifdef CAMBER_DEVICE
+#ifndef CAMBER_RASTER_RICH
+#define CAMBER_RASTER_RICH 0
+#endif
+#ifndef CAMBER_RASTER_PITCHED
+#define CAMBER_RASTER_PITCHED 0
+#endif
+#define CAMBER_STROKE_PITCHED CAMBER_RASTER_PITCHED
+#endif
+#ifndef CAMBER_STROKE_PITCHED
+#define CAMBER_STROKE_PITCHED 0
+#endif
+
+#define CAMBER_NEVER_PX 1e6f /* past an end by more px than any pixel lies there */
+#define CAMBER_ALWAYS_PX (-1e30f)
+#define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
+#define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
+#define CAMBER_LARGEST_TURN 32767.0f /* what tan(turn / 4) = 1 is stored as */
+
+/* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-11 a tight join's limit, 12 the line ends with the next segment.
+ */
+#define CAMBER_CLASS_CAP 0u
+#define CAMBER_CLASS_CUT 1u
+#define CAMBER_CLASS_TIGHT 2u
+#define CAMBER_CLASS_SPLIT 3u
+#define CAMBER_END_MASK 0x1fffu
+#define CAMBER_END_CLASS_SHIFT 3
+#define CAMBER_END_LIMIT_SHIFT 5
+#define CAMBER_END_LAST_SHIFT 12
+#define CAMBER_END_KIND(end) ((end)&CAMBER_JOIN_END_MASK)
+#define CAMBER_END_CLASS(end) ((end) >> CAMBER_END_CLASS_SHIFT & 3u)
+#define CAMBER_END_LIMIT(end) ((end) >> CAMBER_END_LIMIT_SHIFT & 127u)
+#define CAMBER_END_IS_LAST(end) CAMBER_HAS((end) >> CAMBER_END_LAST_SHIFT, 1u)
+#define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
+    (((end) & (CAMBER_JOIN_END_MASK | 3u << CAMBER_END_CLASS_SHIFT)) ==                                                \
+     (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << CAMBER_END_CLASS_SHIFT))
+
+/* The ends (CAMBER_ENDS_*) that a second line cuts, a bit each. */
+#define CAMBER_SECOND_ENDS                                                                                             \
+    (1u << CAMBER_ENDS_MITER | 1u << CAMBER_ENDS_BEVEL | 1u << CAMBER_ENDS_SPLIT_BEVEL | 1u << CAMBER_ENDS_SPLIT_MITER)
+/* Flags of a segment: 13 bits of the end at A (stroke_ends.h), as many of that at B, then the flags below. LINEAR:
+ * coverage is a linear ramp. */
+#define CAMBER_SEGMENT_END_BITS 13
+#define CAMBER_END_OF_A(flags) ((flags)&CAMBER_END_MASK)
+#define CAMBER_END_OF_B(flags) ((flags) >> CAMBER_SEGMENT_END_BITS & CAMBER_END_MASK)
+#define CAMBER_SEGMENT_LINEAR (1u << 26)
+/* Past a split end the segment draws its inner side as well, if it is wide there: camber_owner_side. */
+#define CAMBER_SEGMENT_OWNER_A (1u << 27)
+#define CAMBER_SEGMENT_OWNER_B (1u << 28)
+/* At least one of its ends is: cut by a second line or tight (SHARP), flat (FLAT), a round cap (ROUNDED). */
+#define CAMBER_SEGMENT_SHARP (1u << 29)
+#define CAMBER_SEGMENT_FLAT (1u << 30)
+#define CAMBER_SEGMENT_ROUNDED (1u << 31)
+
+/* The bits of an end from its join word, but for the last one. */
+CAMBER_FN camber_words camber_segment_end(camber_words join) {
+    const camber_words kind = join >> CAMBER_JOIN_KIND_SHIFT,
+                       end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
+    const camber_words split = end == CAMBER_ENDS_ROUND   ? CAMBER_WORD(CAMBER_ENDS_SPLIT_ROUND)
+                               : end == CAMBER_ENDS_BEVEL ? CAMBER_WORD(CAMBER_ENDS_SPLIT_BEVEL)
+                                                          : CAMBER_WORD(CAMBER_ENDS_SPLIT_MITER);
+    const camber_words drawn = CAMBER_BOTH(kind >= CAMBER_KIND_TIGHT, end < CAMBER_ENDS_SPLIT_ROUND) ? split : end;
+    const camber_words ends_as = kind < CAMBER_KIND_CUT ? CAMBER_WORD(0u) : kind - 2u;
+    const camber_words limit = kind == CAMBER_KIND_TIGHT ? join >> CAMBER_JOIN_LIMIT_SHIFT & 127u : CAMBER_WORD(0u);
+    return drawn | ends_as << CAMBER_END_CLASS_SHIFT | limit << CAMBER_END_LIMIT_SHIFT;
+}
+
+/* tan(turn / 4) of a join word. */
+CAMBER_FN camber_real camber_quarter_turn(camber_words join) {
+    return CAMBER_TURNS(join) * (1.0f / CAMBER_LARGEST_TURN);
+}
+
+/* Cosine and sine of half a turn from the tangent of a quarter of it. */
+CAMBER_FN void camber_half_turn(camber_real q, CAMBER_OUT(camber_real) c, CAMBER_OUT(camber_real) s) {
+    const camber_real scale = 1.0f / (1.0f + q * q);
+    CAMBER_AT(c) = (1.0f - q * q) * scale;
+    CAMBER_AT(s) = 2.0f * q * scale;
+}
+
+/* Whether a segment draws more of a split end than its own side of the bisector. What its body has past the bisector on
+ * the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their edges would
+ * be drawn twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it. c and s:
+ * cosine and sine of half the turn. */
+CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_real c, camber_real s, camber_real half_width) {
+    const camber_real bound = ends_soon ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
+    return half_width * CAMBER_FABS(s) > bound * c;
+}
+
+/* The tangent of half a turn, as images bend at joins; 0 where the line goes straight on. */
+CAMBER_FN float camber_image_tangent(float cosine, float sine) {
+    const float tangent = sine / (cosine > 1e-3f ? cosine : 1e-3f);
+    return CAMBER_FABS(tangent) < 1e-6f ? 0.0f : tangent;
+}
+
+#endif

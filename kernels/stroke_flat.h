@@ -1,0 +1,140 @@
+/* How edges are seen in a picture without a pitch: as they are. A part of stroke.h. */
+#ifndef CAMBER_KERNELS_STROKE_FLAT_H
+#define CAMBER_KERNELS_STROKE_FLAT_H
+
+#ifdef CAMBER_GLSL
+/* The coefficients that fragments read. */
+CAMBER_STRUCT(camber_edge) {
+    float ux, uy, length, half_width;
+    camber_profile side;
+    float ca, sa, cb, sb, flat_a, flat_b, round_a, round_b, tip_a, tip_b, owner_a, owner_b;
+    camber_u32 end_a, end_b;
+    camber_flag linear, thin, tips, capped, sharp;
+};
+#endif
+
+/* A pixel as a segment sees it, px. */
+CAMBER_STRUCT(camber_pixel) {
+    camber_real x, y;           /* along the segment, and across it */
+    camber_real past_a, past_b; /* past the ends, along the segment */
+    camber_real fa, fb;         /* past the bisectors */
+    camber_real off, across;    /* from the nearest place of the line: along it, and across */
+    camber_real d;              /* the same as one distance */
+    camber_real along;          /* arc length */
+#ifdef CAMBER_GLSL
+    float tie; /* CAMBER_TIE */
+#endif
+};
+
+/* Px of the picture that so many px along the line, or away from it, are. */
+CAMBER_FN camber_real camber_seen_along(CAMBER_IN(camber_pixel) at, camber_real px) {
+    CAMBER_UNUSED(at)
+    return px;
+}
+
+CAMBER_FN camber_real camber_seen_away(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real px) {
+    CAMBER_UNUSED(p)
+    CAMBER_UNUSED(at)
+    return px;
+}
+
+/* The share of a pixel inside an edge across the line, whose centre lies s px inside it. */
+CAMBER_FN camber_real camber_cut_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s) {
+    CAMBER_UNUSED(at)
+    return camber_covered(s, CAMBER_REF(p->side));
+}
+
+/* The same of an edge of the stroke, whose normal looks from the line to the pixel (facing: 1) or back (-1). */
+CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
+                                        float facing) {
+    CAMBER_UNUSED(at)
+    CAMBER_UNUSED(facing)
+    return camber_covered(s, CAMBER_REF(p->side));
+}
+
+/* The same of a join's second line. cosine: of the angle between it and the stroke's edge. */
+CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
+                                        CAMBER_IN(camber_second) l, float out_of, camber_real inside,
+                                        CAMBER_OUT(camber_real) cosine) {
+    CAMBER_UNUSED(at)
+    camber_profile e;
+    camber_profile_of(l->nx * out_of * p->ux - l->ny * p->uy, l->nx * out_of * p->uy + l->ny * p->ux, p->linear,
+                      CAMBER_REF(e));
+    CAMBER_AT(cosine) = CAMBER_REAL(l->outer * l->ny);
+    return camber_covered(inside, CAMBER_REF(e));
+}
+
+/* How far half a pixel reaches along the line. */
+CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at) {
+    CAMBER_UNUSED(at)
+    return CAMBER_REAL(p->side.extent);
+}
+
+/* Finds the nearest place of the line: fills in `off` and `across`. */
+CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
+    const camber_real none = CAMBER_REAL(0.0f), arc_a = at->past_a - p->round_a, arc_b = at->past_b - p->round_b;
+    const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = CAMBER_MORE(farther, none);
+    /* On an arc farther than a pixel from the segment, the distance is all. */
+    const camber_real straight = 1.0f - arc, bend = camber_join_bend(at->fa, p->sa) + camber_join_bend(-at->fb, p->sb);
+    at->off = arc;
+    at->across = at->y - bend * CAMBER_MORE(straight, none);
+}
+
+/* Adds what lies between the nearest place of the line and a dash. */
+CAMBER_FN void camber_go_off(CAMBER_INOUT(camber_pixel) at, camber_real off) {
+    at->off += CAMBER_FABS(off);
+}
+
+CAMBER_FN void camber_find_distance(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
+    CAMBER_UNUSED(p)
+    at->d = CAMBER_SQRT(at->off * at->off + at->across * at->across);
+}
+
+/* The share of a pixel that the round caps of a thin line leave. */
+CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
+    const camber_real tips =
+        camber_clamp_to_one(p->tip_a - at->past_a) + camber_clamp_to_one(p->tip_b - at->past_b) - 1.0f;
+    return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
+}
+
+/* The part of an area that flat caps leave: one, or both ends of a short segment. */
+CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
+    const camber_flag at_a = p->flat_a < CAMBER_NEVER_PX, both = at_a && p->flat_b < CAMBER_NEVER_PX;
+    const camber_real one = camber_cut_along(p, at, at_a ? p->flat_a - at->past_a : p->flat_b - at->past_b);
+    if (!both)
+        return area * one;
+    const camber_real caps = one + camber_cut_along(p, at, p->flat_b - at->past_b) - 1.0f;
+    return area * (caps > 0.0f ? caps : CAMBER_REAL(0.0f));
+}
+
+/* The area, or 0 where the pixel lies on the neighbour's side of a bisector and the neighbour draws it. */
+CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
+    const camber_mask at_a = CAMBER_BOTH(at->fa<-CAMBER_TIE(at), at->past_a> p->owner_a);
+    const camber_mask at_b = CAMBER_BOTH(at->fb >= CAMBER_TIE(at), at->past_b > p->owner_b);
+    camber_mask others = CAMBER_EITHER(at_a, at_b);
+#ifndef CAMBER_GLSL /* there the triangles bound a tight join's inner side */
+    if (p->tight)
+        others |= (at->past_a + p->slope_a * at->y > p->from_a) | (at->past_b + p->slope_b * at->y > p->from_b);
+#endif
+    return others ? CAMBER_REAL(0.0f) : area;
+}
+
+/* The normal of the nearest edge, into the stroke, in the picture. Returns whether it has one. */
+CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
+                                         CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
+    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-3f);
+    const camber_real off_x = camber_arc(at->past_b, p->round_b) - camber_arc(at->past_a, p->round_a);
+    const camber_real length = CAMBER_SQRT(off_x * off_x + at->y * at->y), scale = -1.0f / CAMBER_MORE(length, least);
+    camber_real in_x = off_x * scale, in_y = at->y * scale;
+    if (p->capped) {
+        const camber_real cap_a = p->flat_a - at->past_a, cap_b = p->flat_b - at->past_b;
+        const camber_mask at_cap = CAMBER_LESS(cap_a, cap_b) < p->half_width - CAMBER_FABS(at->y);
+        in_x = at_cap ? (cap_a < cap_b ? one : -one) : in_x;
+        in_y = at_cap ? none : in_y;
+    }
+    CAMBER_AT(nx) = in_x * p->ux - in_y * p->uy;
+    CAMBER_AT(ny) = in_x * p->uy + in_y * p->ux;
+    return CAMBER_ALL_LANES(p->half_width > CAMBER_UNION_PX);
+}
+
+#endif

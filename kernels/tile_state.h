@@ -1,0 +1,338 @@
+/* The accumulator of a tile: what rasterize keeps for the tile's pixels while it draws segments into them.
+ *
+ * Input: areas of pixels, brush by brush, in the order from front to back. Output: the tile's pixels. Each brush is
+ * gathered first, as the share of light that it lets through. Then it is put under what its level has so far: the
+ * picture, the open group, or the open layer. A closed layer or group goes under the level below it in the same way.
+ *
+ * The sixteen pixels of a cell lie in CAMBER_VECTORS vectors. The kernels have one or two, and the twin, which compiles
+ * this file too, has sixteen of one lane. What a cell has not received yet is not stored: the sets of cells say so. */
+#ifndef CAMBER_KERNELS_TILE_STATE_H
+#define CAMBER_KERNELS_TILE_STATE_H
+
+#include "cells.h"
+
+#ifdef CAMBER_DEVICE
+typedef uchar camber_u8;
+#else
+typedef uint8_t camber_u8;
+#endif
+
+/* The levels, from the bottom up. */
+#define CAMBER_PICTURE 0
+#define CAMBER_GROUP 1
+#define CAMBER_LAYER 2
+#define CAMBER_LEVELS 3
+
+/* The twin draws plain frames by the code for masked layers, and finds none. */
+#if !defined(CAMBER_DEVICE) || CAMBER_RASTER_RICH
+#define CAMBER_HAS_MASKS 1
+#else
+#define CAMBER_HAS_MASKS 0
+#endif
+
+typedef struct camber_tile_state {
+    /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
+    camber_real brush[CAMBER_CELLS][CAMBER_VECTORS];   /* let through */
+    camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS]; /* a union's, of areas and of normals */
+    /* Red, green, blue, premultiplied; let through. */
+    camber_real level[CAMBER_LEVELS][CAMBER_CELLS][4][CAMBER_VECTORS];
+    camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; a bit each */
+    camber_u64 done;                            /* cells in which nothing below shows */
+    camber_u64 filled;                          /* cells in which no more of the same brush shows */
+    int is_open[CAMBER_LEVELS];
+    camber_u8 blend_count[CAMBER_CELLS]; /* segments that have been drawn into the cell */
+    camber_brush now;
+#if CAMBER_HAS_MASKS
+    camber_brush_ext brush_ext; /* the same brush's extension */
+    float layer_alpha;          /* of a masked layer's colour, which covers as if it were opaque; else 1 */
+    camber_real mask[CAMBER_CELLS][CAMBER_VECTORS]; /* of a masked layer: its alpha; its level has what it covers */
+#endif
+} camber_tile_state;
+
+/* The number of the lowest bit that is set. */
+CAMBER_FN int camber_lowest(camber_u64 bits) {
+#ifdef CAMBER_DEVICE
+    return (int)popcount((bits - 1) & ~bits);
+#else
+    int lowest = 0;
+    for (int step = 32; step > 0; step /= 2)
+        if (!(bits >> lowest & (((camber_u64)1 << step) - 1)))
+            lowest += step;
+    return lowest;
+#endif
+}
+
+/* Whether all pixels of a cell let almost nothing through. */
+CAMBER_FN int camber_lets_nothing(const camber_real *through) {
+    camber_real most = through[0];
+    for (int v = 1; v < CAMBER_VECTORS; v++)
+        most = CAMBER_MORE(through[v], most);
+    return camber_most_of(most) < CAMBER_NOTHING_PX;
+}
+
+/* The level that a brush is drawn into. */
+CAMBER_FN int camber_tile_level(const camber_tile_state *c) {
+    return c->is_open[CAMBER_LAYER] ? CAMBER_LAYER : c->is_open[CAMBER_GROUP] ? CAMBER_GROUP : CAMBER_PICTURE;
+}
+
+/* cells: those that are drawn. first: the brush that no segment has drawn by yet. */
+CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_GLOBAL const camber_brush *first) {
+    for (int i = 0; i < CAMBER_CELLS; i++)
+        c->blend_count[i] = 0;
+    c->brushed = c->filled = 0;
+    for (int k = 0; k < CAMBER_LEVELS; k++) {
+        c->touched[k] = 0;
+        c->is_open[k] = k == CAMBER_PICTURE;
+    }
+    c->done = ~cells;
+    c->now = *first;
+#if CAMBER_HAS_MASKS
+    c->brush_ext.features = 0;
+    c->layer_alpha = 1.0f;
+#endif
+}
+
+/* Whether nothing shows of the segments to come. A cell that is filled in a layer or group may still be translucent. */
+CAMBER_FN int camber_tile_is_full(const camber_tile_state *c) {
+    const int opaque = c->now.mode != CAMBER_BRUSH_UNION && camber_tile_level(c) == CAMBER_PICTURE;
+    return (c->done | (opaque ? c->filled : 0)) == ~(camber_u64)0;
+}
+
+/* ---- Brushes ---- */
+
+/* Cells that the brush is about to draw in: they have nothing of it yet. */
+CAMBER_FN void camber_tile_take_cells(camber_tile_state *c, camber_u64 cells) {
+    for (camber_u64 left = cells & ~c->brushed; left; left &= left - 1) {
+        const int i = camber_lowest(left);
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            c->brush[i][v] = CAMBER_REAL(1.0f);
+        for (int k = 0; k < 3 && c->now.mode == CAMBER_BRUSH_UNION; k++)
+            for (int v = 0; v < CAMBER_VECTORS; v++)
+                c->sums[i][k][v] = CAMBER_REAL(0.0f);
+    }
+    c->brushed |= cells;
+}
+
+/* Adds a segment's area to a vector of a cell, for a brush that is not a union. */
+CAMBER_FN void camber_tile_put_over(camber_tile_state *c, int i, int v, camber_real area) {
+    c->brush[i][v] *= 1.0f - area * c->now.a;
+}
+
+/* The same for a union. (nx, ny): the normal of the nearest edge. thick: the pixels where the line has such a normal.
+ */
+CAMBER_FN void camber_tile_put_union(camber_tile_state *c, int i, int v, camber_real area, camber_mask thick,
+                                     camber_real nx, camber_real ny) {
+    const camber_real none = CAMBER_REAL(0.0f), edge = area * (1.0f - area);
+    c->brush[i][v] *= 1.0f - area;
+    c->sums[i][0][v] += thick ? area : none;
+    c->sums[i][1][v] += thick ? nx * edge : none;
+    c->sums[i][2][v] += thick ? ny * edge : none;
+}
+
+/* Counts a segment that was drawn into a cell. After every CAMBER_LOOK_EVERY it checks if the cell is filled. */
+CAMBER_FN void camber_tile_count(camber_tile_state *c, int i) {
+    if (c->now.mode != CAMBER_BRUSH_UNION && ++c->blend_count[i] % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f &&
+        camber_lets_nothing(c->brush[i]))
+        c->filled |= (camber_u64)1 << i;
+}
+
+/* Draws a cell that lies inside the stroke as a whole. */
+CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
+    const float through = c->now.mode == CAMBER_BRUSH_UNION ? 0.0f : 1.0f - c->now.a;
+    for (int v = 0; v < CAMBER_VECTORS; v++)
+        c->brush[i][v] *= through;
+    if (through == 0.0f)
+        c->filled |= (camber_u64)1 << i;
+}
+
+/* ---- Levels ---- */
+
+/* A level is about to be drawn in: a cell that has nothing of it yet is empty. */
+CAMBER_FN void camber_tile_take_level(camber_tile_state *c, int level, int i) {
+    const camber_u64 bit = (camber_u64)1 << i;
+    if (c->touched[level] & bit)
+        return;
+    c->touched[level] |= bit;
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        c->level[level][i][0][v] = c->level[level][i][1][v] = c->level[level][i][2][v] = CAMBER_REAL(0.0f);
+        c->level[level][i][3][v] = CAMBER_REAL(1.0f);
+#if CAMBER_HAS_MASKS
+        if (level == CAMBER_LAYER)
+            c->mask[i][v] = CAMBER_REAL(0.0f);
+#endif
+    }
+}
+
+/* Marks a cell as done if nothing shows through the picture's level. */
+CAMBER_FN void camber_tile_look(camber_tile_state *c, int level, int i) {
+    if (level == CAMBER_PICTURE && camber_lets_nothing(c->level[CAMBER_PICTURE][i][3]))
+        c->done |= (camber_u64)1 << i;
+}
+
+/* The share of light that a level lets through of a vector. is_new: it has nothing of the cell yet, and stores nothing.
+ */
+CAMBER_FN camber_real camber_tile_through(const camber_tile_state *c, int level, int i, int v, int is_new) {
+    return is_new ? CAMBER_REAL(1.0f) : c->level[level][i][3][v];
+}
+
+/* Adds to what is stored. */
+CAMBER_FN void camber_tile_add(camber_real *stored, camber_real more, int is_new) {
+    *stored = is_new ? more : *stored + more;
+}
+
+/* Puts what the brush has gathered of a vector under what its level has. */
+CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, int v, int is_new) {
+    camber_real area = 1.0f - c->brush[i][v];
+    if (c->now.mode == CAMBER_BRUSH_UNION)
+        area = camber_united(area, c->sums[i][0][v], c->sums[i][1][v], c->sums[i][2][v]) * c->now.a;
+    const camber_real through = camber_tile_through(c, level, i, v, is_new);
+    camber_real seen = through * area;
+#if CAMBER_HAS_MASKS
+    seen *= c->layer_alpha;
+    if (is_new || c->now.mode == CAMBER_BRUSH_MASKED)
+        camber_tile_add(&c->mask[i][v], c->now.mode == CAMBER_BRUSH_MASKED ? seen : CAMBER_REAL(0.0f), is_new);
+#endif
+    camber_tile_add(&c->level[level][i][0][v], seen * c->now.r, is_new);
+    camber_tile_add(&c->level[level][i][1][v], seen * c->now.g, is_new);
+    camber_tile_add(&c->level[level][i][2][v], seen * c->now.b, is_new);
+    c->level[level][i][3][v] = through * (1.0f - area);
+}
+
+CAMBER_FN void camber_tile_close_cell(camber_tile_state *c, int level, int i, int is_new) {
+    for (int v = 0; v < CAMBER_VECTORS; v++)
+        camber_tile_close_vector(c, level, i, v, is_new);
+}
+
+CAMBER_FN void camber_tile_close_brush(camber_tile_state *c) {
+    const int level = camber_tile_level(c);
+    for (camber_u64 left = c->brushed; left; left &= left - 1) {
+        const int i = camber_lowest(left);
+        if (c->touched[level] >> i & 1u)
+            camber_tile_close_cell(c, level, i, 0);
+        else
+            camber_tile_close_cell(c, level, i, 1);
+        camber_tile_look(c, level, i);
+    }
+    c->touched[level] |= c->brushed;
+    c->brushed = c->filled = 0;
+}
+
+/* The area that a layer or group covers of a vector's pixels. */
+CAMBER_FN camber_real camber_tile_covered(const camber_tile_state *c, int level, int i, int v) {
+#if CAMBER_HAS_MASKS
+    if (level == CAMBER_LAYER && c->now.mode == CAMBER_BRUSH_MASKED)
+        return c->mask[i][v];
+#endif
+    return 1.0f - c->level[level][i][3][v];
+}
+
+/* Puts a layer or a group under what the level below has. */
+CAMBER_FN void camber_tile_close_level(camber_tile_state *c, int level, float opacity) {
+    const int below = level == CAMBER_LAYER && c->is_open[CAMBER_GROUP] ? CAMBER_GROUP : CAMBER_PICTURE;
+    for (camber_u64 left = c->touched[level]; left; left &= left - 1) {
+        const int i = camber_lowest(left);
+        camber_tile_take_level(c, below, i);
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            const camber_real through = c->level[below][i][3][v], seen = through * opacity;
+            for (int k = 0; k < 3; k++)
+                c->level[below][i][k][v] += seen * c->level[level][i][k][v];
+            c->level[below][i][3][v] = through * (1.0f - camber_tile_covered(c, level, i, v) * opacity);
+        }
+        camber_tile_look(c, below, i);
+    }
+    c->touched[level] = 0;
+    c->is_open[level] = 0;
+}
+
+/* Closes the brush, and the layer and group that the next brush does not belong to. Opens those that it does. */
+CAMBER_FN void camber_tile_change_brush(camber_tile_state *c, camber_brush next) {
+    camber_tile_close_brush(c);
+    if (c->is_open[CAMBER_LAYER] && next.layer != c->now.layer)
+        camber_tile_close_level(c, CAMBER_LAYER, c->now.layer_opacity);
+    if (c->is_open[CAMBER_GROUP] && next.group != c->now.group)
+        camber_tile_close_level(c, CAMBER_GROUP, c->now.group_opacity);
+    c->is_open[CAMBER_GROUP] |= next.group != 0u;
+    c->is_open[CAMBER_LAYER] |= next.layer != 0u;
+    c->now = next;
+}
+
+/* Closes all that is open. */
+CAMBER_FN void camber_tile_end(camber_tile_state *c) {
+    camber_tile_close_brush(c);
+    if (c->is_open[CAMBER_LAYER])
+        camber_tile_close_level(c, CAMBER_LAYER, c->now.layer_opacity);
+    if (c->is_open[CAMBER_GROUP])
+        camber_tile_close_level(c, CAMBER_GROUP, c->now.group_opacity);
+}
+
+/* ---- Colours that change from pixel to pixel ---- */
+
+#if CAMBER_HAS_MASKS
+/* The brush's extension, after the brush. */
+CAMBER_FN void camber_tile_use_ext(camber_tile_state *c, camber_brush_ext brush_ext) {
+    c->brush_ext = brush_ext;
+    c->layer_alpha = 1.0f;
+    if (c->now.mode == CAMBER_BRUSH_MASKED) {
+        c->layer_alpha = c->now.a;
+        c->now.a = 1.0f;
+    }
+}
+
+/* Puts such colours of a vector straight under what the level has. The level has been taken. */
+CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber_real area, const camber_real *color) {
+    const int level = camber_tile_level(c);
+    const camber_real through = c->level[level][i][3][v], seen = through * area * c->now.a;
+    c->level[level][i][0][v] += seen * c->layer_alpha * color[0] * c->now.r;
+    c->level[level][i][1][v] += seen * c->layer_alpha * color[1] * c->now.g;
+    c->level[level][i][2][v] += seen * c->layer_alpha * color[2] * c->now.b;
+    if (c->now.mode == CAMBER_BRUSH_MASKED) {
+        c->mask[i][v] += seen * c->layer_alpha * color[3];
+        c->level[level][i][3][v] = through * (1.0f - area);
+    } else {
+        c->level[level][i][3][v] = through * (1.0f - area * c->now.a * color[3]);
+    }
+}
+
+/* Counts a segment of such colours that was drawn into a cell; whole: it lies inside the stroke. */
+CAMBER_FN void camber_tile_count_colors(camber_tile_state *c, int i, int whole) {
+    const int level = camber_tile_level(c);
+    if (++c->blend_count[i] % CAMBER_LOOK_EVERY && !whole)
+        return;
+    if (camber_lets_nothing(c->level[level][i][3])) {
+        if (level == CAMBER_PICTURE)
+            c->done |= (camber_u64)1 << i;
+        else
+            c->filled |= (camber_u64)1 << i;
+    }
+}
+#endif
+
+/* ---- Pixels ---- */
+
+/* A channel in 0 to 255, rounded. */
+CAMBER_FN camber_words camber_channel(camber_real value) {
+    const camber_real scaled = value * 255.0f + 0.5f, least = scaled > 0.0f ? scaled : CAMBER_REAL(0.0f);
+    return CAMBER_TO_WORDS(least < 255.0f ? least : CAMBER_REAL(255.0f));
+}
+
+/* RGBA8 of premultiplied colours, red in the lowest byte. */
+CAMBER_FN camber_words camber_rgba(camber_real r, camber_real g, camber_real b, camber_real a) {
+    return camber_channel(r) | camber_channel(g) << 8 | camber_channel(b) << 16 | camber_channel(a) << 24;
+}
+
+/* The pixels of a vector, over the background. */
+CAMBER_FN camber_words camber_tile_pixels(const camber_tile_state *c, int i, int v, const float *back) {
+    const camber_real through = c->level[CAMBER_PICTURE][i][3][v];
+    return camber_rgba(c->level[CAMBER_PICTURE][i][0][v] + through * back[0],
+                       c->level[CAMBER_PICTURE][i][1][v] + through * back[1],
+                       c->level[CAMBER_PICTURE][i][2][v] + through * back[2], 1.0f - through + through * back[3]);
+}
+
+/* The pixels of a cell that nothing was drawn in. */
+CAMBER_FN camber_words camber_bare_pixels(const float *back) {
+    const camber_real none = CAMBER_REAL(0.0f), through = CAMBER_REAL(1.0f);
+    return camber_rgba(none + through * back[0], none + through * back[1], none + through * back[2],
+                       1.0f - through + through * back[3]);
+}
+
+#endif

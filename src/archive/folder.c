@@ -1,0 +1,211 @@
+/* Folders of tiles: FOLDER/{z}/{x}/{y}.EXTENSION, rows from the north, and FOLDER/metadata.json. */
+#define _XOPEN_SOURCE 700
+
+#include "archive/folder.h"
+#include "archive/output_file.h"
+#include "source/pmtiles.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Writing ---- */
+
+static camber_status make_folder(const camber_archive_plan *plan, const char *path) {
+    return mkdir(path, 0777) == 0 || errno == EEXIST ? CAMBER_OK : camber_output_fail(plan->context, path, errno);
+}
+
+static camber_status write_file(const camber_archive_plan *plan, const char *path, const void *bytes, size_t size) {
+    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0)
+        return camber_output_fail(plan->context, path, errno);
+    const camber_status status = camber_write_at(plan->context, path, file, bytes, size, 0);
+    if (close(file) != 0 && status == CAMBER_OK)
+        return camber_output_fail(plan->context, path, errno);
+    return status;
+}
+
+/* A tile whose folders are not there yet makes them. */
+static camber_status write_tile(const camber_archive_plan *plan, uint64_t number, const camber_bytes *bytes) {
+    char path[PATH_MAX];
+    const int zoom = camber_archive_zoom(number);
+    uint32_t column, row;
+    camber_pmtiles_locate(number - camber_archive_first(zoom), zoom, &column, &row);
+    if (snprintf(path, sizeof path, "%s/%d/%u/%u.%s", plan->whole, zoom, column, row,
+                 camber_tile_type_get_name(plan->desc->type)) >= (int)sizeof path)
+        return camber_output_fail(plan->context, plan->whole, ENAMETOOLONG);
+    char *file = strrchr(path, '/');
+    *file = 0;
+    if (access(path, F_OK) != 0) {
+        char *folder = strrchr(path, '/');
+        *folder = 0;
+        camber_status status = make_folder(plan, path);
+        *folder = '/';
+        if (status == CAMBER_OK)
+            status = make_folder(plan, path);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    *file = '/';
+    return write_file(plan, path, bytes->data, bytes->size_bytes);
+}
+
+static camber_status write_tiles(const camber_archive_plan *plan, camber_bytes *bytes) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < plan->run_count && status == CAMBER_OK; i++) {
+        const camber_archive_run *run = &plan->runs[i];
+        const camber_content *item = &plan->contents->items[run->content];
+        if (!camber_bytes_resize(bytes, item->size_bytes))
+            return CAMBER_ERROR_MEMORY;
+        status = camber_contents_read(plan->contents, item->store, item->offset, bytes->data, item->size_bytes);
+        for (uint64_t k = 0; k < run->length && status == CAMBER_OK; k++)
+            status = write_tile(plan, run->number + k, bytes);
+        camber_progress(plan->context, "writing tiles", (double)i / (double)plan->run_count);
+    }
+    return status;
+}
+
+static camber_status write_metadata(const camber_archive_plan *plan) {
+    char path[PATH_MAX];
+    json_t *metadata = json_copy(plan->metadata);
+    camber_archive_put_texts(plan, metadata);
+    char *text = json_dumps(metadata, JSON_INDENT(2) | JSON_SORT_KEYS);
+    json_decref(metadata);
+    if (!text)
+        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
+                           plan->desc->path);
+    camber_status status = CAMBER_OK;
+    if (snprintf(path, sizeof path, "%s/metadata.json", plan->whole) >= (int)sizeof path)
+        status = camber_output_fail(plan->context, plan->whole, ENAMETOOLONG);
+    else
+        status = write_file(plan, path, text, strlen(text));
+    free(text);
+    return status;
+}
+
+/* Files by the million are not synced one by one: a loss of power may lose some, the end of the process none. */
+camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
+    enum { MOST_FILES = 1 << 26 };
+    camber_bytes bytes = {.context = plan->context};
+    if (plan->tile_count > MOST_FILES)
+        return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
+                           "%s: %" PRIu64 " tiles are more files than a folder is written with, %d; write PMTiles",
+                           plan->desc->path, plan->tile_count, MOST_FILES);
+    camber_status status = make_folder(plan, plan->whole);
+    if (status == CAMBER_OK)
+        status = write_metadata(plan);
+    if (status == CAMBER_OK)
+        status = write_tiles(plan, &bytes);
+    camber_bytes_free(&bytes);
+    return status;
+}
+
+/* ---- Reading ---- */
+
+typedef struct name {
+    uint32_t number;
+    char extension[8];
+} name;
+
+typedef struct names {
+    name *items;
+    size_t count, capacity;
+} names;
+
+static int compare_names(const void *left, const void *right) {
+    const name *a = left, *b = right;
+    if (a->number != b->number)
+        return a->number < b->number ? -1 : 1;
+    return strcmp(a->extension, b->extension);
+}
+
+/* A number as it is written: no sign, no 0 before others. */
+static bool parse_name(const char *text, bool file, name *made) {
+    const size_t digits = strspn(text, "0123456789");
+    if (digits == 0 || digits > 9 || (digits > 1 && text[0] == '0'))
+        return false;
+    const char *rest = text + digits;
+    if (file ? *rest != '.' || strlen(rest + 1) >= sizeof made->extension : *rest != 0)
+        return false;
+    made->number = (uint32_t)strtoul(text, NULL, 10);
+    snprintf(made->extension, sizeof made->extension, "%s", file ? rest + 1 : "");
+    return true;
+}
+
+static camber_status tell_stranger(const camber_folder_visitor *visitor, const char *folder, const char *entry) {
+    char path[PATH_MAX];
+    if (!visitor->take_stranger)
+        return CAMBER_OK;
+    snprintf(path, sizeof path, "%.2000s/%s", folder, entry);
+    return visitor->take_stranger(visitor->user, path);
+}
+
+/* Lists what is named by a number in a folder, in ascending order. What is not goes to the visitor. */
+static camber_status list(const camber_folder_visitor *visitor, const char *folder, bool files, bool top,
+                          names *found) {
+    camber_context *context = visitor->context;
+    DIR *opened = opendir(folder);
+    camber_status status = opened ? CAMBER_OK : camber_file_fail(context, folder, errno);
+    const struct dirent *entry;
+    while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
+        name made;
+        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 ||
+            (top && strcmp(entry->d_name, "metadata.json") == 0))
+            continue;
+        if (!parse_name(entry->d_name, files, &made))
+            status = tell_stranger(visitor, folder, entry->d_name);
+        else if (!camber_grow(context, &found->items, &found->capacity, found->count + 1, sizeof *found->items))
+            status = CAMBER_ERROR_MEMORY;
+        else
+            found->items[found->count++] = made;
+    }
+    if (opened)
+        closedir(opened);
+    if (found->count)
+        qsort(found->items, found->count, sizeof *found->items, compare_names);
+    return status;
+}
+
+static camber_status visit_column(const camber_folder_visitor *visitor, const char *folder, uint32_t zoom,
+                                  uint32_t column) {
+    names rows = {0};
+    camber_status status = list(visitor, folder, true, false, &rows);
+    for (size_t i = 0; i < rows.count && status == CAMBER_OK; i++) {
+        char path[PATH_MAX];
+        snprintf(path, sizeof path, "%.4000s/%u.%s", folder, rows.items[i].number, rows.items[i].extension);
+        const camber_folder_file file = {path, rows.items[i].extension, zoom, column, rows.items[i].number};
+        status = visitor->take_file(visitor->user, &file);
+    }
+    camber_free(visitor->context, rows.items);
+    return status;
+}
+
+static camber_status visit_zoom(const camber_folder_visitor *visitor, const char *folder, uint32_t zoom) {
+    names columns = {0};
+    camber_status status = list(visitor, folder, false, false, &columns);
+    for (size_t i = 0; i < columns.count && status == CAMBER_OK; i++) {
+        char path[PATH_MAX];
+        snprintf(path, sizeof path, "%.4000s/%u", folder, columns.items[i].number);
+        status = visit_column(visitor, path, zoom, columns.items[i].number);
+    }
+    camber_free(visitor->context, columns.items);
+    return status;
+}
+
+camber_status camber_folder_visit(const char *path, const camber_folder_visitor *visitor) {
+    names zooms = {0};
+    camber_status status = list(visitor, path, false, true, &zooms);
+    for (size_t i = 0; i < zooms.count && status == CAMBER_OK; i++) {
+        char folder[PATH_MAX];
+        snprintf(folder, sizeof folder, "%.4000s/%u", path, zooms.items[i].number);
+        status = visit_zoom(visitor, folder, zooms.items[i].number);
+    }
+    camber_free(visitor->context, zooms.items);
+    return status;
+}

@@ -1,0 +1,183 @@
+/* Merges parts into one archive: looks whether they fit together, and hands them to a writer.
+ *
+ * All that does not fit is told in one message, part by part: which parts of N are missing, which are given twice, and
+ * which are of another input, style, options or version. */
+#include "archive/archive.h"
+
+#include "camber_tiles.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+typedef struct merging {
+    camber_context *context;
+    const camber_tiles_merge_desc *desc;
+    camber_archive **parts;
+    char troubles[3072];
+} merging;
+
+CAMBER_PRINTF(2, 3) static void add_trouble(merging *m, const char *format, ...) {
+    const size_t used = strlen(m->troubles);
+    va_list list;
+    if (used + 64 > sizeof m->troubles)
+        return;
+    const int gap = snprintf(m->troubles + used, sizeof m->troubles - used, "%s", used ? "; " : "");
+    va_start(list, format);
+    vsnprintf(m->troubles + used + gap, sizeof m->troubles - used - (size_t)gap, format, list);
+    va_end(list);
+}
+
+/* ---- Whether the parts fit ---- */
+
+static void compare_parts(merging *m, const camber_archive *first, const camber_archive *part) {
+    if (part->type != first->type)
+        add_trouble(m, "%s has tiles of type %s, not %s as %s", part->path, camber_tile_type_get_name(part->type),
+                    camber_tile_type_get_name(first->type), first->path);
+    else if (part->gzipped != first->gzipped)
+        add_trouble(m, "%s has tiles that are%s compressed, unlike %s", part->path, part->gzipped ? "" : " not",
+                    first->path);
+    if (part->shards != first->shards) {
+        add_trouble(m, "%s is %s, unlike %s", part->path,
+                    !part->shards    ? "no part of shards"
+                    : !first->shards ? "a part of shards"
+                                     : "a part of another number of shards",
+                    first->path);
+        return;
+    }
+    if (first->shards &&
+        (!part->fingerprint || !first->fingerprint || strcmp(part->fingerprint, first->fingerprint) != 0)) {
+        char names[256];
+        camber_fingerprint_compare(part->fingerprint ? part->fingerprint : "",
+                                   first->fingerprint ? first->fingerprint : "", names, sizeof names);
+        add_trouble(m, "%s is made of another %s than %s", part->path, names, first->path);
+    }
+}
+
+/* Every part from 1 to N, once. */
+static void count_shards(merging *m) {
+    const uint32_t shards = m->parts[0]->shards;
+    char missing[512] = "";
+    size_t count = 0;
+    for (uint32_t k = 1; k <= shards; k++) {
+        const camber_archive *found = NULL;
+        for (size_t i = 0; i < m->desc->part_count; i++) {
+            if (m->parts[i]->shard != k || m->parts[i]->shards != shards)
+                continue;
+            if (found)
+                add_trouble(m, "part %u of %u is given twice, %s and %s", k, shards, found->path, m->parts[i]->path);
+            found = m->parts[i];
+        }
+        const size_t used = strlen(missing);
+        if (!found && used + 16 < sizeof missing)
+            snprintf(missing + used, sizeof missing - used, "%s%u", count ? ", " : "", k);
+        count += !found;
+        if (count > m->desc->part_count + 1000) /* a number that only a damaged file says */
+            break;
+    }
+    if (count)
+        add_trouble(m, "part%s %s of %u %s missing", count == 1 ? "" : "s", missing, shards, count == 1 ? "is" : "are");
+}
+
+static camber_status check_parts(merging *m) {
+    for (size_t i = 1; i < m->desc->part_count; i++)
+        compare_parts(m, m->parts[0], m->parts[i]);
+    if (m->parts[0]->shards)
+        count_shards(m);
+    if (!m->troubles[0])
+        return CAMBER_OK;
+    return camber_fail(m->context, CAMBER_ERROR_INPUT, "%s: cannot be merged: %s; give all parts of one run",
+                       m->desc->output, m->troubles);
+}
+
+/* ---- The whole ---- */
+
+static void unite(camber_archive_desc *whole, const camber_archive *part) {
+    double *bounds = whole->bounds;
+    whole->min_zoom = part->min_zoom < whole->min_zoom ? part->min_zoom : whole->min_zoom;
+    whole->max_zoom = part->max_zoom > whole->max_zoom ? part->max_zoom : whole->max_zoom;
+    if (!part->has_bounds)
+        return;
+    bounds[0] = part->bounds[0] < bounds[0] ? part->bounds[0] : bounds[0];
+    bounds[1] = part->bounds[1] < bounds[1] ? part->bounds[1] : bounds[1];
+    bounds[2] = part->bounds[2] > bounds[2] ? part->bounds[2] : bounds[2];
+    bounds[3] = part->bounds[3] > bounds[3] ? part->bounds[3] : bounds[3];
+}
+
+/* Parts of one run agree in all but their tiles. Of others the first part's words stay, and the boxes are united; a
+ * centre of several is that of the united box. */
+static camber_archive_desc describe(const merging *m, camber_archive_format format) {
+    const camber_archive *first = m->parts[0];
+    camber_archive_desc whole = {.path = m->desc->output,
+                                 .format = format,
+                                 .type = first->type,
+                                 .gzipped = first->gzipped,
+                                 .force = m->desc->force,
+                                 .unites = true,
+                                 .min_zoom = first->min_zoom,
+                                 .max_zoom = first->max_zoom,
+                                 .metadata = first->metadata};
+    if (first->has_bounds)
+        memcpy(whole.bounds, first->bounds, sizeof whole.bounds);
+    if (first->shards || m->desc->part_count == 1) {
+        whole.center = first->center;
+        whole.center.zoom = first->whole_center_zoom;
+        whole.fingerprint = first->fingerprint;
+    }
+    for (size_t i = 1; i < m->desc->part_count && !first->shards; i++)
+        unite(&whole, m->parts[i]);
+    return whole;
+}
+
+static camber_status write(merging *m, camber_archive_format format) {
+    const camber_archive_desc whole = describe(m, format);
+    camber_archive_writer *writer = NULL;
+    if (format == CAMBER_ARCHIVE_MBTILES && whole.type == CAMBER_TILE_MVT && !whole.gzipped)
+        return camber_fail(m->context, CAMBER_ERROR_INPUT,
+                           "%s: its vector tiles are not compressed, and MBTiles has them with gzip; write PMTiles",
+                           m->parts[0]->path);
+    camber_status status = camber_archive_writer_create(m->context, &whole, &writer);
+    if (status == CAMBER_OK && m->desc->begun)
+        m->desc->begun(m->desc->user);
+    for (size_t i = 0; i < m->desc->part_count && status == CAMBER_OK; i++) {
+        camber_progress(m->context, "reading parts", (double)i / (double)m->desc->part_count);
+        status = camber_archive_writer_take(writer, m->parts[i]);
+    }
+    if (status == CAMBER_OK)
+        status = camber_archive_writer_finish(writer);
+    camber_archive_writer_destroy(writer);
+    return status;
+}
+
+static camber_status open_parts(merging *m) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < m->desc->part_count && status == CAMBER_OK; i++)
+        status = camber_archive_open(m->context, m->desc->parts[i], &m->parts[i]);
+    return status;
+}
+
+camber_status camber_tiles_merge(camber_context *context, const camber_tiles_merge_desc *desc) {
+    merging m = {.context = context, .desc = desc};
+    camber_archive_format format;
+    if (desc->part_count == 0)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: no parts to merge; name them", desc->output);
+    if (!camber_archive_get_format(desc->output, &format))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "%s: its name tells no format; name it .pmtiles, .mbtiles, or a folder with a slash",
+                           desc->output);
+    if (!(m.parts = camber_alloc_zero(context, desc->part_count, sizeof *m.parts)))
+        return CAMBER_ERROR_MEMORY;
+    camber_budget_begin(context);
+    camber_status status = open_parts(&m);
+    if (status == CAMBER_OK)
+        status = check_parts(&m);
+    if (status == CAMBER_OK)
+        status = write(&m, format);
+    for (size_t i = 0; i < desc->part_count; i++)
+        camber_archive_close(m.parts[i]);
+    camber_free(context, m.parts);
+    return status;
+}
+
+bool camber_tiles_beside(const char *path, size_t n, char *name, size_t size) {
+    return camber_archive_beside(path, n, name, size);
+}

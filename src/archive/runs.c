@@ -1,0 +1,106 @@
+/* One ascending list of runs, made of the tiles that were added and of those that other archives have.
+ *
+ * Input: both lists, in the order in which they came. Output: disjoint runs whose neighbours differ, or the first
+ * number that two archives give different contents. Runs stay runs: a sea of a million tiles is one item. */
+#include "archive/writer.h"
+
+#include <stdlib.h>
+
+static int compare_runs(const void *left, const void *right) {
+    const camber_archive_run *a = left, *b = right;
+    if (a->number != b->number)
+        return a->number < b->number ? -1 : 1;
+    return a->order < b->order ? -1 : a->order > b->order;
+}
+
+static void sort(camber_archive_runs *runs) {
+    for (size_t i = 1; i < runs->count; i++)
+        if (compare_runs(&runs->items[i - 1], &runs->items[i]) > 0) {
+            qsort(runs->items, runs->count, sizeof *runs->items, compare_runs);
+            return;
+        }
+}
+
+/* Tiles that were added are runs of one. */
+static void keep_last(camber_archive_runs *runs) {
+    size_t kept = 0;
+    for (size_t i = 0; i < runs->count; i++) {
+        const bool again = kept && runs->items[kept - 1].number == runs->items[i].number;
+        kept += !again;
+        runs->items[kept - 1] = runs->items[i];
+    }
+    runs->count = kept;
+}
+
+/* Cuts runs that overlap with equal contents. The runs that reach beyond a number all have the content of the last. */
+static void keep_disjoint(camber_archive_runs *runs, camber_archive_conflict *conflict) {
+    size_t kept = 0;
+    for (size_t i = 0; i < runs->count && !conflict->found; i++) {
+        camber_archive_run run = runs->items[i];
+        const camber_archive_run *last = kept ? &runs->items[kept - 1] : NULL;
+        const uint64_t end = last ? last->number + last->length : 0;
+        if (last && run.number < end) {
+            if (run.content != last->content) {
+                *conflict = (camber_archive_conflict){true, run.number, {last->order, run.order}};
+                return;
+            }
+            const uint64_t behind = run.number + run.length;
+            if (behind <= end)
+                continue;
+            run.number = end;
+            run.length = behind - end;
+        }
+        runs->items[kept++] = run;
+    }
+    runs->count = kept;
+}
+
+/* Appends a run; it lengthens the last one where it goes on with the same content. */
+static bool append(camber_context *context, camber_archive_runs *made, const camber_archive_run *run) {
+    camber_archive_run *last = made->count ? &made->items[made->count - 1] : NULL;
+    if (run->length == 0 || run->content == CAMBER_NO_CONTENT)
+        return true;
+    if (last && last->content == run->content && last->number + last->length == run->number) {
+        last->length += run->length;
+        return true;
+    }
+    if (!camber_grow(context, &made->items, &made->capacity, made->count + 1, sizeof *made->items))
+        return false;
+    made->items[made->count++] = *run;
+    return true;
+}
+
+camber_status camber_archive_resolve(camber_context *context, camber_archive_runs *added, camber_archive_runs *taken,
+                                     camber_archive_runs *made, camber_archive_conflict *conflict) {
+    sort(added);
+    keep_last(added);
+    sort(taken);
+    keep_disjoint(taken, conflict);
+    size_t a = 0, t = 0;
+    while (!conflict->found && (a < added->count || t < taken->count)) {
+        camber_archive_run *from = t < taken->count ? &taken->items[t] : NULL;
+        const camber_archive_run *over = a < added->count ? &added->items[a] : NULL;
+        if (over && (!from || over->number <= from->number)) {
+            if (from && over->number == from->number) {
+                from->number++;
+                from->length--;
+                t += from->length == 0;
+            }
+            if (!append(context, made, over))
+                return CAMBER_ERROR_MEMORY;
+            a++;
+            continue;
+        }
+        if (!from)
+            break;
+        camber_archive_run piece = *from;
+        if (over && over->number - from->number < from->length)
+            piece.length = over->number - from->number;
+        if (!append(context, made, &piece))
+            return CAMBER_ERROR_MEMORY;
+        from->number += piece.length;
+        from->length -= piece.length;
+        t += from->length == 0;
+    }
+    return CAMBER_OK;
+}

@@ -1,0 +1,282 @@
+/* Verifies archives: findings, and what the formats have in common: zooms, bounds, metadata and the bytes of tiles. */
+#include "archive/verify.h"
+#include "archive/tile_check.h"
+#include "source/pmtiles.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+enum { TOLD_OF_A_KIND = 8, CHECKED_OF_A_RUN = 4096 };
+
+/* ---- Findings ---- */
+
+static void add_finding(camber_verify *v, bool error, const char *text) {
+    char *copy = camber_copy_string(v->context, text);
+    if (!copy || !camber_grow(v->context, &v->findings, &v->capacity, v->count + 1, sizeof *v->findings)) {
+        camber_free(v->context, copy);
+        v->out_of_memory = true;
+        return;
+    }
+    v->findings[v->count++] = (camber_tiles_finding){error, copy};
+}
+
+void camber_verify_tell(camber_verify *v, camber_verify_kind kind, bool error, const char *format, ...) {
+    char text[1024];
+    va_list list;
+    if (kind != CAMBER_VERIFY_ARCHIVE && v->told[kind]++ >= TOLD_OF_A_KIND) {
+        v->left_out++;
+        return;
+    }
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    add_finding(v, error, text);
+}
+
+void camber_verify_name(uint64_t number, char text[40]) {
+    const int zoom = camber_archive_zoom(number);
+    uint32_t column, row;
+    camber_pmtiles_locate(number - camber_archive_first(zoom), zoom, &column, &row);
+    snprintf(text, 40, "%d/%u/%u", zoom, column, row);
+}
+
+/* ---- Bounds ---- */
+
+static double row_of(double latitude) {
+    const double most = 85.0511287798066, clamped = fmin(fmax(latitude, -most), most);
+    const double sine = sin(clamped * 0.017453292519943295);
+    return 0.5 - log((1 + sine) / (1 - sine)) / (4 * 3.141592653589793);
+}
+
+/* The tiles of each zoom that the bounds touch; bounds are rounded to 10^-7 degrees. */
+static void make_boxes(camber_verify *v) {
+    const double *b = v->archive->bounds;
+    for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {
+        const double side = ldexp(1, zoom), slack = 1e-9 * side + 1e-6;
+        v->boxes[zoom] =
+            (camber_verify_box){floor((b[0] + 180) / 360 * side - slack), floor((b[2] + 180) / 360 * side + slack),
+                                floor(row_of(b[3]) * side - slack), floor(row_of(b[1]) * side + slack)};
+    }
+}
+
+static bool is_within(const camber_verify_box *box, uint32_t column, double row) {
+    return column >= box->low_column && column <= box->high_column && row >= box->low_row && row <= box->high_row;
+}
+
+static void check_place(camber_verify *v, uint64_t number) {
+    const int zoom = camber_archive_zoom(number);
+    uint32_t column, row;
+    char name[40];
+    if (zoom < v->archive->min_zoom || zoom > v->archive->max_zoom || zoom > CAMBER_LARGEST_TILE_ZOOM)
+        return; /* the zooms as a whole are told once */
+    camber_pmtiles_locate(number - camber_archive_first(zoom), zoom, &column, &row);
+    if (is_within(&v->boxes[zoom], column, row))
+        return;
+    v->outside++;
+    v->flipped += is_within(&v->boxes[zoom], column, ldexp(1, zoom) - 1 - row);
+    camber_verify_name(number, name);
+    camber_verify_tell(v, CAMBER_VERIFY_BOUNDS, true, "tile %s lies outside the bounds", name);
+}
+
+/* Long runs are seas: their first tiles, and the last, stand for them. */
+void camber_verify_bounds(camber_verify *v, const camber_archive_tile *tile) {
+    if (!v->archive->has_bounds || tile->outside)
+        return;
+    for (uint64_t i = 0; i < tile->run_length && i < CHECKED_OF_A_RUN; i++)
+        check_place(v, tile->number + i);
+    if (tile->run_length > CHECKED_OF_A_RUN)
+        check_place(v, tile->number + tile->run_length - 1);
+}
+
+static void check_bounds(camber_verify *v) {
+    const double *b = v->archive->bounds;
+    const camber_archive_center *center = &v->archive->center;
+    const int low = v->archive->min_zoom, high = v->archive->max_zoom;
+    if (low > high || low < 0 || high > CAMBER_LARGEST_TILE_ZOOM)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "zooms from %d to %d make no sense", low, high);
+    if (v->archive->has_bounds && !(b[0] < b[2] && b[1] < b[3])) {
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the bounds %.7g,%.7g,%.7g,%.7g have no area", b[0], b[1],
+                           b[2], b[3]);
+        v->archive->has_bounds = false;
+    } else if (v->archive->has_bounds && !(b[0] >= -180.0000001 && b[2] <= 180.0000001 && b[1] >= -90 && b[3] <= 90)) {
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the bounds %.7g,%.7g,%.7g,%.7g leave the world", b[0], b[1],
+                           b[2], b[3]);
+    }
+    if (center->given && (center->zoom < low || center->zoom > high))
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre's zoom %d is none from %d to %d", center->zoom,
+                           low, high);
+    if (center->given && v->archive->has_bounds &&
+        (center->longitude < b[0] - 1e-6 || center->longitude > b[2] + 1e-6 || center->latitude < b[1] - 1e-6 ||
+         center->latitude > b[3] + 1e-6))
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre %.7g,%.7g lies outside the bounds",
+                           center->longitude, center->latitude);
+    make_boxes(v);
+}
+
+/* The zooms that the archive says are those of its tiles. */
+static void check_zooms(camber_verify *v) {
+    int low = -1, high = -1;
+    for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {
+        low = low < 0 && v->tally.zoom_tiles[zoom] ? zoom : low;
+        high = v->tally.zoom_tiles[zoom] ? zoom : high;
+    }
+    if (low >= 0 && low != v->archive->min_zoom)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its lowest zoom is said to be %d, and is %d",
+                           v->archive->min_zoom, low);
+    if (high >= 0 && high != v->archive->max_zoom)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its highest zoom is said to be %d, and is %d",
+                           v->archive->max_zoom, high);
+    if (v->outside && v->flipped == v->outside && v->archive->format != CAMBER_ARCHIVE_PMTILES)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its rows count from the %s; %s count from the %s",
+                           v->archive->format == CAMBER_ARCHIVE_MBTILES ? "north" : "south",
+                           v->archive->format == CAMBER_ARCHIVE_MBTILES ? "those of MBTiles" : "a folder's",
+                           v->archive->format == CAMBER_ARCHIVE_MBTILES ? "south" : "north");
+}
+
+/* ---- Bytes ---- */
+
+static void check_size(camber_verify *v, const char *name, uint32_t width, uint32_t height) {
+    if (width == 0)
+        return;
+    if (v->width == 0) {
+        v->width = width;
+        v->height = height;
+        if (width != height)
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "tile %s is no square: %u x %u px", name, width, height);
+    }
+    if (width != v->width || height != v->height)
+        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s has %u x %u px, and others %u x %u", name, width,
+                           height, v->width, v->height);
+}
+
+camber_status camber_verify_bytes(camber_verify *v, const char *name, const camber_bytes *bytes) {
+    const camber_bytes *plain = bytes;
+    const char *why = NULL;
+    uint32_t width, height;
+    const bool packed = bytes->size_bytes > 1 && bytes->data[0] == 0x1f && bytes->data[1] == 0x8b;
+    if (bytes->size_bytes == 0) {
+        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s is empty", name);
+        return CAMBER_OK;
+    }
+    if (packed != v->archive->gzipped)
+        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s is%s compressed with gzip, unlike what is said", name,
+                           packed ? "" : " not");
+    if (packed) {
+        camber_tile_set naming = {.context = v->context, .name = v->archive->path};
+        const camber_status status =
+            camber_tile_set_gunzip(&naming, bytes, CAMBER_ARCHIVE_LARGEST_TILE_BYTES, &v->unpacked, &why);
+        if (status != CAMBER_OK)
+            return status;
+        plain = &v->unpacked;
+    }
+    if (why) {
+        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s: %s", name, why);
+        return CAMBER_OK;
+    }
+    why = camber_tile_check(v->archive->type, plain->data, plain->size_bytes, &width, &height);
+    if (why)
+        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s %s", name, why);
+    else
+        check_size(v, name, width, height);
+    return CAMBER_OK;
+}
+
+/* ---- All of it ---- */
+
+static void check_metadata(camber_verify *v) {
+    const json_t *about = v->archive->metadata;
+    static const char *const texts[] = {"name", "description", "attribution", "version", "type"};
+    if (v->archive->type == CAMBER_TILE_MVT && !json_is_array(json_object_get(about, "vector_layers")))
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true,
+                           "the metadata have no vector_layers, which tell what vector tiles have");
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        const json_t *value = json_object_get(about, texts[i]);
+        if (value && !json_is_string(value))
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s in the metadata is no text", texts[i]);
+    }
+}
+
+static camber_status verify(camber_verify *v) {
+    camber_status status = CAMBER_ERROR_INPUT;
+    check_bounds(v);
+    check_metadata(v);
+    switch (v->archive->format) {
+    case CAMBER_ARCHIVE_PMTILES: status = camber_verify_pmtiles(v); break;
+    case CAMBER_ARCHIVE_MBTILES: status = camber_verify_mbtiles(v); break;
+    case CAMBER_ARCHIVE_FOLDER: status = camber_verify_folder(v); break;
+    }
+    if (status == CAMBER_OK)
+        check_zooms(v);
+    return status;
+}
+
+/* A log that keeps the last error: damage that ends reading is a finding. */
+typedef struct kept_log {
+    char error[1024];
+} kept_log;
+
+static void keep_error(void *user, camber_log_level level, const char *message) {
+    kept_log *log = user;
+    if (level == CAMBER_LOG_ERROR)
+        snprintf(log->error, sizeof log->error, "%s", message);
+}
+
+typedef struct found {
+    camber_tiles_findings findings; /* what the caller has */
+    camber_context *context;
+} found;
+
+/* Opens and verifies, with messages kept. */
+static camber_status run(camber_verify *v, const char *path) {
+    kept_log log = {""};
+    const camber_soft_log before = {v->context->desc.log, v->context->desc.log_user};
+    v->context->desc.log = keep_error;
+    v->context->desc.log_user = &log;
+    camber_status status = camber_archive_open(v->context, path, &v->archive);
+    if (status == CAMBER_OK)
+        status = verify(v);
+    if (status == CAMBER_ERROR_INPUT) {
+        const size_t length = strlen(path);
+        const bool named = strncmp(log.error, path, length) == 0 && log.error[length] == ':';
+        add_finding(v, true, log.error + (named ? length + 2 : 0));
+        status = CAMBER_OK;
+    }
+    if (status == CAMBER_OK && v->out_of_memory)
+        status = CAMBER_ERROR_MEMORY;
+    v->context->desc.log = before.log;
+    v->context->desc.log_user = before.user;
+    return status == CAMBER_OK ? status : camber_fail(v->context, status, "%s", log.error);
+}
+
+camber_status camber_tiles_verify(camber_context *context, const char *path, camber_tiles_findings **findings) {
+    found *made = camber_alloc_zero(context, 1, sizeof *made);
+    camber_verify v = {
+        .context = context, .tally.context = context, .bytes.context = context, .unpacked.context = context};
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->context = context;
+    camber_budget_begin(context);
+    const camber_status status = run(&v, path);
+    made->findings = (camber_tiles_findings){v.findings, v.count, v.left_out};
+    camber_tally_free(&v.tally);
+    camber_bytes_free(&v.bytes);
+    camber_bytes_free(&v.unpacked);
+    camber_archive_close(v.archive);
+    if (status != CAMBER_OK) {
+        camber_tiles_findings_destroy(&made->findings);
+        return status;
+    }
+    *findings = &made->findings;
+    return CAMBER_OK;
+}
+
+void camber_tiles_findings_destroy(camber_tiles_findings *findings) {
+    found *f = (found *)(void *)findings; /* its first member */
+    if (!f)
+        return;
+    for (size_t i = 0; i < f->findings.count; i++)
+        camber_free(f->context, (void *)(uintptr_t)f->findings.findings[i].message);
+    camber_free(f->context, (void *)(uintptr_t)f->findings.findings);
+    camber_free(f->context, f);
+}

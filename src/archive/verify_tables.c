@@ -1,0 +1,216 @@
+/* Verifies MBTiles and folders: tables, indices, metadata, names, and each tile. */
+#include "archive/folder.h"
+#include "archive/verify.h"
+
+#include <inttypes.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <strings.h>
+
+/* ---- Tiles ---- */
+
+static camber_status take_tile(void *user, const camber_archive_tile *tile) {
+    camber_verify *v = user;
+    char name[80];
+    snprintf(name, sizeof name, "%d/%" PRId64 "/%" PRId64, tile->zoom, tile->column, tile->row);
+    if (tile->outside) {
+        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile %s is none: its zoom has no such column or row", name);
+        v->tally.entries++;
+        return CAMBER_OK;
+    }
+    camber_verify_bounds(v, tile);
+    const char *why;
+    camber_status status = camber_archive_read(v->archive, tile, &v->bytes, &why);
+    if (status == CAMBER_OK)
+        status = camber_verify_bytes(v, name, &v->bytes);
+    return status == CAMBER_OK ? camber_tally_take(&v->tally, tile) : status;
+}
+
+static void check_twice(camber_verify *v) {
+    camber_tally_sum(&v->tally, v->archive->format);
+    for (size_t i = 1; i < v->tally.place_count; i++) {
+        char name[40];
+        if (v->tally.places[i].number != v->tally.places[i - 1].number)
+            continue;
+        camber_verify_name(v->tally.places[i].number, name);
+        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s (rows from the north) is there twice", name);
+    }
+}
+
+/* ---- MBTiles ---- */
+
+typedef struct tables {
+    camber_verify *v;
+    bool has_index, has_format, has_name, has_bounds, has_zooms;
+    bool normal;   /* there are images and map */
+    uint64_t *ids; /* hashes of the ids in images, and then those in map */
+    size_t count, capacity;
+} tables;
+
+static const char *text_at(sqlite3_stmt *row, int column) {
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    return text ? text : "";
+}
+
+/* An index over the three columns of tiles, or of the table behind the view. */
+static camber_status take_schema(void *user, sqlite3_stmt *row) {
+    tables *t = user;
+    const char *type = text_at(row, 0), *table = text_at(row, 1), *sql = text_at(row, 2);
+    const bool of_tiles = strcasecmp(table, "tiles") == 0 || strcasecmp(table, "map") == 0;
+    char upper[8];
+    snprintf(upper, sizeof upper, "%.6s", strlen(sql) > 7 ? sql + 7 : "");
+    if (strcmp(type, "index") == 0 && of_tiles && (!*sql || strcasecmp(upper, "UNIQUE") == 0))
+        t->has_index = true; /* without SQL: the index of a primary key or of UNIQUE */
+    return CAMBER_OK;
+}
+
+static camber_status take_metadata(void *user, sqlite3_stmt *row) {
+    tables *t = user;
+    camber_verify *v = t->v;
+    static const char *const known[] = {"pbf", "png", "jpg", "webp"};
+    const char *name = text_at(row, 0), *value = text_at(row, 1);
+    double b[4];
+    if (strcmp(name, "name") == 0)
+        t->has_name = true;
+    if (strcmp(name, "minzoom") == 0)
+        t->has_zooms = true;
+    if (strcmp(name, "bounds") == 0) {
+        t->has_bounds = true;
+        if (sscanf(value, "%lf,%lf,%lf,%lf", b, b + 1, b + 2, b + 3) != 4)
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "bounds in the metadata are no four numbers");
+    }
+    if (strcmp(name, "format") == 0) {
+        bool found = strchr(value, '/') != NULL; /* a media type */
+        t->has_format = true;
+        for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+            found = found || strcmp(value, known[i]) == 0;
+        if (!found)
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false,
+                               "format %.40s is none of pbf, png, jpg and webp, and no media type", value);
+    }
+    return CAMBER_OK;
+}
+
+static camber_status take_double(void *user, sqlite3_stmt *row) {
+    const tables *t = user;
+    camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%.80s is in the metadata twice", text_at(row, 0));
+    return CAMBER_OK;
+}
+
+static camber_status take_id(void *user, sqlite3_stmt *row) {
+    tables *t = user;
+    const char *id = text_at(row, 0);
+    if (!camber_grow(t->v->context, &t->ids, &t->capacity, t->count + 1, sizeof *t->ids))
+        return CAMBER_ERROR_MEMORY;
+    t->ids[t->count++] = camber_hash(CAMBER_HASH_START, id, strlen(id));
+    return CAMBER_OK;
+}
+
+static int compare_ids(const void *left, const void *right) {
+    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return a < b ? -1 : a > b;
+}
+
+static bool has_id(const uint64_t *ids, size_t count, uint64_t id) {
+    return count && bsearch(&id, ids, count, sizeof *ids, compare_ids) != NULL;
+}
+
+/* Normalised: each image is a tile's, and each tile has its image. */
+static camber_status check_images(tables *t) {
+    bool missing = false;
+    camber_tile_set *set = t->v->archive->set;
+    camber_status status = camber_mbtiles_query(set, "SELECT tile_id FROM images", take_id, t, &missing);
+    const size_t images = t->count;
+    if (status == CAMBER_OK && !missing)
+        status = camber_mbtiles_query(set, "SELECT tile_id FROM map", take_id, t, &missing);
+    if (status != CAMBER_OK || missing)
+        return status;
+    uint64_t *used = t->ids + images;
+    const size_t uses = t->count - images;
+    size_t unused = 0, lost = 0, again = 0;
+    if (images)
+        qsort(t->ids, images, sizeof *t->ids, compare_ids);
+    if (uses)
+        qsort(used, uses, sizeof *used, compare_ids);
+    for (size_t i = 0; i < images; i++) {
+        unused += !has_id(used, uses, t->ids[i]);
+        again += i && t->ids[i] == t->ids[i - 1];
+    }
+    for (size_t i = 0; i < uses; i++)
+        lost += !has_id(t->ids, images, used[i]);
+    if (again)
+        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%zu ids of images are there twice", again);
+    if (unused)
+        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, false, "%zu images are no tile's", unused);
+    if (lost)
+        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%zu tiles have no image", lost);
+    return CAMBER_OK;
+}
+
+static camber_status check_tables(tables *t) {
+    camber_verify *v = t->v;
+    camber_tile_set *set = v->archive->set;
+    bool missing = false;
+    camber_status status =
+        camber_mbtiles_query(set, "SELECT type, tbl_name, sql FROM sqlite_master", take_schema, t, NULL);
+    if (status == CAMBER_OK && !t->has_index)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false,
+                           "no unique index finds tiles (zoom_level, tile_column, tile_row); reading them is slow");
+    if (status == CAMBER_OK)
+        status = camber_mbtiles_query(set, "SELECT name, value FROM metadata", take_metadata, t, &missing);
+    if (status != CAMBER_OK)
+        return status;
+    if (missing) {
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "there is no table metadata (name, value)");
+        return CAMBER_OK;
+    }
+    if (!t->has_name || !t->has_format)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the metadata have no %s", t->has_name ? "format" : "name");
+    if (!t->has_bounds || !t->has_zooms)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "the metadata have no %s",
+                           t->has_bounds ? "minzoom" : "bounds");
+    return camber_mbtiles_query(set, "SELECT name FROM metadata GROUP BY name HAVING count(*) > 1", take_double, t,
+                                NULL);
+}
+
+camber_status camber_verify_mbtiles(camber_verify *v) {
+    tables t = {.v = v};
+    camber_status status = check_tables(&t);
+    if (status == CAMBER_OK)
+        status = check_images(&t);
+    if (status == CAMBER_OK)
+        status = camber_archive_walk(v->archive, take_tile, v);
+    if (status == CAMBER_OK)
+        check_twice(v);
+    camber_free(v->context, t.ids);
+    return status;
+}
+
+/* ---- Folders ---- */
+
+static camber_status take_file(void *user, const camber_folder_file *file) {
+    camber_verify *v = user;
+    const char *extension = camber_tile_type_get_name(v->archive->type);
+    if (v->archive->type != CAMBER_TILE_OTHER && strcmp(file->extension, extension) != 0 &&
+        camber_tile_type_find(file->extension) != v->archive->type)
+        camber_verify_tell(v, CAMBER_VERIFY_NAME, true, "%s: is not named as a tile of type %s", file->path, extension);
+    return CAMBER_OK;
+}
+
+static camber_status take_stranger(void *user, const char *path) {
+    camber_verify_tell(user, CAMBER_VERIFY_NAME, true, "%s: is no tile by its name, ZOOM/COLUMN/ROW.EXTENSION", path);
+    return CAMBER_OK;
+}
+
+camber_status camber_verify_folder(camber_verify *v) {
+    const camber_folder_visitor names = {v->context, take_file, take_stranger, v};
+    if (!json_object_size(v->archive->metadata) && !v->archive->has_bounds)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "there is no metadata.json with a JSON object");
+    camber_status status = camber_folder_visit(v->archive->path, &names);
+    if (status == CAMBER_OK)
+        status = camber_archive_walk(v->archive, take_tile, v);
+    if (status == CAMBER_OK)
+        check_twice(v);
+    return status;
+}

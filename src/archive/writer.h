@@ -1,0 +1,52 @@
+/* A finished writer hands a plan to the function that writes a format. */
+#ifndef CAMBER_ARCHIVE_WRITER_H
+#define CAMBER_ARCHIVE_WRITER_H
+
+#include "archive/archive.h"
+#include "archive/contents.h"
+
+/* Tiles number, number + 1, ... of one content. */
+typedef struct camber_archive_run {
+    uint64_t number, length;
+    uint32_t content; /* CAMBER_NO_CONTENT: removed */
+    uint32_t order;   /* in which runs came */
+} camber_archive_run;
+
+typedef struct camber_archive_plan {
+    camber_context *context;
+    const camber_archive_desc *desc;
+    const char *whole; /* the path to write to */
+    camber_contents *contents;
+    const camber_archive_run *runs; /* ascending, disjoint; neighbours differ */
+    size_t run_count;
+    uint64_t tile_count;
+    int min_zoom, max_zoom;
+    double bounds[4];
+    camber_archive_center center;
+    json_t *metadata; /* an object, with what camber adds */
+} camber_archive_plan;
+
+camber_status camber_archive_write_pmtiles(const camber_archive_plan *plan);
+camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan);
+camber_status camber_archive_write_folder(const camber_archive_plan *plan);
+
+/* Puts bounds, centre, zooms and format as texts into metadata, as MBTiles has them. */
+void camber_archive_put_texts(const camber_archive_plan *plan, json_t *metadata);
+
+/* Makes one ascending list of added and taken runs. Of tiles added twice the last stays; taken ones give way to added
+ * ones. Two taken tiles of the same number and different bytes are a conflict. */
+typedef struct camber_archive_runs {
+    camber_archive_run *items;
+    size_t count, capacity;
+} camber_archive_runs;
+
+typedef struct camber_archive_conflict {
+    bool found;
+    uint64_t number;
+    uint32_t orders[2];
+} camber_archive_conflict;
+
+camber_status camber_archive_resolve(camber_context *context, camber_archive_runs *added, camber_archive_runs *taken,
+                                     camber_archive_runs *made, camber_archive_conflict *conflict);
+
+#endif

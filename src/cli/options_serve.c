@@ -1,0 +1,61 @@
+/* Checks the options of `camber serve`. */
+#include "cli/options_table.h"
+
+#include <string.h>
+
+/* ADDRESS:PORT, with an address of IPv4, of IPv6 in brackets, or localhost; the server reads it fully. */
+static bool is_address(const char *text) {
+    const char *colon = strrchr(text, ':');
+    if (!colon || colon == text || strlen(colon + 1) < 1 || strlen(colon + 1) > 5)
+        return false;
+    return strspn(colon + 1, "0123456789") == strlen(colon + 1);
+}
+
+/* http or https, a host, maybe a path, and nothing that would end a header or a text of JSON. */
+static bool is_url(const char *text) {
+    const char *host = strncmp(text, "http://", 7) == 0 ? text + 7 : strncmp(text, "https://", 8) == 0 ? text + 8 : "";
+    if (!*host || *host == '/' || strlen(text) > 200)
+        return false;
+    for (; *host; host++)
+        if (*host <= ' ' || *host >= 0x7f || strchr("\"'<>\\^`{|}?#;,", *host))
+            return false;
+    return true;
+}
+
+static bool is_origin(const char *text) {
+    return strcmp(text, "*") == 0 || strcmp(text, "null") == 0 ||
+           (is_url(text) && !strchr(strstr(text, "//") + 2, '/'));
+}
+
+int camber_options_check_serve(camber_options *options, char *message, size_t message_size) {
+    const camber_option_reader it = {options, message, message_size, NULL}, *p = &it;
+    if (!options->input_count)
+        return camber_options_refuse(
+            p, "serve: no input; give a file with lines, such as city.osm.pbf, or an archive of tiles");
+    for (size_t i = 0; i < options->input_count; i++)
+        if (strcmp(options->inputs[i], "-") == 0)
+            return camber_options_refuse(p, "serve: standard input cannot be read again at SIGHUP; name a file");
+    if (options->style && strcmp(options->style, "-") == 0)
+        return camber_options_refuse(p, "--style -: cannot be read again at SIGHUP; name a file");
+    if ((options->listen && !is_address(options->listen)) || (options->metrics && !is_address(options->metrics)))
+        return camber_options_refuse(p, "--%s: no address; give ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
+                                     options->listen && !is_address(options->listen) ? "listen" : "metrics");
+    if (options->public_url && !is_url(options->public_url))
+        return camber_options_refuse(p, "--public-url: no URL; give one as in https://example.org/map");
+    if (options->cors && !is_origin(options->cors))
+        return camber_options_refuse(p, "--cors: no origin; give *, or a site as in https://example.org");
+    if (options->edit && options->style)
+        return camber_options_refuse(p, "--edit and --style: both name the style; give one of them");
+    if (options->edit && options->theme >= 0)
+        return camber_options_refuse(p, "--theme: is for the styles that ship with camber; leave it out with --edit");
+    if (options->edit && strcmp(options->edit, "-") == 0)
+        return camber_options_refuse(p, "--edit -: standard input is never saved again; name a file");
+    if (options->renderd && !options->cache_dir)
+        return camber_options_refuse(p, "--renderd alone: give --cache-dir FOLDER, mod_tile's TileDir, too");
+    if (options->edit)
+        options->style = options->edit;
+    options->view.width = options->view.height = 1024;
+    options->view.kind = CAMBER_VIEW_FIT;
+    options->view.zoom = options->view.bearing_deg = options->view.pitch_deg = 0.0;
+    return CAMBER_EXIT_DONE;
+}

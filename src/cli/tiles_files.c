@@ -1,0 +1,61 @@
+#define _XOPEN_SOURCE 700
+
+#include "cli/tiles_files.h"
+
+#ifdef CAMBER_MAP
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+int camber_tiles_look_at_output(camber_session *session, const char *path) {
+    const camber_options *options = session->options;
+    struct stat about;
+    char folder[4096];
+    if (lstat(path, &about) == 0 && !options->force && !options->resume)
+        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
+                                  "%s: exists; name another file, or replace it with --force", path);
+    snprintf(folder, sizeof folder, "%s", path);
+    for (size_t length = strlen(folder); length > 1 && folder[length - 1] == '/'; length--)
+        folder[length - 1] = 0;
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        slash[slash == folder] = 0;
+    else
+        snprintf(folder, sizeof folder, ".");
+    if (access(folder, W_OK | X_OK) == 0)
+        return CAMBER_EXIT_DONE;
+    return camber_report_fail(session->report, CAMBER_EXIT_CREATE, "%s: cannot be created (%s); %s", path,
+                              strerror(errno),
+                              errno == ENOENT ? "make its folder first" : "name a folder that you may write to");
+}
+
+int camber_tiles_files_name(camber_tiles_files *files, const char *path) {
+    for (size_t i = 0; i < CAMBER_TILES_FILES; i++)
+        if (!camber_tiles_beside(path, i, files->names[i], sizeof files->names[i]))
+            return camber_report_fail(files->session->report, CAMBER_EXIT_CREATE,
+                                      "%s: is too long; choose a shorter name", path);
+    return CAMBER_EXIT_DONE;
+}
+
+void camber_tiles_files_guard(void *user) {
+    camber_tiles_files *files = user;
+    camber_guard *guard = files->session->guard;
+    camber_guard_lock(guard);
+    for (size_t i = files->first; i < CAMBER_TILES_FILES && camber_guard_add(guard, files->names[i]); i++)
+        files->guarded++;
+    camber_guard_unlock(guard);
+}
+
+void camber_tiles_files_release(camber_tiles_files *files) {
+    if (!files->guarded)
+        return;
+    camber_guard *guard = files->session->guard;
+    camber_guard_lock(guard);
+    while (files->guarded)
+        camber_guard_remove(guard, files->names[files->first + --files->guarded]);
+    camber_guard_unlock(guard);
+}
+
+#endif

@@ -1,0 +1,420 @@
+/* Runs `camber serve`: listens, reads the input, and then waits for signals while the server's threads draw.
+ *
+ * SIGHUP reads input and style again into a set of their own, which takes the place of the one before when it is whole.
+ * What cannot be read leaves everything as it was. SIGTERM ends what is begun, and the run; so does a device that is
+ * lost. */
+#define _XOPEN_SOURCE 700
+
+#include "cli/input.h"
+#include "cli/verbs.h"
+
+#if defined(CAMBER_MAP) && !defined(CAMBER_SERVE)
+
+int camber_verb_serve(camber_session *session) {
+    return camber_report_fail(session->report, CAMBER_EXIT_UNAVAILABLE,
+                              "serve: this build has no server (CAMBER_SERVE); build it with libmicrohttpd "
+                              "(Debian: libmicrohttpd-dev)");
+}
+
+#elif defined(CAMBER_MAP)
+
+#include "base/base.h"
+#include "serve/address.h"
+#include "serve/server.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* So many pictures one after the other that the device fails to draw say that it is lost. */
+enum { DEEPEST_ZOOM = 22, LOOK_MS = 200, BEAT_MS = 10000, LOST_PICTURES = 3 };
+
+/* Signals ask for these, and changes of a style that is edited. */
+typedef struct wishes {
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    bool reload, stop;
+    bool begins; /* the input is read for the first time: there is nothing to end yet */
+    camber_guard *guard;
+    const char *edited;  /* a file that is watched. NULL: none */
+    struct stat about;   /* of it, as it was read last */
+    double beat_ms;      /* when those who listen were looked for */
+    int failed_pictures; /* one after the other. The thread that draws counts them */
+    bool lost;           /* the device is: a wish to stop */
+} wishes;
+
+/* One reading of the input. The first one is on the verb's session, and later ones have sessions of their own. */
+typedef struct reading {
+    camber_session *session, own;
+    camber_report report;
+    camber_input input;
+    camber_style *dark;
+    camber_tiles_reader *reader;
+    json_t *about; /* an archive's metadata */
+    camber_shown shown;
+    char name[256];
+    wishes *wishes;
+} reading;
+
+/* ---- Signals ---- */
+
+static bool heed(void *user, int number) {
+    wishes *w = user;
+    if (number != SIGHUP && number != SIGTERM)
+        return false;
+    pthread_mutex_lock(&w->mutex);
+    if (number == SIGTERM && w->begins)
+        camber_guard_end(w->guard, CAMBER_EXIT_DONE);
+    w->reload = w->reload || number == SIGHUP;
+    w->stop = w->stop || number == SIGTERM;
+    pthread_cond_signal(&w->changed);
+    pthread_mutex_unlock(&w->mutex);
+    return true;
+}
+
+static void set_heed(camber_session *session, wishes *w) {
+    camber_guard_lock(session->guard);
+    session->guard->heed = w ? heed : NULL;
+    session->guard->heed_user = w;
+    camber_guard_unlock(session->guard);
+}
+
+/* Whether the file that is edited was saved since it was looked at last. One that is not there is being saved. */
+static bool was_saved(wishes *w) {
+    struct stat about;
+    if (!w->edited || stat(w->edited, &about) != 0)
+        return false;
+    const bool saved = about.st_ino != w->about.st_ino || about.st_size != w->about.st_size ||
+                       about.st_mtim.tv_sec != w->about.st_mtim.tv_sec ||
+                       about.st_mtim.tv_nsec != w->about.st_mtim.tv_nsec;
+    w->about = about;
+    return saved;
+}
+
+/* Waits a moment, or for a signal. The mutex is held. */
+static void wait_a_moment(wishes *w) {
+    struct timespec end;
+    if (!w->edited) {
+        pthread_cond_wait(&w->changed, &w->mutex);
+        return;
+    }
+    clock_gettime(CLOCK_REALTIME, &end);
+    end.tv_nsec += LOOK_MS * 1000000L;
+    end.tv_sec += end.tv_nsec / 1000000000L;
+    end.tv_nsec %= 1000000000L;
+    (void)pthread_cond_timedwait(&w->changed, &w->mutex, &end);
+}
+
+/* Waits for a signal or a change. Returns whether to read again; false: to stop. */
+static bool wait_for_wish(wishes *w, camber_server *server) {
+    pthread_mutex_lock(&w->mutex);
+    while (!w->stop && !w->reload) {
+        wait_a_moment(w);
+        w->reload = was_saved(w) || w->reload;
+        if (w->edited && camber_clock_ms() - w->beat_ms > BEAT_MS) {
+            w->beat_ms = camber_clock_ms();
+            camber_server_beat(server);
+        }
+    }
+    const bool reload = !w->stop;
+    w->reload = false;
+    pthread_mutex_unlock(&w->mutex);
+    return reload;
+}
+
+/* ---- Reading ---- */
+
+static void close_reading(void *owner) {
+    reading *it = owner;
+    camber_tiles_reader_destroy(it->reader);
+    camber_input_close(&it->input);
+    camber_style_destroy(it->dark);
+    json_decref(it->about);
+    if (it->session == &it->own)
+        camber_session_close(&it->own);
+    free(it);
+}
+
+/* Whether a path is an archive of tiles. One of vector tiles is drawn, like any map: read_archive finds that out. */
+static bool is_archive(const camber_options *options) {
+    const char *path = options->inputs[0];
+    struct stat about;
+    const char *dot = strrchr(path, '.');
+    const bool named = dot && (strcmp(dot, ".pmtiles") == 0 || strcmp(dot, ".mbtiles") == 0);
+    const bool folder = stat(path, &about) == 0 && S_ISDIR(about.st_mode) && !(dot && strcmp(dot, ".gdb") == 0);
+    const bool drawn = options->style || options->theme >= 0 || options->layer || options->where;
+    return options->input_count == 1 && !drawn && (named || folder);
+}
+
+/* The file's name up to its first dot. */
+static void find_name(reading *it) {
+    const camber_options *options = it->session->options;
+    const char *path = options->inputs[0], *slash = strrchr(path, '/');
+    const char *name = slash && slash[1] ? slash + 1 : path;
+    const size_t length = *name == '.' ? strlen(name) : strcspn(name, "./");
+    const char *own = json_string_value(json_object_get(it->about, "name"));
+    json_t *text = options->name ? json_string(options->name) : own ? json_string(own) : json_stringn(name, length);
+    snprintf(it->name, sizeof it->name, "%s", text ? json_string_value(text) : "map");
+    json_decref(text);
+    it->shown.name = it->name;
+}
+
+static void find_time(reading *it) {
+    const camber_options *options = it->session->options;
+    struct stat about;
+    for (size_t i = 0; i <= options->input_count; i++) {
+        const char *path = i < options->input_count ? options->inputs[i] : options->style;
+        if (path && stat(path, &about) == 0 && about.st_mtime > it->shown.modified)
+            it->shown.modified = about.st_mtime;
+    }
+}
+
+static void tell_picture(void *owner, camber_status status) {
+    const reading *it = owner;
+    wishes *w = it->wishes;
+    w->failed_pictures = status == CAMBER_ERROR_DEVICE ? w->failed_pictures + 1 : 0;
+    if (status != CAMBER_OK)
+        (void)camber_report_status(it->session->report, status);
+    if (w->failed_pictures < LOST_PICTURES)
+        return;
+    pthread_mutex_lock(&w->mutex);
+    w->lost = w->stop = true;
+    pthread_cond_signal(&w->changed);
+    pthread_mutex_unlock(&w->mutex);
+}
+
+static int read_map(reading *it) {
+    const camber_options *options = it->session->options;
+    int status = camber_input_open(&it->input, it->session);
+    if (status == CAMBER_EXIT_DONE && !options->style && options->theme < 0)
+        status = camber_report_status(it->session->report,
+                                      camber_style_create_builtin(it->session->context, CAMBER_THEME_DARK, &it->dark));
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    it->shown.chart = (camber_chart){.features = it->input.features,
+                                     .styles = {it->input.style, it->dark},
+                                     .simplify_px = options->simplify_px,
+                                     .coverage = (camber_coverage)options->coverage,
+                                     .threads = options->threads,
+                                     .drawn = tell_picture,
+                                     .close = close_reading,
+                                     .owner = it};
+    it->shown.is_dark = options->theme == CAMBER_THEME_DARK;
+    it->shown.attribution = it->input.attribution;
+    it->shown.has_bounds = camber_features_get_bounds(it->input.features, it->shown.bounds);
+    it->shown.max_zoom = DEEPEST_ZOOM;
+    return CAMBER_EXIT_DONE;
+}
+
+static int read_archive(reading *it) {
+    const camber_options *options = it->session->options;
+    camber_route_type type;
+    const camber_status status = camber_tiles_reader_create(it->session->context, options->inputs[0], &it->reader);
+    if (status != CAMBER_OK)
+        return camber_report_status(it->session->report, status);
+    const camber_tiles_info *info = camber_tiles_reader_get_info(it->reader);
+    if (!camber_route_find_type(info->type, &type))
+        return camber_report_fail(
+            it->session->report, CAMBER_EXIT_DATA,
+            "%s: its tiles are of no type that is served; it is one of png, webp, jpg, avif, pbf, "
+            "mlt, glb",
+            options->inputs[0]);
+    if (type == CAMBER_ROUTE_MVT && strcmp(info->format, "folder") != 0) {
+        camber_tiles_reader_destroy(it->reader);
+        it->reader = NULL;
+        return read_map(it);
+    }
+    it->about = json_loads(info->metadata, 0, NULL);
+    const char *attribution = json_string_value(json_object_get(it->about, "attribution"));
+    it->shown.attribution = options->attribution ? options->attribution : attribution;
+    it->shown.reader = it->reader;
+    it->shown.metadata = info->metadata;
+    it->shown.min_zoom = info->min_zoom;
+    it->shown.max_zoom = info->max_zoom;
+    it->shown.has_bounds = info->has_bounds;
+    it->shown.has_center = info->has_center;
+    memcpy(it->shown.bounds, info->bounds, sizeof info->bounds);
+    memcpy(it->shown.center, info->center, sizeof info->center);
+    it->shown.close = close_reading;
+    it->shown.owner = it;
+    return CAMBER_EXIT_DONE;
+}
+
+/* Reads what the options name. error gets the library's message where it fails. */
+static int read_input(camber_session *verb, wishes *w, bool first, reading **made, char *error, size_t error_size) {
+    reading *it = calloc(1, sizeof *it);
+    if (!it)
+        return camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
+    it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose};
+    it->own = (camber_session){.options = verb->options, .report = &it->report, .guard = verb->guard};
+    it->session = first ? verb : &it->own;
+    it->wishes = w;
+    int status = camber_session_need(it->session, CAMBER_NEEDS_CONTEXT);
+    if (status == CAMBER_EXIT_DONE)
+        status = is_archive(verb->options) ? read_archive(it) : read_map(it);
+    if (status != CAMBER_EXIT_DONE) {
+        snprintf(error, error_size, "%.*s", (int)error_size - 1, it->session->report->error);
+        close_reading(it);
+        return status;
+    }
+    find_name(it);
+    find_time(it);
+    *made = it;
+    return CAMBER_EXIT_DONE;
+}
+
+/* A hash of what tiles are drawn of, by which a folder keeps them. */
+static uint64_t hash_input(const camber_chart *chart) {
+    const double numbers[] = {chart->simplify_px, (double)chart->coverage,
+                              (double)camber_renderer_get_rasterizer(chart->renderer)};
+    uint64_t hash = camber_features_get_hash(chart->features);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        uint64_t word;
+        memcpy(&word, numbers + i, sizeof word);
+        hash = camber_mix(hash, word);
+    }
+    return hash;
+}
+
+/* Pictures need a renderer, which opens beside the first reading. */
+static int show(camber_session *verb, camber_server *server, wishes *w, bool first) {
+    reading *it = NULL;
+    char error[1024] = "";
+    int status = read_input(verb, w, first, &it, error, sizeof error);
+    if (!it) {
+        camber_server_tell(server, *error ? error : "it cannot be read; the server's log says why");
+        return status;
+    }
+    if (!it->reader)
+        status = camber_session_need(verb, CAMBER_NEEDS_RENDERER);
+    it->shown.chart.renderer = verb->renderer;
+    it->shown.chart.device = verb->device;
+    if (status == CAMBER_EXIT_DONE && !it->reader && verb->options->cache_dir && !verb->options->edit)
+        it->shown.chart.input = hash_input(&it->shown.chart);
+    if (status == CAMBER_EXIT_DONE && !camber_server_show(server, &it->shown))
+        status = camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
+    if (status != CAMBER_EXIT_DONE)
+        close_reading(it);
+    else
+        camber_server_tell(server, NULL);
+    return status;
+}
+
+/* ---- Serving ---- */
+
+/* Several threads tell lines; one call of stdio each keeps them whole. */
+static void tell_request(void *user, const char *line) {
+    (void)user;
+    fprintf(stderr, "%s\n", line);
+}
+
+static void tell_failure(void *user, camber_log_level level, const char *message) {
+    (void)user;
+    if (level == CAMBER_LOG_ERROR)
+        fprintf(stderr, "camber: %s\n", message);
+}
+
+static int listen_there(camber_session *session, camber_server **server, char url[256]) {
+    const camber_options *options = session->options;
+    size_t length = options->public_url ? strlen(options->public_url) : 0;
+    while (length && options->public_url[length - 1] == '/')
+        length--;
+    snprintf(url, 256, "%.*s", (int)length, options->public_url ? options->public_url : "");
+    const camber_server_desc desc = {.listen = options->listen,
+                                     .metrics = options->metrics,
+                                     .public_url = length ? url : NULL,
+                                     .cors = options->cors,
+                                     .cache_bytes = (size_t)options->cache_bytes,
+                                     .most_px = options->most_px,
+                                     .most_ratio = options->most_ratio,
+                                     .threads = options->threads,
+                                     .renderd = options->renderd,
+                                     .cache_dir = options->cache_dir,
+                                     .edits = options->edit != NULL,
+                                     .logs_requests = options->verbose,
+                                     .log_request = tell_request,
+                                     .log = tell_failure};
+    const char *failed = NULL;
+    const int cause = camber_server_create(&desc, server, &failed);
+    if (cause == EINVAL && failed)
+        return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
+                                  "%s: no address; give the number of one, as in 127.0.0.1:8080 or [::1]:8080", failed);
+    if (cause && failed && failed == options->cache_dir)
+        return camber_report_fail(session->report, CAMBER_EXIT_IO, "--cache-dir %s: %s; make the folder first", failed,
+                                  strerror(cause));
+    if (cause && failed && failed == options->renderd)
+        return camber_report_fail(session->report, CAMBER_EXIT_IO,
+                                  "--renderd %s: %s; give a socket that nobody uses, in a folder that is there", failed,
+                                  strerror(cause));
+    if (cause && failed)
+        return camber_report_fail(session->report, CAMBER_EXIT_IO, "%s: %s; choose another port or address (--listen)",
+                                  failed, strerror(cause));
+    if (cause)
+        return camber_report_fail(session->report, CAMBER_EXIT_INTERNAL, "serve: %s; give it more memory",
+                                  strerror(cause));
+    return CAMBER_EXIT_DONE;
+}
+
+static int announce(camber_session *session, const camber_server *server) {
+    const char *metrics = camber_server_get_metrics_address(server);
+    if (session->options->json) {
+        json_t *object = json_pack("{s:s, s:s, s:s?}", "url", camber_server_get_url(server), "listen",
+                                   camber_server_get_address(server), "metrics", metrics);
+        return camber_report_json(session->report, object);
+    }
+    camber_report_say(session->report, "%s/", camber_server_get_url(server));
+    if (metrics)
+        camber_report_say(session->report, "http://%s/metrics", metrics);
+    return CAMBER_EXIT_DONE;
+}
+
+static void set_begins(wishes *w, bool begins) {
+    pthread_mutex_lock(&w->mutex);
+    w->begins = begins;
+    pthread_mutex_unlock(&w->mutex);
+}
+
+static int serve(camber_session *session, camber_server *server, wishes *w) {
+    int status = announce(session, server);
+    set_begins(w, true);
+    if (status == CAMBER_EXIT_DONE)
+        status = show(session, server, w, true);
+    set_begins(w, false);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_guard_go_first(session->guard);
+    camber_report_say(session->report, "ready after %.2f s", 1e-3 * (camber_clock_ms() - session->start_ms));
+    while (wait_for_wish(w, server)) {
+        if (show(session, server, w, false) == CAMBER_EXIT_DONE)
+            camber_report_say(session->report, "has read %s again", session->options->inputs[0]);
+        else
+            camber_report_say(session->report, "goes on with what was read before");
+    }
+    if (w->lost)
+        return camber_report_fail(session->report, CAMBER_EXIT_UNAVAILABLE,
+                                  "serve: the device is lost; start it again, as a service manager does by itself");
+    return CAMBER_EXIT_DONE;
+}
+
+int camber_verb_serve(camber_session *session) {
+    wishes w = {.guard = session->guard, .edited = session->options->edit};
+    camber_server *server = NULL;
+    char url[256];
+    pthread_mutex_init(&w.mutex, NULL);
+    pthread_cond_init(&w.changed, NULL);
+    (void)was_saved(&w); /* before it is read: a change while it is being read counts */
+    session->opens_beside = true;
+    set_heed(session, &w);
+    int status = listen_there(session, &server, url);
+    if (status == CAMBER_EXIT_DONE)
+        status = serve(session, server, &w);
+    camber_server_destroy(server);
+    set_heed(session, NULL);
+    pthread_cond_destroy(&w.changed);
+    pthread_mutex_destroy(&w.mutex);
+    return status;
+}
+
+#endif

@@ -1,0 +1,345 @@
+/* Runs `camber tiles INPUT... -o OUT`: reads the input, and draws a pyramid of tiles into an archive. A summary of
+ * counts and times goes to standard error, or to standard output as JSON. */
+#define _XOPEN_SOURCE 700
+
+#include "cli/input.h"
+#include "cli/shard.h"
+#include "cli/tiles_files.h"
+#include "cli/verbs.h"
+
+#ifdef CAMBER_MAP
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+typedef struct job {
+    camber_session *session;
+    camber_input input;
+    camber_shard shard;
+    char output[4096], name[4096];
+    camber_style *region_style;
+    camber_features *region;
+    camber_tiles_place *places;
+    size_t place_count;
+    camber_tiles_engine *engine;
+    camber_tiles_schedule *schedule; /* NULL: the engine looks where lines are */
+    camber_tiles_files files;
+    camber_tiles_stats stats;
+    double load_ms, total_ms;
+} job;
+
+/* ---- The tiles to be drawn ---- */
+
+/* Polygons are read as outlines, by a style that asks for them alone. */
+static int read_region(job *j) {
+    static const char style[] = "{\"version\":8,\"sources\":{},\"layers\":[{\"id\":\"region\",\"type\":\"line\","
+                                "\"filter\":[\"==\",[\"geometry-type\"],\"Polygon\"]}]}";
+    camber_session *session = j->session;
+    const char *path = session->options->region;
+    if (!path)
+        return CAMBER_EXIT_DONE;
+    const camber_source_desc desc = {.path = path, .keep_apart = true};
+    camber_status status =
+        camber_style_parse(session->context, style, sizeof style - 1, "the region's style", &j->region_style);
+    if (status == CAMBER_OK)
+        status = camber_features_create(session->context, j->region_style, &j->region);
+    if (status == CAMBER_OK)
+        status = camber_features_read(j->region, &desc);
+    return camber_report_status(session->report, status);
+}
+
+static int add_line(job *j, const char *path, char *line, size_t number) {
+    size_t length = strlen(line);
+    while (length && strchr(" \t\r", line[length - 1]))
+        line[--length] = 0;
+    if (!length)
+        return CAMBER_EXIT_DONE;
+    if (!camber_options_parse_place(line, &j->places[j->place_count])) {
+        for (char *c = line; *c; c++)
+            *c = (unsigned char)*c < 0x20 || (unsigned char)*c >= 0x7f ? '?' : *c;
+        return camber_report_fail(j->session->report, CAMBER_EXIT_DATA,
+                                  "%s: line %zu, \"%.40s\", is no tile; give zoom/column/row, as in 12/1950/1533", path,
+                                  number, line);
+    }
+    j->place_count++;
+    return CAMBER_EXIT_DONE;
+}
+
+/* Takes the tiles of --tile, and those of the file that --tiles names. */
+static int read_places(job *j) {
+    const camber_options *options = j->session->options;
+    const char *path = options->renewed;
+    char *text = NULL;
+    size_t size_bytes = 0, lines = 1;
+    int status = CAMBER_EXIT_DONE;
+    if (path)
+        status = camber_input_read_all(j->session->report, path, &text, &size_bytes);
+    for (size_t i = 0; i < size_bytes; i++)
+        lines += text[i] == '\n';
+    if (status == CAMBER_EXIT_DONE && !(j->places = calloc(lines + options->place_count, sizeof *j->places)))
+        status = camber_report_status(j->session->report, CAMBER_ERROR_MEMORY);
+    for (size_t i = 0; j->places && i < options->place_count; i++)
+        j->places[j->place_count++] = options->places[i];
+    char *line = text;
+    for (size_t number = 1; status == CAMBER_EXIT_DONE && line && line < text + size_bytes; number++) {
+        char *end = memchr(line, '\n', size_bytes - (size_t)(line - text));
+        if (end)
+            *end = 0;
+        status = add_line(j, path, line, number);
+        line = end ? end + 1 : NULL;
+    }
+    free(text);
+    return status;
+}
+
+/* The name of the archive without its folder, its ending and its part. */
+static void find_name(job *j) {
+    const camber_options *options = j->session->options;
+    size_t length = strlen(options->output);
+    while (length > 1 && options->output[length - 1] == '/')
+        length--;
+    size_t first = length;
+    while (first > 0 && options->output[first - 1] != '/')
+        first--;
+    for (size_t i = length; i > first + 1 && length == strlen(options->output); i--)
+        if (options->output[i - 1] == '.') {
+            length = i - 1;
+            break;
+        }
+    snprintf(j->name, sizeof j->name, "%.*s", (int)(length - first), options->output + first);
+}
+
+static int find_output(job *j) {
+    camber_session *session = j->session;
+    const camber_options *options = session->options;
+    char message[512];
+    struct stat about;
+    int status = camber_shard_find(options, &j->shard, message, sizeof message);
+    if (status != CAMBER_EXIT_DONE)
+        return camber_report_fail(session->report, status, "%s", message);
+    find_name(j);
+    const bool fits = j->shard.count
+                          ? camber_shard_name(options->output, &j->shard, j->output, sizeof j->output)
+                          : snprintf(j->output, sizeof j->output, "%s", options->output) < (int)sizeof j->output;
+    if (!fits)
+        return camber_report_fail(session->report, CAMBER_EXIT_CREATE, "%s: is too long; choose a shorter name",
+                                  options->output);
+    if (options->dry_run)
+        return CAMBER_EXIT_DONE;
+    if (options->renewed && stat(j->output, &about) != 0)
+        return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
+                                  "%s: no such archive, and --tiles renews one; draw it first", j->output);
+    j->files = (camber_tiles_files){.session = session, .first = 2}; /* finished units stay for --resume */
+    status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
+    return status == CAMBER_EXIT_DONE ? camber_tiles_files_name(&j->files, j->output) : status;
+}
+
+/* ---- Drawing ---- */
+
+static camber_tiles_engine_desc describe_engine(const job *j) {
+    const camber_session *session = j->session;
+    const camber_options *options = session->options;
+    return (camber_tiles_engine_desc){.renderer = session->renderer,
+                                      .device = session->device,
+                                      .tile_size = options->tile_size == 1 ? 512 : 256,
+                                      .ratio = options->view.ratio,
+                                      .simplify_px = options->simplify_px,
+                                      .coverage = (camber_coverage)options->coverage,
+                                      .threads = options->threads};
+}
+
+static camber_status read_for_part(void *user, camber_features *features, bool *done) {
+    const job *j = user;
+    const camber_tiles_engine_desc desc = describe_engine(j);
+    const camber_status status =
+        camber_tiles_schedule_read_for(j->schedule, features, &desc, j->shard.number, j->shard.count);
+    return status == CAMBER_OK ? camber_tiles_schedule_load(j->schedule, features, done) : status;
+}
+
+/* Reads the schedule, or looks whether it can be written. */
+static int open_schedule(job *j) {
+    camber_session *session = j->session;
+    const camber_options *options = session->options;
+    struct stat about;
+    if (!options->schedule)
+        return CAMBER_EXIT_DONE;
+    if (options->dry_run && lstat(options->schedule, &about) == 0 && !options->force)
+        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
+                                  "%s: exists; name another file, or replace it with --force", options->schedule);
+    if (options->dry_run)
+        return CAMBER_EXIT_DONE;
+    const camber_status status = camber_tiles_schedule_read(session->context, options->schedule, options->inputs,
+                                                            options->input_count, &j->schedule);
+    if (status == CAMBER_OK) {
+        session->read_for = read_for_part;
+        session->read_for_user = j;
+    }
+    return camber_report_status(session->report, status);
+}
+
+static int open_engine(job *j) {
+    camber_session *session = j->session;
+    const camber_tiles_engine_desc desc = describe_engine(j);
+    return camber_report_status(session->report, camber_tiles_engine_create(j->input.features, &desc, &j->engine));
+}
+
+static camber_tiles_draw_desc describe(job *j) {
+    const camber_options *options = j->session->options;
+    const camber_view_desc *view = &options->view;
+    return (camber_tiles_draw_desc){.output = j->output,
+                                    .min_zoom = (int)options->min_zoom,
+                                    .max_zoom = (int)options->max_zoom,
+                                    .has_bbox = options->has_bbox,
+                                    .bbox = {view->west, view->south, view->east, view->north},
+                                    .region = j->region,
+                                    .tiles = j->place_count ? j->places : NULL,
+                                    .tile_count = j->place_count,
+                                    .encoding = camber_format_encoding(options->format),
+                                    .quality = (int)options->quality,
+                                    .keep_empty = options->keep_empty,
+                                    .force = options->force,
+                                    .resume = options->resume,
+                                    .renew = options->renewed != NULL,
+                                    .dry_run = options->dry_run,
+                                    .shard = j->shard.number,
+                                    .shards = j->shard.count,
+                                    .name = options->name ? options->name : j->name,
+                                    .description = options->description,
+                                    .attribution = options->attribution,
+                                    .schedule = j->schedule,
+                                    .schedule_path = options->dry_run ? options->schedule : NULL,
+                                    .inputs = options->inputs,
+                                    .input_count = options->input_count,
+                                    .spent = j->input.features,
+                                    .begun = camber_tiles_files_guard,
+                                    .user = &j->files};
+}
+
+static int draw(job *j) {
+    camber_session *session = j->session;
+    int status = find_output(j);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
+    if (status == CAMBER_EXIT_DONE)
+        status = read_places(j);
+    if (status == CAMBER_EXIT_DONE && session->options->renewed && j->place_count == 0)
+        return CAMBER_EXIT_DONE; /* no tile has expired */
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    session->opens_beside = true;
+    status = open_schedule(j);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_input_open(&j->input, session);
+    if (status == CAMBER_EXIT_DONE)
+        status = read_region(j);
+    j->load_ms = camber_clock_ms() - session->start_ms;
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
+    if (status == CAMBER_EXIT_DONE)
+        status = open_engine(j);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_guard_go_first(session->guard);
+    const camber_tiles_draw_desc desc = describe(j);
+    const camber_status drawn = camber_tiles_draw(j->engine, &desc, &j->stats);
+    camber_report_erase_bar(session->report);
+    camber_tiles_files_release(&j->files);
+    return camber_report_status(session->report, drawn);
+}
+
+/* ---- The summary ---- */
+
+static double cpu_ms(void) {
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage) != 0)
+        return 0.0;
+    return 1e3 * (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-3 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+static int print_json(const job *j) {
+    const camber_tiles_stats *stats = &j->stats;
+    const camber_options *options = j->session->options;
+    json_t *object =
+        json_pack("{s:o, s:b, s:b, s:i, s:i}", "output", camber_json_text(j->output), "dry_run", options->dry_run,
+                  "done", stats->done, "min_zoom", (int)options->min_zoom, "max_zoom", (int)options->max_zoom);
+    if (!object)
+        return camber_report_json(j->session->report, NULL);
+    const struct {
+        const char *name;
+        uint64_t count;
+    } counts[] = {{"tiles", stats->tiles},    {"background_tiles", stats->background},
+                  {"units", stats->units},    {"resumed_units", stats->resumed},
+                  {"points", stats->points},  {"points_in", j->input.points_in},
+                  {"bytes", stats->bytes},    {"shard", j->shard.number},
+                  {"shards", j->shard.count}, {"peak_rss_bytes", camber_peak_rss_bytes()}};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        json_object_set_new(object, counts[i].name, camber_json_count((size_t)counts[i].count));
+    const struct {
+        const char *name;
+        double ms;
+    } times[] = {{"load_ms", j->load_ms},
+                 {"census_ms", stats->census_ms},
+                 {"make_ms", stats->make_ms},
+                 {"draw_ms", stats->draw_ms},
+                 {"wait_ms", stats->wait_ms},
+                 {"write_ms", stats->write_ms},
+                 {"encode_ms", stats->encode_ms},
+                 {"encode_cpu_ms", stats->encode_cpu_ms},
+                 {"cpu_ms", cpu_ms()},
+                 {"total_ms", j->total_ms}};
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++)
+        json_object_set_new(object, times[i].name, camber_json_ms(times[i].ms));
+    camber_session_describe(j->session, object);
+    return camber_report_json(j->session->report, object);
+}
+
+static void print_text(const job *j) {
+    const camber_tiles_stats *stats = &j->stats;
+    camber_report *report = j->session->report;
+    if (stats->done) {
+        camber_report_say(report, "%s: is whole; nothing to do", j->output);
+        return;
+    }
+    camber_report_say(report, "%s: %s%llu tile%s in %llu unit%s, %llu points, %.1f MB", j->output,
+                      j->session->options->dry_run ? "would have " : "", (unsigned long long)stats->tiles,
+                      camber_plural((size_t)stats->tiles), (unsigned long long)stats->units,
+                      camber_plural((size_t)stats->units), (unsigned long long)stats->points,
+                      (double)stats->bytes / 1e6);
+    if (stats->resumed)
+        camber_report_say(report, "%llu unit%s had been drawn before", (unsigned long long)stats->resumed,
+                          camber_plural((size_t)stats->resumed));
+    if (!report->verbose)
+        return;
+    camber_report_say(report,
+                      "load %.2f s, census %.2f, networks %.2f, draw %.2f, wait %.2f, write %.2f; in all %.2f s and "
+                      "%.0f MB; encoding took %.2f of %.2f s of all processors",
+                      1e-3 * j->load_ms, 1e-3 * stats->census_ms, 1e-3 * stats->make_ms, 1e-3 * stats->draw_ms,
+                      1e-3 * stats->wait_ms, 1e-3 * stats->write_ms, 1e-3 * j->total_ms,
+                      (double)camber_peak_rss_bytes() / 1e6, 1e-3 * stats->encode_cpu_ms, 1e-3 * cpu_ms());
+}
+
+int camber_verb_tiles_draw(camber_session *session) {
+    job *j = calloc(1, sizeof *j);
+    if (!j)
+        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    j->session = session;
+    int status = draw(j);
+    j->total_ms = camber_clock_ms() - session->start_ms;
+    if (status == CAMBER_EXIT_DONE && session->options->json)
+        status = print_json(j);
+    else if (status == CAMBER_EXIT_DONE)
+        print_text(j);
+    camber_tiles_engine_destroy(j->engine);
+    camber_tiles_schedule_destroy(j->schedule);
+    camber_features_destroy(j->region);
+    camber_style_destroy(j->region_style);
+    camber_input_close(&j->input);
+    free(j->places);
+    free(j);
+    return status;
+}
+
+#endif

@@ -1,0 +1,25 @@
+/* A palette for a picture of too many colours. */
+#ifndef CAMBER_IO_QUANTIZE_H
+#define CAMBER_IO_QUANTIZE_H
+
+#include "io/colors.h"
+#include "io/png_chunks.h"
+
+typedef struct camber_quantizer camber_quantizer;
+
+camber_status camber_quantizer_create(camber_context *context, camber_quantizer **quantizer);
+void camber_quantizer_destroy(camber_quantizer *quantizer);
+
+typedef struct camber_palette {
+    uint8_t colors[CAMBER_PALETTE_MOST][4]; /* premultiplied */
+    size_t count;
+    uint8_t places[CAMBER_KEYS_MOST]; /* where each numbered colour stands in it */
+} camber_palette;
+
+/* Chooses a palette and gives each numbered colour its place. Transparent and opaque colours stay what they are, and
+ * so do colours that many pixels have. */
+void camber_quantize(camber_quantizer *quantizer, const camber_colors *colors, camber_palette *palette);
+/* Whether flat colours have most of the pixels, as on a map: other pictures of few colours are no mixtures. */
+bool camber_colors_have_flat(const camber_colors *colors);
+
+#endif

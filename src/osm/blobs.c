@@ -1,0 +1,316 @@
+/* Reads the outer layers of a PBF file: blobs, each with its header, packed by DEFLATE or not at all.
+ *
+ * Input: a path. Output: the list of blobs, then the blocks in them, one at a time and from any thread. The format is
+ * that of wiki.openstreetmap.org/wiki/PBF_Format. Its own bounds on headers and blobs are kept, so a file asks for
+ * little memory. A blob that unpacks to more than a hundred times its size is refused, as GDAL does. */
+#include "osm/blobs.h"
+
+#include "base/open_file.h"
+
+#include <errno.h>
+#include <stdio.h>
+
+#ifdef CAMBER_LIBDEFLATE
+#include <libdeflate.h>
+#else
+#include <zlib.h>
+#endif
+
+enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20, MOST_UNPACKED_RATIO = 100 };
+
+/* Fields of a blob's header, of a blob, of the file's header and of a block. */
+enum { HEADER_TYPE = 1, HEADER_SIZE = 3 };
+enum { BLOB_RAW = 1, BLOB_RAW_SIZE = 2, BLOB_ZLIB = 3, BLOB_LAST_PACKING = 7 };
+enum { FILE_REQUIRED_FEATURE = 4 };
+enum { BLOCK_STRINGS = 1, BLOCK_GROUP = 2, BLOCK_GRANULARITY = 17, BLOCK_LATITUDE = 19, BLOCK_LONGITUDE = 20 };
+
+/* ---- Bytes of the file ---- */
+
+/* Reads up to size bytes; fewer where the file ends. Below 0: an error. */
+static ssize_t read_at(int file, uint8_t *bytes, size_t size, uint64_t offset) {
+    size_t done = 0;
+    while (done < size) {
+        const ssize_t got = pread(file, bytes + done, size - done, (off_t)(offset + done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return -1;
+        if (got == 0)
+            break;
+        done += (size_t)got;
+    }
+    return (ssize_t)done;
+}
+
+static uint32_t header_size(const uint8_t bytes[4]) {
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+typedef enum blob_type {
+    BLOB_OTHER = 0,
+    BLOB_HEADER,
+    BLOB_DATA,
+} blob_type;
+
+/* Reads a blob's header. false: it is none. */
+static bool read_header(camber_wire wire, blob_type *type, uint64_t *size) {
+    uint64_t key;
+    *type = BLOB_OTHER;
+    *size = UINT64_MAX;
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(HEADER_TYPE, CAMBER_WIRE_BYTES)) {
+            const camber_wire name = camber_wire_bytes(&wire);
+            const size_t length = (size_t)(name.end - name.at);
+            *type = length == 7 && memcmp(name.at, "OSMData", 7) == 0     ? BLOB_DATA
+                    : length == 9 && memcmp(name.at, "OSMHeader", 9) == 0 ? BLOB_HEADER
+                                                                          : BLOB_OTHER;
+        } else if (key == CAMBER_WIRE_KEY(HEADER_SIZE, CAMBER_WIRE_VARINT)) {
+            *size = camber_wire_varint(&wire);
+        } else {
+            camber_wire_skip(&wire, key);
+        }
+    }
+    return !wire.bad && *type != BLOB_OTHER;
+}
+
+bool camber_osm_knows(const char *path) {
+    uint8_t bytes[256];
+    struct stat about;
+    const int file = camber_open_file(path, &about);
+    const ssize_t got = file >= 0 && S_ISREG(about.st_mode) ? read_at(file, bytes, sizeof bytes, 0) : -1;
+    if (file >= 0)
+        close(file);
+    if (got < 16)
+        return false;
+    const uint32_t size = header_size(bytes);
+    blob_type type;
+    uint64_t blob_bytes;
+    return size <= (size_t)got - 4 &&
+           read_header((camber_wire){bytes + 4, bytes + 4 + size, false}, &type, &blob_bytes) && type == BLOB_HEADER;
+}
+
+/* ---- Unpacking ---- */
+
+static bool inflate_bytes(const camber_wire *from, uint8_t *to, size_t size) {
+#ifdef CAMBER_LIBDEFLATE
+    struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();
+    if (!inflater)
+        return false;
+    const bool done = libdeflate_zlib_decompress(inflater, from->at, (size_t)(from->end - from->at), to, size, NULL) ==
+                      LIBDEFLATE_SUCCESS;
+    libdeflate_free_decompressor(inflater);
+    return done;
+#else
+    z_stream stream = {.next_in = (Bytef *)(uintptr_t)from->at,
+                       .avail_in = (uInt)(from->end - from->at),
+                       .next_out = to,
+                       .avail_out = (uInt)size};
+    if (inflateInit(&stream) != Z_OK)
+        return false;
+    const bool done = inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.avail_out == 0;
+    inflateEnd(&stream);
+    return done;
+#endif
+}
+
+/* Finds a block in a blob, and unpacks it where it is packed. */
+static bool unpack(camber_osm_pass *pass, camber_wire blob, camber_osm_block *plain, camber_wire *block,
+                   camber_osm_failure *failure) {
+    camber_wire packed = {0};
+    uint64_t key, size = 0;
+    *block = (camber_wire){0};
+    while (camber_wire_next(&blob, &key)) {
+        if (key == CAMBER_WIRE_KEY(BLOB_RAW, CAMBER_WIRE_BYTES))
+            *block = camber_wire_bytes(&blob);
+        else if (key == CAMBER_WIRE_KEY(BLOB_RAW_SIZE, CAMBER_WIRE_VARINT))
+            size = camber_wire_varint(&blob);
+        else if (key == CAMBER_WIRE_KEY(BLOB_ZLIB, CAMBER_WIRE_BYTES))
+            packed = camber_wire_bytes(&blob);
+        else if (key > CAMBER_WIRE_KEY(BLOB_ZLIB, 7) && key <= CAMBER_WIRE_KEY(BLOB_LAST_PACKING, CAMBER_WIRE_BYTES))
+            return camber_osm_decline(failure);
+        else
+            camber_wire_skip(&blob, key);
+    }
+    if (blob.bad || (!block->at && !packed.at))
+        return camber_osm_fail(failure, "a blob that does not parse");
+    if (block->at)
+        return true;
+    if (size > MOST_BLOB_BYTES || size / MOST_UNPACKED_RATIO > (uint64_t)(packed.end - packed.at))
+        return camber_osm_fail(failure, "a blob that would unpack to far more than it is");
+    if (!camber_osm_reserve(pass, plain, (size_t)size + 1, failure))
+        return false;
+    if (!inflate_bytes(&packed, plain->bytes, (size_t)size))
+        return camber_osm_fail(failure, "a blob that does not unpack");
+    *block = (camber_wire){plain->bytes, plain->bytes + size, false};
+    return true;
+}
+
+void camber_osm_unpacked_free(camber_context *context, camber_osm_unpacked *unpacked) {
+    camber_free(context, unpacked->plain.bytes);
+    camber_free(context, unpacked->packed.bytes);
+    *unpacked = (camber_osm_unpacked){0};
+}
+
+static bool unpack_at(const camber_osm_file *file, const camber_osm_blob *at, camber_osm_pass *pass,
+                      camber_osm_unpacked *unpacked, camber_wire *block, camber_osm_failure *failure) {
+    if (!camber_osm_reserve(pass, &unpacked->packed, (size_t)at->size_bytes + 1, failure))
+        return false;
+    uint8_t *bytes = unpacked->packed.bytes;
+    const ssize_t got = read_at(file->file, bytes, at->size_bytes, at->offset);
+    if (got < 0) {
+        failure->status = CAMBER_ERROR_IO;
+        snprintf(failure->text, sizeof failure->text, "it cannot be read");
+        return false;
+    }
+    if ((size_t)got < at->size_bytes)
+        return camber_osm_fail(failure, "it ends within a blob");
+    return unpack(pass, (camber_wire){bytes, bytes + at->size_bytes, false}, &unpacked->plain, block, failure);
+}
+
+/* ---- Blocks ---- */
+
+bool camber_osm_file_unpack(const camber_osm_file *file, size_t blob, camber_osm_pass *pass,
+                            camber_osm_unpacked *unpacked, camber_osm_entities *entities, camber_osm_failure *failure) {
+    camber_wire wire = {NULL, NULL, false};
+    uint64_t key;
+    if (!unpack_at(file, &file->blobs[blob], pass, unpacked, &wire, failure))
+        return false;
+    *entities = (camber_osm_entities){.groups = wire, .granularity = 100};
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(BLOCK_STRINGS, CAMBER_WIRE_BYTES))
+            entities->strings = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(BLOCK_GRANULARITY, CAMBER_WIRE_VARINT))
+            entities->granularity = (int32_t)camber_wire_varint(&wire);
+        else if (key == CAMBER_WIRE_KEY(BLOCK_LATITUDE, CAMBER_WIRE_VARINT))
+            entities->latitude_offset = (int64_t)camber_wire_varint(&wire);
+        else if (key == CAMBER_WIRE_KEY(BLOCK_LONGITUDE, CAMBER_WIRE_VARINT))
+            entities->longitude_offset = (int64_t)camber_wire_varint(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    if (wire.bad || entities->granularity <= 0)
+        return camber_osm_fail(failure, "a block that does not parse");
+    return true;
+}
+
+bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group) {
+    uint64_t key;
+    while (camber_wire_next(&entities->groups, &key)) {
+        if (key == CAMBER_WIRE_KEY(BLOCK_GROUP, CAMBER_WIRE_BYTES)) {
+            *group = camber_wire_bytes(&entities->groups);
+            return !entities->groups.bad;
+        }
+        camber_wire_skip(&entities->groups, key);
+    }
+    return false;
+}
+
+/* ---- The list of blobs ---- */
+
+/* Whether this reader has all that the file's header requires. */
+static bool read_file_header(camber_wire wire, camber_osm_failure *failure) {
+    static const char *const known[] = {"OsmSchema-V0.6", "DenseNodes"};
+    uint64_t key;
+    while (camber_wire_next(&wire, &key)) {
+        if (key != CAMBER_WIRE_KEY(FILE_REQUIRED_FEATURE, CAMBER_WIRE_BYTES)) {
+            camber_wire_skip(&wire, key);
+            continue;
+        }
+        const camber_wire name = camber_wire_bytes(&wire);
+        bool found = wire.bad;
+        for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+            found = found || ((size_t)(name.end - name.at) == strlen(known[i]) &&
+                              memcmp(name.at, known[i], strlen(known[i])) == 0);
+        if (!found)
+            return camber_osm_decline(failure);
+    }
+    return !wire.bad || camber_osm_fail(failure, "a header that does not parse");
+}
+
+typedef struct listing {
+    camber_osm_file *file;
+    camber_osm_unpacked unpacked;
+    uint64_t at;
+} listing;
+
+/* Reads the blob's header at the position, and steps behind the blob. false: the file ends here, or *failure. */
+static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *failure) {
+    camber_osm_file *file = list->file;
+    uint8_t bytes[MOST_HEADER_BYTES];
+    enum { USUAL_HEADER_BYTES = 64 };
+    ssize_t got = read_at(file->file, bytes, USUAL_HEADER_BYTES, list->at);
+    const uint32_t size = got >= 4 ? header_size(bytes) : 0;
+    if (got < 4 || size > MOST_HEADER_BYTES - 4)
+        return camber_osm_fail(failure, got < 4 ? "it ends within a blob's header" : "a blob's header that is none");
+    if (size > USUAL_HEADER_BYTES - 4)
+        got = read_at(file->file, bytes, size + 4, list->at);
+    blob_type type;
+    uint64_t blob_bytes;
+    if (got < 0 || (size_t)got < size + 4)
+        return camber_osm_fail(failure, "it ends within a blob's header");
+    if (!read_header((camber_wire){bytes + 4, bytes + 4 + size, false}, &type, &blob_bytes))
+        return camber_osm_fail(failure, "a blob's header that is none");
+    if (blob_bytes > MOST_BLOB_BYTES)
+        return camber_osm_fail(failure, "a blob of more than 32 MiB");
+    const camber_osm_blob blob = {list->at + 4 + size, (uint32_t)blob_bytes};
+    if (blob.offset + blob_bytes > file->size_bytes)
+        return camber_osm_fail(failure, "it ends within a blob");
+    list->at = blob.offset + blob_bytes;
+    if (type == BLOB_HEADER) {
+        camber_wire block;
+        return unpack_at(file, &blob, pass, &list->unpacked, &block, failure) && read_file_header(block, failure);
+    }
+    camber_osm_block blobs = {(uint8_t *)file->blobs, file->blob_capacity};
+    const bool fits = camber_osm_reserve(pass, &blobs, (file->blob_count + 1) * sizeof blob, failure);
+    file->blobs = (camber_osm_blob *)(void *)blobs.bytes;
+    file->blob_capacity = blobs.capacity;
+    if (fits)
+        file->blobs[file->blob_count++] = blob;
+    return fits;
+}
+
+static bool list_blobs(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
+    listing *list = user;
+    (void)part;
+    (void)slot;
+    while (list->at < list->file->size_bytes)
+        if (!list_blob(list, pass, failure))
+            return false;
+    return true;
+}
+
+static void free_nothing(camber_context *context, void *slot) {
+    (void)context;
+    (void)slot;
+}
+
+camber_status camber_osm_file_open(camber_context *context, const char *path, camber_osm_file *file, bool *declined) {
+    camber_osm_file made = {.context = context, .path = path, .file = -1};
+    listing list = {.file = &made};
+    camber_status status = camber_file_open(context, path, CAMBER_NAMED_BY_CALLER, &made.file, &made.size_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_osm_pass_desc desc = {.context = context,
+                                       .name = path,
+                                       .part_count = 1,
+                                       .threads = 1,
+                                       .slot_bytes = 1,
+                                       .user = &list,
+                                       .work = list_blobs,
+                                       .free_slot = free_nothing};
+    status = camber_osm_pass_run(&desc, declined);
+    camber_osm_unpacked_free(context, &list.unpacked);
+    if (status != CAMBER_OK || *declined)
+        camber_osm_file_close(&made);
+    else
+        *file = made;
+    return status;
+}
+
+void camber_osm_file_close(camber_osm_file *file) {
+    if (file->file >= 0)
+        close(file->file);
+    camber_free(file->context, file->blobs);
+    file->blobs = NULL;
+    file->file = -1;
+}

@@ -1,0 +1,204 @@
+/* Reads the places of nodes.
+ *
+ * Input: blobs, and the set of nodes that lines need. Output: their places, in the whole numbers of 10^-7 degrees that
+ * GDAL's reader has too. Threads write places as they find them: each node has one, and one that comes twice is left
+ * to GDAL, whose rule for it depends on the order. */
+#include "osm/nodes.h"
+
+#include <math.h>
+
+enum { NODE_ID = 1, NODE_LATITUDE = 8, NODE_LONGITUDE = 9 };
+enum { DENSE_IDS = 1, DENSE_LATITUDES = 8, DENSE_LONGITUDES = 9 };
+enum { USUAL_GRANULARITY = 100 };
+
+typedef struct block {
+    camber_osm_unpacked unpacked;
+} block;
+
+static void free_block(camber_context *context, void *slot) {
+    camber_osm_unpacked_free(context, &((block *)slot)->unpacked);
+}
+
+typedef struct decoder {
+    camber_osm_node_set *nodes;
+    camber_osm_entities entities;
+    camber_osm_finger finger;
+    camber_osm_failure *failure;
+    bool usual; /* coordinates are in 10^-7 degrees as they are */
+} decoder;
+
+/* Degrees as GDAL computes them, and rounds them then. false: they are none on Earth. */
+static bool to_place(int64_t coordinate, int64_t offset, int32_t granularity, double most, int32_t *place) {
+    const double degrees = .000000001 * ((double)offset + (double)granularity * (double)coordinate);
+    if (!(fabs(degrees) <= most))
+        return false;
+    *place = (int32_t)floor(degrees * 1.0e7 + 0.5);
+    return true;
+}
+
+static bool add_node(decoder *self, int64_t id, int64_t longitude, int64_t latitude) {
+    enum { DEGREE = 10000000 };
+    const camber_osm_entities *from = &self->entities;
+    int32_t x = (int32_t)longitude, y = (int32_t)latitude;
+    uint32_t index;
+    /* At the very limits the rounding decides. */
+    const bool inside = longitude > -INT64_C(180) * DEGREE && longitude < INT64_C(180) * DEGREE &&
+                        latitude > -INT64_C(90) * DEGREE && latitude < INT64_C(90) * DEGREE;
+    if (!(self->usual && inside) && !(to_place(longitude, from->longitude_offset, from->granularity, 180.0, &x) &&
+                                      to_place(latitude, from->latitude_offset, from->granularity, 90.0, &y)))
+        return camber_osm_fail(self->failure, "a node that is nowhere on Earth");
+    if (id < 0 || id >= CAMBER_OSM_MOST_ID || !camber_osm_node_set_find(self->nodes, id, &self->finger, &index))
+        return true;
+    const uint64_t before =
+        atomic_exchange_explicit(&self->nodes->places[index], camber_osm_place(x, y), memory_order_relaxed);
+    return before == CAMBER_OSM_NOWHERE || camber_osm_decline(self->failure);
+}
+
+static bool read_node(decoder *self, camber_wire wire) {
+    uint64_t key;
+    int64_t id = 0, longitude = 0, latitude = 0;
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(NODE_ID, CAMBER_WIRE_VARINT))
+            id = camber_wire_signed(&wire);
+        else if (key == CAMBER_WIRE_KEY(NODE_LATITUDE, CAMBER_WIRE_VARINT))
+            latitude = camber_wire_signed(&wire);
+        else if (key == CAMBER_WIRE_KEY(NODE_LONGITUDE, CAMBER_WIRE_VARINT))
+            longitude = camber_wire_signed(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    if (wire.bad)
+        return camber_osm_fail(self->failure, "a node that does not parse");
+    return add_node(self, id, longitude, latitude);
+}
+
+static bool read_dense(decoder *self, camber_wire wire) {
+    camber_wire ids = {0}, longitudes = {0}, latitudes = {0};
+    uint64_t key, id = 0, longitude = 0, latitude = 0;
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(DENSE_IDS, CAMBER_WIRE_BYTES))
+            ids = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(DENSE_LATITUDES, CAMBER_WIRE_BYTES))
+            latitudes = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(DENSE_LONGITUDES, CAMBER_WIRE_BYTES))
+            longitudes = camber_wire_bytes(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    /* Differences are added as unsigned numbers, which may go round. */
+    while (ids.at < ids.end) {
+        id += (uint64_t)camber_wire_signed(&ids);
+        latitude += (uint64_t)camber_wire_signed(&latitudes);
+        longitude += (uint64_t)camber_wire_signed(&longitudes);
+        if (ids.bad || latitudes.bad || longitudes.bad)
+            break;
+        if (!add_node(self, (int64_t)id, (int64_t)longitude, (int64_t)latitude))
+            return false;
+    }
+    return !(wire.bad || ids.bad || latitudes.bad || longitudes.bad) ||
+           camber_osm_fail(self->failure, "nodes that do not parse");
+}
+
+static bool read_group(decoder *self, camber_wire group, bool ways_allowed) {
+    uint64_t key;
+    bool read = true;
+    while (read && camber_wire_next(&group, &key)) {
+        if (key == CAMBER_WIRE_KEY(CAMBER_OSM_DENSE, CAMBER_WIRE_BYTES))
+            read = read_dense(self, camber_wire_bytes(&group));
+        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES))
+            read = read_node(self, camber_wire_bytes(&group));
+        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) && !ways_allowed)
+            return camber_osm_decline(self->failure);
+        else
+            camber_wire_skip(&group, key);
+    }
+    return read && (!group.bad || camber_osm_fail(self->failure, "a group that does not parse"));
+}
+
+typedef struct reading {
+    camber_osm_node_set *nodes;
+    const camber_osm_nodes_desc *desc;
+} reading;
+
+static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
+    const reading *all = user;
+    decoder self = {.nodes = all->nodes, .finger = {.leaf_id = UINT64_MAX, .id = -2}, .failure = failure};
+    camber_osm_entities *entities = &self.entities;
+    camber_wire group;
+    if (!camber_osm_file_unpack(all->desc->file, part, pass, &((block *)slot)->unpacked, entities, failure))
+        return false;
+    self.usual =
+        entities->granularity == USUAL_GRANULARITY && entities->longitude_offset == 0 && entities->latitude_offset == 0;
+    while (camber_osm_entities_next(entities, &group))
+        if (!read_group(&self, group, part + 1 == all->desc->blob_count))
+            return false;
+    return !entities->groups.bad || camber_osm_fail(failure, "a block that does not parse");
+}
+
+camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm_nodes_desc *desc, bool *declined) {
+    reading all = {nodes, desc};
+    const camber_osm_pass_desc pass = {.context = nodes->context,
+                                       .name = desc->file->path,
+                                       .part_count = desc->blob_count,
+                                       .threads = desc->threads,
+                                       .slot_bytes = sizeof(block),
+                                       .user = &all,
+                                       .work = read_block,
+                                       .free_slot = free_block,
+                                       .from = desc->from,
+                                       .to = desc->to};
+    return camber_osm_pass_run(&pass, declined);
+}
+
+/* ---- Where the nodes end ---- */
+
+typedef struct search {
+    const camber_osm_file *file;
+    size_t first; /* blob without nodes, as far as is known */
+} search;
+
+/* Whether the first entity of a blob is a node. A blob without any counts as nodes. */
+static bool begins_with_node(const search *self, size_t blob, camber_osm_pass *pass, block *one, bool *begins,
+                             camber_osm_failure *failure) {
+    camber_osm_entities entities;
+    camber_wire group;
+    uint64_t key = CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES);
+    if (!camber_osm_file_unpack(self->file, blob, pass, &one->unpacked, &entities, failure))
+        return false;
+    if (camber_osm_entities_next(&entities, &group))
+        (void)camber_wire_next(&group, &key);
+    *begins = key >> 3 == CAMBER_OSM_NODE || key >> 3 == CAMBER_OSM_DENSE;
+    return true;
+}
+
+static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
+    search *self = user;
+    size_t end = self->file->blob_count;
+    (void)part;
+    while (self->first < end) {
+        const size_t middle = self->first + (end - self->first) / 2;
+        bool begins;
+        if (!begins_with_node(self, middle, pass, slot, &begins, failure))
+            return false;
+        if (begins)
+            self->first = middle + 1;
+        else
+            end = middle;
+    }
+    return true;
+}
+
+camber_status camber_osm_nodes_end(const camber_osm_file *file, size_t *blob, bool *declined) {
+    search self = {.file = file};
+    const camber_osm_pass_desc pass = {.context = file->context,
+                                       .name = file->path,
+                                       .part_count = 1,
+                                       .threads = 1,
+                                       .slot_bytes = sizeof(block),
+                                       .user = &self,
+                                       .work = search_blobs,
+                                       .free_slot = free_block};
+    const camber_status status = camber_osm_pass_run(&pass, declined);
+    *blob = self.first;
+    return status;
+}

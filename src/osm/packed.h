@@ -1,0 +1,33 @@
+/* Ways with the places of their nodes, packed: four bytes a point or so, until there is room for all of them. */
+#ifndef CAMBER_OSM_PACKED_H
+#define CAMBER_OSM_PACKED_H
+
+#include "osm/ways.h"
+
+typedef struct camber_osm_pack_desc {
+    const char *name; /* the file's, for messages */
+    unsigned threads;
+    bool drops_areas;
+    double from, to; /* of the progress */
+} camber_osm_pack_desc;
+
+/* Packs the ways once the places of their nodes are known, and frees ids and nodes. From then on a way's node_count is
+ * how many of its nodes the file has, 0 where it makes no line; its tags say that it is an area where it is closed.
+ * *dropped: so many areas are gone. */
+camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc *desc, size_t *dropped);
+
+/* Where a reader of a run's places is. */
+typedef struct camber_osm_unpacking {
+    camber_wire wire;
+    int64_t longitude, latitude; /* of the last node, in 10^-7 degrees */
+} camber_osm_unpacking;
+
+/* Begins at the first node of a run that was packed. */
+camber_osm_unpacking camber_osm_unpack_run(const camber_osm_ways *ways, const camber_osm_run *run);
+
+static inline void camber_osm_unpack_node(camber_osm_unpacking *from) {
+    from->longitude += camber_wire_signed(&from->wire);
+    from->latitude += camber_wire_signed(&from->wire);
+}
+
+#endif

@@ -1,0 +1,199 @@
+/* Runs a pass: threads take parts in their order, and the caller's thread commits the results in the same order.
+ *
+ * Input: how many parts there are, and what is done with one. Output: results, committed. A ring of slots bounds how
+ * far the threads run ahead of what is committed, and so the memory. The caller's thread works too while it has nothing
+ * to commit. A context is for one thread at a time, so one lock stands before it: commits hold it, and so does what
+ * makes room in a worker's block. */
+#include "osm/pass.h"
+
+#include <stdio.h>
+
+/* Slots a thread: enough that a large part holds nobody up. */
+enum { SLOTS_A_THREAD = 4, MOST_THREADS = 64 };
+
+static const double PROGRESS_MS = 50;
+
+typedef struct slot_state {
+    bool ready;
+    bool failed;
+    camber_osm_failure failure;
+} slot_state;
+
+struct camber_osm_pass {
+    const camber_osm_pass_desc *desc;
+    pthread_mutex_t context_lock;
+    pthread_mutex_t lock; /* of what follows */
+    pthread_cond_t moved;
+    size_t taken, committed;
+    bool stopped;
+    size_t slot_count;
+    slot_state *states;
+    char *slots;
+};
+
+bool camber_osm_fail(camber_osm_failure *failure, const char *text) {
+    failure->status = CAMBER_ERROR_INPUT;
+    snprintf(failure->text, sizeof failure->text, "%s", text);
+    return false;
+}
+
+bool camber_osm_decline(camber_osm_failure *failure) {
+    failure->declined = true;
+    failure->status = CAMBER_ERROR_INPUT;
+    return false;
+}
+
+bool camber_osm_reserve(camber_osm_pass *pass, camber_osm_block *block, size_t size_bytes,
+                        camber_osm_failure *failure) {
+    if (size_bytes <= block->capacity)
+        return true;
+    const size_t wanted = size_bytes + size_bytes / 4;
+    pthread_mutex_lock(&pass->context_lock);
+    uint8_t *made = camber_resize_quietly(pass->desc->context, block->bytes, wanted);
+    pthread_mutex_unlock(&pass->context_lock);
+    if (!made) {
+        failure->status = CAMBER_ERROR_MEMORY;
+        return false;
+    }
+    block->bytes = made;
+    block->capacity = wanted;
+    return true;
+}
+
+/* ---- Taking parts ---- */
+
+/* Takes a part if the ring has room. Called with the lock held. */
+static bool take(camber_osm_pass *pass, size_t *part) {
+    if (pass->stopped || pass->taken == pass->desc->part_count || pass->taken - pass->committed >= pass->slot_count)
+        return false;
+    *part = pass->taken++;
+    return true;
+}
+
+/* Called with the lock held, which is open while the part is worked on. */
+static void work(camber_osm_pass *pass, size_t part) {
+    slot_state *state = &pass->states[part % pass->slot_count];
+    void *slot = pass->slots + part % pass->slot_count * pass->desc->slot_bytes;
+    pthread_mutex_unlock(&pass->lock);
+    state->failure = (camber_osm_failure){.status = CAMBER_ERROR_INPUT};
+    state->failed = !pass->desc->work(pass->desc->user, pass, part, slot, &state->failure);
+    pthread_mutex_lock(&pass->lock);
+    state->ready = true;
+    pthread_cond_broadcast(&pass->moved);
+}
+
+static void *run_worker(void *user) {
+    camber_osm_pass *pass = user;
+    pthread_mutex_lock(&pass->lock);
+    while (!pass->stopped && pass->taken < pass->desc->part_count) {
+        size_t part;
+        if (take(pass, &part))
+            work(pass, part);
+        else
+            pthread_cond_wait(&pass->moved, &pass->lock);
+    }
+    pthread_mutex_unlock(&pass->lock);
+    return NULL;
+}
+
+/* ---- The caller's thread ---- */
+
+static camber_status report(const camber_osm_pass *pass, const camber_osm_failure *failure, bool *declined) {
+    *declined = failure->declined;
+    if (failure->declined)
+        return CAMBER_OK;
+    if (failure->status == CAMBER_ERROR_MEMORY)
+        return camber_fail(pass->desc->context, CAMBER_ERROR_MEMORY,
+                           "%s: memory: a part of it takes more than what is allowed; allow more memory",
+                           pass->desc->name);
+    return camber_fail(pass->desc->context, failure->status, "%s: cut off or damaged: %s; get the file again",
+                       pass->desc->name, failure->text);
+}
+
+/* Called with the lock held. */
+static camber_status commit(camber_osm_pass *pass, bool *declined) {
+    const size_t part = pass->committed;
+    slot_state *state = &pass->states[part % pass->slot_count];
+    void *slot = pass->slots + part % pass->slot_count * pass->desc->slot_bytes;
+    camber_status status = CAMBER_OK;
+    pthread_mutex_unlock(&pass->lock);
+    pthread_mutex_lock(&pass->context_lock);
+    if (state->failed)
+        status = report(pass, &state->failure, declined);
+    else if (pass->desc->commit)
+        status = pass->desc->commit(pass->desc->user, part, slot);
+    pthread_mutex_unlock(&pass->context_lock);
+    pthread_mutex_lock(&pass->lock);
+    state->ready = false;
+    pass->committed++;
+    pass->stopped = status != CAMBER_OK || *declined;
+    pthread_cond_broadcast(&pass->moved);
+    return status;
+}
+
+static void show_progress(camber_osm_pass *pass, double *shown_ms) {
+    const camber_osm_pass_desc *desc = pass->desc;
+    const double now = camber_now_ms(), done = (double)pass->committed / (double)desc->part_count;
+    if (now - *shown_ms < PROGRESS_MS)
+        return;
+    *shown_ms = now;
+    pthread_mutex_lock(&pass->context_lock);
+    camber_progress(desc->context, "reading", desc->from + done * (desc->to - desc->from));
+    pthread_mutex_unlock(&pass->context_lock);
+}
+
+static camber_status run(camber_osm_pass *pass, bool *declined) {
+    camber_status status = CAMBER_OK;
+    double shown_ms = 0.0;
+    pthread_mutex_lock(&pass->lock);
+    while (!pass->stopped && pass->committed < pass->desc->part_count) {
+        size_t part;
+        if (pass->states[pass->committed % pass->slot_count].ready)
+            status = commit(pass, declined);
+        else if (take(pass, &part))
+            work(pass, part);
+        else
+            pthread_cond_wait(&pass->moved, &pass->lock);
+        pthread_mutex_unlock(&pass->lock);
+        show_progress(pass, &shown_ms);
+        pthread_mutex_lock(&pass->lock);
+    }
+    pass->stopped = true;
+    pthread_cond_broadcast(&pass->moved);
+    pthread_mutex_unlock(&pass->lock);
+    return status;
+}
+
+camber_status camber_osm_pass_run(const camber_osm_pass_desc *desc, bool *declined) {
+    camber_osm_pass pass = {.desc = desc};
+    pthread_t threads[MOST_THREADS];
+    unsigned started = 0, wanted = desc->threads < MOST_THREADS ? desc->threads : MOST_THREADS;
+    *declined = false;
+    if (desc->part_count == 0)
+        return CAMBER_OK;
+    wanted = wanted < desc->part_count ? wanted : (unsigned)desc->part_count;
+    pass.slot_count = (size_t)SLOTS_A_THREAD * wanted;
+    if (!(pass.states = camber_alloc_zero(desc->context, pass.slot_count, sizeof *pass.states)))
+        return CAMBER_ERROR_MEMORY;
+    if (!(pass.slots = camber_alloc_zero(desc->context, pass.slot_count, desc->slot_bytes))) {
+        camber_free(desc->context, pass.states);
+        return CAMBER_ERROR_MEMORY;
+    }
+    pthread_mutex_init(&pass.context_lock, NULL);
+    pthread_mutex_init(&pass.lock, NULL);
+    pthread_cond_init(&pass.moved, NULL);
+    /* A thread that does not start is one fewer. */
+    while (started + 1 < wanted && pthread_create(&threads[started], NULL, run_worker, &pass) == 0)
+        started++;
+    const camber_status status = run(&pass, declined);
+    for (unsigned i = 0; i < started; i++)
+        pthread_join(threads[i], NULL);
+    pthread_cond_destroy(&pass.moved);
+    pthread_mutex_destroy(&pass.lock);
+    pthread_mutex_destroy(&pass.context_lock);
+    for (size_t i = 0; i < pass.slot_count; i++)
+        desc->free_slot(desc->context, pass.slots + i * desc->slot_bytes);
+    camber_free(desc->context, pass.slots);
+    camber_free(desc->context, pass.states);
+    return status;
+}

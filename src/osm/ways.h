@@ -1,0 +1,75 @@
+/* The ways of a file: what the style reads of their tags, and the ids of their nodes. */
+#ifndef CAMBER_OSM_WAYS_H
+#define CAMBER_OSM_WAYS_H
+
+#include "osm/blobs.h"
+#include "osm/node_set.h"
+#include "osm/where.h"
+#include "source/features.h"
+
+/* The use that the reader has for a key of a tag. */
+typedef struct camber_osm_key {
+    const char *name;
+    size_t length;
+    uint32_t property; /* index into the style's properties; UINT32_MAX: none */
+    uint32_t filter;   /* index into the filter's keys; UINT32_MAX: none */
+    bool area, highway;
+} camber_osm_key;
+
+typedef struct camber_osm_way {
+    uint32_t tags; /* index into the sets of tags, twice; + 1: closed, it is an area */
+    uint32_t node_count;
+} camber_osm_way;
+
+/* Ways in a row, and where the ids of their nodes begin; later, where their places do (packed.h). */
+typedef struct camber_osm_run {
+    size_t first_way, way_count, first_id, first_packed, node_count;
+} camber_osm_run;
+
+typedef struct camber_osm_ways {
+    camber_context *context;
+    camber_features *features;
+    camber_osm_key *keys;
+    size_t key_count;
+    bool plain;                    /* the style names no key */
+    const camber_osm_where *where; /* NULL: all ways pass */
+
+    camber_osm_way *ways;
+    size_t way_count, way_capacity;
+    uint8_t *ids; /* as the file has them: differences as varints, beginning anew with each way */
+    size_t id_bytes, id_capacity;
+    camber_osm_run *runs;
+    size_t run_count, run_capacity;
+    size_t node_count; /* of all ways, each as often as it is named */
+    camber_osm_node_set nodes;
+    uint8_t *packed; /* places, once they are known: differences as varints, beginning anew with each run */
+    size_t packed_bytes, packed_capacity;
+
+    /* Sets of tags that differ in what the style reads. */
+    camber_value *values; /* set_count * style->property_count */
+    size_t set_count, value_capacity;
+    uint32_t *slots; /* a hash table: index + 1; 0: free */
+    size_t slot_count;
+    char *text; /* a string with its 0 */
+    size_t text_capacity;
+    uint32_t *local; /* the sets of a block as sets of the file */
+    size_t local_capacity;
+} camber_osm_ways;
+
+/* where may be NULL; else it must outlive the ways. *declined: the style reads what is no tag, or the filter's keys
+ * differ from others in their case alone. */
+camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *features, const camber_osm_where *where,
+                                   bool *declined);
+void camber_osm_ways_free(camber_osm_ways *ways);
+
+typedef struct camber_osm_ways_desc {
+    const camber_osm_file *file;
+    size_t first_blob; /* the first that may have a way */
+    unsigned threads;
+    double from, to; /* of the progress */
+} camber_osm_ways_desc;
+
+/* Reads the ways of a file. *declined: nodes come behind ways, or ids are beyond the bounds. */
+camber_status camber_osm_ways_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
+
+#endif

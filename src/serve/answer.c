@@ -1,0 +1,467 @@
+/* Requests and their answers.
+ *
+ * A request is parsed from its path as it came. Tiles that are not in memory are asked of the drawing: the connection
+ * sleeps until a thread of the drawing wakes it, and the request is then answered as any other. Every answer is a body
+ * that is held while it is sent. Nothing of a request is repeated in an answer. */
+#define _GNU_SOURCE /* POLLRDHUP */
+
+#include "serve/answer.h"
+
+#include "serve/gzip.h"
+#include "serve/page.h"
+
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { LARGEST_UNPACKED_BYTES = 64 << 20 };
+
+typedef struct request {
+    camber_listener *listener;
+    struct MHD_Connection *connection;
+    camber_client *client;
+    char path[CAMBER_PATH_BYTES], method[8];
+    uintptr_t path_end; /* where the path as it came has its end */
+    camber_route_request route;
+    camber_ask ask;
+    bool begun, asked, refused;
+    int status; /* that was answered. 0: none yet */
+    size_t sent_bytes;
+    double start_s;
+} request;
+
+typedef struct reply {
+    int status;
+    camber_body *body; /* held for the answer */
+    const char *media_type, *cache_control;
+    bool has_page, has_variants; /* it is the page's; another client may get it compressed */
+    bool is_stream;              /* it has no body of its own */
+    char last_modified[CAMBER_DATE_SIZE];
+} reply;
+
+double camber_server_now_s(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* ---- Sending ---- */
+
+static const char *header_of(const request *r, const char *name) {
+    return MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
+}
+
+static void release_body(void *body) {
+    camber_body_release(body);
+}
+
+static bool is_known(const request *r, const reply *a) {
+    const char *tags = header_of(r, MHD_HTTP_HEADER_IF_NONE_MATCH);
+    if (tags)
+        return strstr(tags, a->body->etag) != NULL || strcmp(tags, "*") == 0;
+    const char *since = header_of(r, MHD_HTTP_HEADER_IF_MODIFIED_SINCE);
+    return since && a->last_modified[0] && strcmp(since, a->last_modified) == 0;
+}
+
+static void add(struct MHD_Response *response, const char *name, const char *value) {
+    (void)MHD_add_response_header(response, name, value);
+}
+
+static void add_headers(const request *r, const reply *a, struct MHD_Response *response) {
+    const camber_server *server = r->listener->server;
+    add(response, "X-Content-Type-Options", "nosniff");
+    add(response, MHD_HTTP_HEADER_ACCESS_CONTROL_ALLOW_ORIGIN, server->desc.cors);
+    add(response, MHD_HTTP_HEADER_CACHE_CONTROL, a->cache_control);
+    if (a->media_type)
+        add(response, MHD_HTTP_HEADER_CONTENT_TYPE, a->media_type);
+    if (a->status == 405)
+        add(response, MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
+    if (a->status == 503)
+        add(response, MHD_HTTP_HEADER_RETRY_AFTER, "1");
+    if ((a->status == 200 || a->status == 304) && !a->is_stream)
+        add(response, MHD_HTTP_HEADER_ETAG, a->body->etag);
+    if (a->last_modified[0])
+        add(response, MHD_HTTP_HEADER_LAST_MODIFIED, a->last_modified);
+    if (a->has_variants)
+        add(response, MHD_HTTP_HEADER_VARY, MHD_HTTP_HEADER_ACCEPT_ENCODING);
+    if (a->has_page) {
+        add(response, "Content-Security-Policy", server->policy);
+        add(response, "Referrer-Policy", "no-referrer");
+    }
+    if (server->stopping)
+        add(response, MHD_HTTP_HEADER_CONNECTION, "close");
+}
+
+/* Sends the answer, and gives its body back. */
+static enum MHD_Result send_answer(request *r, reply *a) {
+    static char nothing[1];
+    if (a->status == 200 && is_known(r, a))
+        a->status = 304;
+    const bool empty = a->status == 304 || a->status == 204;
+    struct MHD_Response *response = empty ? MHD_create_response_from_buffer(0, nothing, MHD_RESPMEM_PERSISTENT)
+                                          : MHD_create_response_from_buffer_with_free_callback_cls(
+                                                a->body->size_bytes, a->body->bytes, release_body, a->body);
+    if (!response) {
+        camber_body_release(a->body);
+        return MHD_NO;
+    }
+    if (!empty && a->body->encoding)
+        add(response, MHD_HTTP_HEADER_CONTENT_ENCODING, a->body->encoding);
+    add_headers(r, a, response);
+    r->status = a->status;
+    r->sent_bytes = empty || strcmp(r->method, "HEAD") == 0 ? 0 : a->body->size_bytes;
+    const enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)a->status, response);
+    MHD_destroy_response(response); /* the connection holds it */
+    if (empty)
+        camber_body_release(a->body);
+    return queued;
+}
+
+static enum MHD_Result send_error(request *r, int status) {
+    const int index = status == 404 ? 0 : status == 405 ? 1 : status == 500 ? 2 : 3;
+    reply a = {.status = status,
+               .body = camber_body_hold(r->listener->server->errors[index]),
+               .media_type = "text/plain; charset=utf-8",
+               .cache_control = "no-store"};
+    return send_answer(r, &a);
+}
+
+/* Sends one of two bodies, of which the second is compressed and may be NULL. */
+static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bodies[2]) {
+    const bool gzip = bodies[1] && camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
+    a->has_variants = bodies[1] != NULL;
+    a->body = camber_body_hold(bodies[gzip]);
+    return send_answer(r, a);
+}
+
+/* ---- Tiles ---- */
+
+/* Holds nothing but the body that is given back. */
+static camber_view_of_shown look(camber_server *server, bool dark, camber_body *bodies[2]) {
+    pthread_mutex_lock(&server->mutex);
+    const camber_view_of_shown view = server->view;
+    for (int i = 0; bodies && i < 2; i++)
+        bodies[i] = view.tilejson[dark][i] ? camber_body_hold(view.tilejson[dark][i]) : NULL;
+    pthread_mutex_unlock(&server->mutex);
+    return view;
+}
+
+static enum MHD_Result send_tile(request *r, const camber_view_of_shown *view, camber_body *body) {
+    reply a = {.status = 200,
+               .body = body,
+               .media_type = camber_route_get_media_type(r->route.type),
+               .cache_control = r->listener->server->desc.edits ? "no-cache" : "public, max-age=300"};
+    memcpy(a.last_modified, view->last_modified, sizeof a.last_modified);
+    return send_answer(r, &a);
+}
+
+/* Reads a tile, or finds it in memory. *body: NULL where the archive has none. false: it cannot be read. */
+static bool find_stored(camber_server *server, const camber_route_request *route, camber_body **body) {
+    const camber_tile_key key = camber_draw_queue_key(route);
+    const camber_tiles_place place = {route->zoom, route->column, route->row};
+    const uint8_t *bytes = NULL;
+    size_t size_bytes = 0;
+    if ((*body = camber_tile_cache_get(server->cache, key)) != NULL)
+        return true;
+    pthread_mutex_lock(&server->reader_mutex);
+    const uint64_t generation = camber_tile_cache_get_generation(server->cache);
+    const camber_status status = camber_tiles_reader_read(server->reader, &place, &bytes, &size_bytes);
+    *body = status == CAMBER_OK && size_bytes ? camber_body_create(bytes, size_bytes) : NULL;
+    pthread_mutex_unlock(&server->reader_mutex);
+    if (*body)
+        camber_tile_cache_put(server->cache, key, *body, generation);
+    return status == CAMBER_OK && (*body || size_bytes == 0);
+}
+
+/* No tile where there may be one is no error: browsers report each 404. */
+static enum MHD_Result send_nothing(request *r) {
+    reply a = {.status = 204, .cache_control = "public, max-age=300"};
+    return send_answer(r, &a);
+}
+
+static enum MHD_Result answer_stored(request *r, const camber_view_of_shown *view) {
+    camber_body *body = NULL;
+    if (r->route.ratio != 1 || r->route.dark || r->route.type != view->type)
+        return send_error(r, 404);
+    if (!find_stored(r->listener->server, &r->route, &body))
+        return send_error(r, 500);
+    if (!body)
+        return send_nothing(r);
+    const bool packed = body->size_bytes > 1 && body->bytes[0] == 0x1f && body->bytes[1] == 0x8b;
+    if (!packed)
+        return send_tile(r, view, body);
+    reply a = {.status = 200,
+               .media_type = camber_route_get_media_type(r->route.type),
+               .cache_control = "public, max-age=300"};
+    memcpy(a.last_modified, view->last_modified, sizeof a.last_modified);
+    /* The bodies' own mark of compression belongs to whoever made them; the stored one has none. */
+    const bool takes = camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
+    camber_body *sent =
+        takes ? camber_body_create(body->bytes, body->size_bytes) : camber_body_gunzip(body, LARGEST_UNPACKED_BYTES);
+    camber_body_release(body);
+    if (!sent)
+        return send_error(r, 500);
+    sent->encoding = takes ? "gzip" : NULL;
+    a.has_variants = true;
+    a.body = sent;
+    return send_answer(r, &a);
+}
+
+static void wake(camber_ask *ask) {
+    const request *r = ask->user;
+    MHD_resume_connection(r->connection);
+}
+
+/* A client that has closed its side takes no answer any more. */
+static bool has_left(const camber_ask *ask) {
+    const request *r = ask->user;
+    struct pollfd look_at = {.fd = r->client->socket, .events = POLLRDHUP};
+    return poll(&look_at, 1, 0) == 1 && look_at.revents & (POLLRDHUP | POLLHUP | POLLERR);
+}
+
+/* The connection sleeps from before it is asked, since the answer may be there at once. */
+static enum MHD_Result ask(request *r) {
+    r->asked = true;
+    r->ask = (camber_ask){.request = r->route, .done = wake, .is_gone = r->client ? has_left : NULL, .user = r};
+    MHD_suspend_connection(r->connection);
+    if (!camber_draw_queue_ask(r->listener->server->drawing, &r->ask)) {
+        r->refused = true;
+        MHD_resume_connection(r->connection);
+    }
+    return MHD_YES;
+}
+
+static enum MHD_Result answer_drawn(request *r) {
+    camber_server *server = r->listener->server;
+    const camber_view_of_shown view = look(server, r->route.dark, NULL);
+    const bool is_tile = r->route.route == CAMBER_ROUTE_TILE;
+    if (r->asked && !r->refused && r->ask.result == CAMBER_ASK_DONE)
+        return send_tile(r, &view, r->ask.body);
+    if (r->asked)
+        return send_error(r, !r->refused && r->ask.result == CAMBER_ASK_FAILED ? 500 : 503);
+    if (!view.ready || server->stopping)
+        return send_error(r, 503);
+    if (view.is_archive)
+        return is_tile ? answer_stored(r, &view) : send_error(r, 404);
+    if (r->route.type > CAMBER_ROUTE_WEBP || (r->route.dark && !view.has_dark) ||
+        (r->route.type == CAMBER_ROUTE_WEBP && !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
+        return send_error(r, 404);
+    camber_body *body = is_tile ? camber_tile_cache_get(server->cache, camber_draw_queue_key(&r->route)) : NULL;
+    return body ? send_tile(r, &view, body) : ask(r);
+}
+
+/* ---- The other routes ---- */
+
+static enum MHD_Result answer_page(request *r) {
+    const camber_server *server = r->listener->server;
+    for (size_t i = 0; i < camber_page_file_count; i++) {
+        const camber_page_file *file = camber_page_files + i;
+        if (strlen(file->path) != r->route.name_length || strncmp(file->path, r->route.name, r->route.name_length) != 0)
+            continue;
+        reply a = {.status = 200, .media_type = file->content_type, .cache_control = "no-cache", .has_page = true};
+        return send_variant(r, &a, server->page_bodies + 2 * i);
+    }
+    return send_error(r, 404);
+}
+
+static enum MHD_Result answer_tilejson(request *r) {
+    camber_body *bodies[2];
+    const camber_view_of_shown view = look(r->listener->server, r->route.dark, bodies);
+    reply a = {.status = 200, .media_type = "application/json", .cache_control = "no-cache"};
+    const enum MHD_Result result = !view.ready  ? send_error(r, 503)
+                                   : !bodies[0] ? send_error(r, 404)
+                                                : send_variant(r, &a, bodies);
+    camber_body_release(bodies[0]);
+    camber_body_release(bodies[1]);
+    return result;
+}
+
+static enum MHD_Result send_text(request *r, const char *text, size_t size_bytes, const char *media_type) {
+    reply a = {.status = 200,
+               .body = camber_body_create(text, size_bytes),
+               .media_type = media_type,
+               .cache_control = "no-store"};
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
+static enum MHD_Result answer_health(request *r) {
+    static const char fine[] = "ok\n";
+    camber_server *server = r->listener->server;
+    return look(server, false, NULL).ready && !server->stopping
+               ? send_text(r, fine, sizeof fine - 1, "text/plain; charset=utf-8")
+               : send_error(r, 503);
+}
+
+static enum MHD_Result answer_metrics(request *r) {
+    camber_server *server = r->listener->server;
+    const camber_metrics_now now = {.cache = camber_tile_cache_get_stats(server->cache),
+                                    .ready = look(server, false, NULL).ready,
+                                    .in_flight = server->in_flight,
+                                    .uptime_s = camber_server_now_s() - server->start_s};
+    char *text = NULL;
+    size_t size_bytes = 0;
+    FILE *file = open_memstream(&text, &size_bytes);
+    if (!file)
+        return MHD_NO;
+    server->metrics.connections = camber_clients_count(server->clients);
+    camber_metrics_write(&server->metrics, &now, file);
+    if (fclose(file) != 0) {
+        free(text);
+        return MHD_NO;
+    }
+    const enum MHD_Result result = send_text(r, text, size_bytes, "text/plain; version=0.0.4; charset=utf-8");
+    free(text);
+    return result;
+}
+
+/* An answer without an end, which takes no time of the connection's. */
+static enum MHD_Result answer_events(request *r) {
+    const camber_server *server = r->listener->server;
+    const bool head = strcmp(r->method, "HEAD") == 0;
+    if (!server->events)
+        return send_error(r, 404);
+    struct MHD_Response *response =
+        head || server->stopping ? NULL : camber_events_listen(server->events, r->connection);
+    if (!response)
+        return send_error(r, 503);
+    const reply a = {.status = 200, .media_type = "text/event-stream", .cache_control = "no-store", .is_stream = true};
+    add_headers(r, &a, response);
+    r->status = a.status;
+    if (r->client)
+        camber_client_enter(r->client, CAMBER_CLIENT_LISTENS);
+    const enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)a.status, response);
+    MHD_destroy_response(response);
+    return queued;
+}
+
+static enum MHD_Result answer(request *r) {
+    if (r->listener->is_for_metrics != (r->route.route == CAMBER_ROUTE_METRICS))
+        return send_error(r, 404);
+    switch (r->route.route) {
+    case CAMBER_ROUTE_PAGE: return answer_page(r);
+    case CAMBER_ROUTE_TILEJSON: return answer_tilejson(r);
+    case CAMBER_ROUTE_TILE:
+    case CAMBER_ROUTE_STATIC: return answer_drawn(r);
+    case CAMBER_ROUTE_HEALTH: return answer_health(r);
+    case CAMBER_ROUTE_METRICS: return answer_metrics(r);
+    case CAMBER_ROUTE_EVENTS: return answer_events(r);
+    case CAMBER_ROUTE_NONE:
+    case CAMBER_ROUTES: break;
+    }
+    return send_error(r, 404);
+}
+
+/* ---- Callbacks ---- */
+
+/* A path that is longer than any route is no route. */
+void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *connection) {
+    camber_listener *listener = user;
+    request *r = calloc(1, sizeof *r);
+    if (!r)
+        return NULL;
+    r->listener = listener;
+    r->connection = connection;
+    r->start_s = camber_server_now_s();
+    const size_t length = strcspn(uri, "?");
+    r->path_end = (uintptr_t)uri + strlen(uri);
+    if (length < sizeof r->path)
+        memcpy(r->path, uri, length);
+    listener->server->in_flight++;
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    r->client = info ? info->socket_context : NULL;
+    return r;
+}
+
+/* The version stands one place behind the path, in the same buffer. Where more is between, the path has a zero byte in
+ * it: what we were given is its beginning alone. */
+static bool is_whole(const request *r, const char *version) {
+    enum { FARTHEST = 1 << 16 };
+    const uintptr_t gap = (uintptr_t)version - r->path_end;
+    return gap <= 1 || gap > FARTHEST;
+}
+
+static bool has_body(const request *r) {
+    const char *length = header_of(r, MHD_HTTP_HEADER_CONTENT_LENGTH);
+    return (length && strcmp(length, "0") != 0) || header_of(r, MHD_HTTP_HEADER_TRANSFER_ENCODING);
+}
+
+enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connection, const char *url,
+                                      const char *method, const char *version, const char *upload, size_t *upload_size,
+                                      void **state) {
+    const camber_listener *listener = user;
+    request *r = *state;
+    (void)connection;
+    (void)url;
+    (void)upload;
+    *upload_size = 0;
+    if (!r || r->status)
+        return r ? MHD_YES : MHD_NO;
+    if (r->asked)
+        return answer_drawn(r);
+    /* An answer at the first call ends the connection: right where a body follows, which nobody reads. */
+    if (!r->begun && !has_body(r)) {
+        r->begun = true;
+        return MHD_YES;
+    }
+    if (r->client)
+        camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
+    snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
+    const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
+    const int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->path, &r->route) : 404;
+    return status == 200 ? answer(r) : send_error(r, status);
+}
+
+/* ---- The log ---- */
+
+static void append_json(char *text, size_t size, const char *from) {
+    size_t at = strlen(text);
+    for (; *from && at + 8 < size; from++) {
+        const unsigned char c = (unsigned char)*from;
+        if (c < 0x20 || c >= 0x7f || c == '"' || c == '\\')
+            at += (size_t)snprintf(text + at, size - at, "\\u%04x", c);
+        else
+            text[at++] = (char)c;
+    }
+    text[at] = 0;
+}
+
+static void log_request(const request *r) {
+    const camber_server *server = r->listener->server;
+    char text[2048], date[32];
+    struct timespec now;
+    struct tm parts;
+    clock_gettime(CLOCK_REALTIME, &now);
+    if (!gmtime_r(&now.tv_sec, &parts) || !strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts))
+        return;
+    snprintf(text, sizeof text, "{\"time\":\"%s.%03ldZ\",\"method\":\"", date, now.tv_nsec / 1000000);
+    append_json(text, sizeof text, r->method);
+    snprintf(text + strlen(text), sizeof text - strlen(text), "\",\"path\":\"");
+    append_json(text, sizeof text - 200, r->path);
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "\",\"route\":\"%s\",\"status\":%d,\"bytes\":%zu,\"ms\":%.3f}", camber_route_get_name(r->route.route),
+             r->status, r->sent_bytes, 1e3 * (camber_server_now_s() - r->start_s));
+    server->desc.log_request(server->desc.user, text);
+}
+
+void camber_request_end(void *user, struct MHD_Connection *connection, void **state,
+                        enum MHD_RequestTerminationCode code) {
+    camber_listener *listener = user;
+    camber_server *server = listener->server;
+    request *r = *state;
+    (void)connection;
+    (void)code;
+    if (!r)
+        return;
+    camber_metrics_count_request(&server->metrics, r->route.route, r->status);
+    server->metrics.sent_bytes += r->sent_bytes;
+    if (server->desc.log_request && server->desc.logs_requests)
+        log_request(r);
+    if (r->client)
+        camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
+    if (r->asked && !r->refused && r->status == 0) /* the answer came, and nobody takes it */
+        camber_body_release(r->ask.body);
+    free(r);
+    *state = NULL;
+    server->in_flight--;
+}

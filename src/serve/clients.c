@@ -1,0 +1,118 @@
+/* A list of the open connections, and a thread that looks through it now and then. A connection that takes too long is
+ * shut down; the server then sees its end and closes it. */
+#define _XOPEN_SOURCE 700
+
+#include "serve/clients.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <time.h>
+
+enum { LOOK_MS = 500 };
+
+struct camber_clients {
+    pthread_mutex_t mutex;
+    pthread_cond_t stop;
+    pthread_t thread;
+    bool stops;
+    int64_t most_ms;
+    camber_client *first;
+    _Atomic int64_t count;
+};
+
+static int64_t now_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+static void shut_late(camber_clients *clients) {
+    const int64_t now = now_ms();
+    for (camber_client *client = clients->first; client; client = client->next)
+        if (client->phase != CAMBER_CLIENT_LISTENS && now - client->since_ms > clients->most_ms)
+            (void)shutdown(client->socket, SHUT_RDWR);
+}
+
+static void *look(void *user) {
+    camber_clients *clients = user;
+    pthread_mutex_lock(&clients->mutex);
+    while (!clients->stops) {
+        struct timespec end;
+        clock_gettime(CLOCK_REALTIME, &end);
+        end.tv_nsec += LOOK_MS * 1000000L;
+        end.tv_sec += end.tv_nsec / 1000000000L;
+        end.tv_nsec %= 1000000000L;
+        (void)pthread_cond_timedwait(&clients->stop, &clients->mutex, &end);
+        shut_late(clients);
+    }
+    pthread_mutex_unlock(&clients->mutex);
+    return NULL;
+}
+
+camber_clients *camber_clients_create(double seconds) {
+    camber_clients *made = calloc(1, sizeof *made);
+    if (!made)
+        return NULL;
+    made->most_ms = (int64_t)(seconds * 1e3);
+    pthread_mutex_init(&made->mutex, NULL);
+    pthread_cond_init(&made->stop, NULL);
+    if (pthread_create(&made->thread, NULL, look, made) == 0)
+        return made;
+    pthread_cond_destroy(&made->stop);
+    pthread_mutex_destroy(&made->mutex);
+    free(made);
+    return NULL;
+}
+
+void camber_clients_destroy(camber_clients *clients) {
+    if (!clients)
+        return;
+    pthread_mutex_lock(&clients->mutex);
+    clients->stops = true;
+    pthread_cond_signal(&clients->stop);
+    pthread_mutex_unlock(&clients->mutex);
+    pthread_join(clients->thread, NULL);
+    while (clients->first)
+        camber_clients_remove(clients, clients->first);
+    pthread_cond_destroy(&clients->stop);
+    pthread_mutex_destroy(&clients->mutex);
+    free(clients);
+}
+
+camber_client *camber_clients_add(camber_clients *clients, int socket) {
+    camber_client *client = calloc(1, sizeof *client);
+    if (!client)
+        return NULL;
+    client->socket = socket;
+    camber_client_enter(client, CAMBER_CLIENT_SENDS);
+    pthread_mutex_lock(&clients->mutex);
+    client->next = clients->first;
+    if (client->next)
+        client->next->before = client;
+    clients->first = client;
+    clients->count++;
+    pthread_mutex_unlock(&clients->mutex);
+    return client;
+}
+
+void camber_clients_remove(camber_clients *clients, camber_client *client) {
+    if (!client)
+        return;
+    pthread_mutex_lock(&clients->mutex);
+    *(client->before ? &client->before->next : &clients->first) = client->next;
+    if (client->next)
+        client->next->before = client->before;
+    clients->count--;
+    pthread_mutex_unlock(&clients->mutex);
+    free(client);
+}
+
+void camber_client_enter(camber_client *client, camber_client_phase phase) {
+    client->since_ms = now_ms();
+    client->phase = (int)phase;
+}
+
+int64_t camber_clients_count(const camber_clients *clients) {
+    return clients->count;
+}

@@ -1,0 +1,97 @@
+/* Counters and histograms, and their text. */
+#include "serve/metrics.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* Statuses that the server answers with; the last kind is any other. */
+static const int statuses[CAMBER_STATUS_KINDS - 1] = {200, 204, 304, 400, 404, 405, 408, 410, 413, 431, 500, 503};
+static const double ends_s[CAMBER_HISTOGRAM_BUCKETS] = {0.0005, 0.001, 0.0025, 0.005, 0.01,
+                                                        0.025,  0.05,  0.1,    0.25,  1.0};
+
+void camber_metrics_count_request(camber_metrics *metrics, camber_route route, int status) {
+    int kind = 0;
+    while (kind < CAMBER_STATUS_KINDS - 1 && statuses[kind] != status)
+        kind++;
+    metrics->requests[route][kind]++;
+}
+
+void camber_histogram_observe(camber_histogram *histogram, double seconds) {
+    int bucket = 0;
+    while (bucket < CAMBER_HISTOGRAM_BUCKETS && seconds > ends_s[bucket])
+        bucket++;
+    histogram->buckets[bucket]++;
+    histogram->microseconds += (uint64_t)(seconds * 1e6);
+}
+
+/* ---- Text ---- */
+
+static void begin(FILE *file, const char *name, const char *type, const char *help) {
+    fprintf(file, "# HELP camber_%s %s\n# TYPE camber_%s %s\n", name, help, name, type);
+}
+
+static void write_one(FILE *file, const char *name, const char *type, const char *help, double value) {
+    begin(file, name, type, help);
+    fprintf(file, "camber_%s %.15g\n", name, value);
+}
+
+static void write_requests(camber_metrics *metrics, FILE *file) {
+    begin(file, "requests_total", "counter", "Requests that were answered, by route and status.");
+    for (int route = 0; route < CAMBER_ROUTES; route++)
+        for (int kind = 0; kind < CAMBER_STATUS_KINDS; kind++) {
+            const uint64_t count = metrics->requests[route][kind];
+            char status[16] = "other";
+            if (kind < CAMBER_STATUS_KINDS - 1)
+                snprintf(status, sizeof status, "%d", statuses[kind]);
+            if (count)
+                fprintf(file, "camber_requests_total{route=\"%s\",status=\"%s\"} %" PRIu64 "\n",
+                        camber_route_get_name((camber_route)route), status, count);
+        }
+}
+
+static void write_histogram(camber_histogram *histogram, FILE *file, const char *name, const char *help) {
+    uint64_t sum = 0;
+    begin(file, name, "histogram", help);
+    for (int i = 0; i < CAMBER_HISTOGRAM_BUCKETS; i++) {
+        sum += histogram->buckets[i];
+        fprintf(file, "camber_%s_bucket{le=\"%g\"} %" PRIu64 "\n", name, ends_s[i], sum);
+    }
+    sum += histogram->buckets[CAMBER_HISTOGRAM_BUCKETS];
+    fprintf(file, "camber_%s_bucket{le=\"+Inf\"} %" PRIu64 "\ncamber_%s_sum %.6f\ncamber_%s_count %" PRIu64 "\n", name,
+            sum, name, 1e-6 * (double)histogram->microseconds, name, sum);
+}
+
+static double resident_bytes(void) {
+    unsigned long long all = 0, resident = 0;
+    FILE *file = fopen("/proc/self/statm", "re");
+    if (file && fscanf(file, "%llu %llu", &all, &resident) != 2)
+        resident = 0;
+    if (file)
+        fclose(file);
+    return (double)resident * (double)sysconf(_SC_PAGESIZE);
+}
+
+void camber_metrics_write(camber_metrics *metrics, const camber_metrics_now *now, FILE *file) {
+    write_one(file, "ready", "gauge", "Whether the input has been read.", now->ready);
+    write_one(file, "uptime_seconds", "gauge", "Seconds since the server began to listen.", now->uptime_s);
+    write_requests(metrics, file);
+    write_one(file, "sent_bytes_total", "counter", "Bytes of answers, without their headers.",
+              (double)metrics->sent_bytes);
+    write_one(file, "requests_in_flight", "gauge", "Requests that are not answered yet, with this one.",
+              (double)now->in_flight);
+    write_one(file, "connections", "gauge", "Connections that are open.", (double)metrics->connections);
+    write_one(file, "queue", "gauge", "Pictures that wait to be drawn.", (double)metrics->queued);
+    write_one(file, "queue_refused_total", "counter", "Requests that found the queue full.", (double)metrics->refused);
+    write_one(file, "queue_dropped_total", "counter", "Pictures that nobody waited for any more.",
+              (double)metrics->dropped);
+    write_histogram(&metrics->draw, file, "draw_seconds", "Seconds that a picture took to be drawn.");
+    write_histogram(&metrics->encode, file, "encode_seconds", "Seconds that a tile took to be encoded.");
+    write_one(file, "cache_hits_total", "counter", "Tiles that were found in memory.", (double)now->cache.hits);
+    write_one(file, "cache_folder_hits_total", "counter", "Tiles that were found in the folder alone.",
+              (double)now->cache.folder_hits);
+    write_one(file, "cache_misses_total", "counter", "Tiles that were not.", (double)now->cache.misses);
+    write_one(file, "cache_tiles", "gauge", "Tiles in memory.", (double)now->cache.tiles);
+    write_one(file, "cache_bytes", "gauge", "Bytes that they take.", (double)now->cache.size_bytes);
+    write_one(file, "resident_bytes", "gauge", "Memory of the process.", resident_bytes());
+}

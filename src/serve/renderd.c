@@ -1,0 +1,340 @@
+/* mod_tile's protocol over a Unix socket.
+ *
+ * A request is a struct of this machine: version, command, x, y, z, and from version 2 on the map's name, from 3 on a
+ * media type and options. The answer is the same struct, with "done" or "not done" as its command. Each connection has
+ * a thread, which asks the queue for the tiles of the metatile, waits for them, and writes the file. */
+#define _XOPEN_SOURCE 700
+
+#include "serve/renderd.h"
+
+#include "serve/metatile_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MOST_CLIENTS = 64, NAME_SIZE = 41, MOST_ZOOM = 20, SIDE = CAMBER_METATILE_FILE_SIDE };
+
+typedef enum protocol_command {
+    COMMAND_IGNORE = 0,
+    COMMAND_RENDER,
+    COMMAND_DIRTY, /* has no answer */
+    COMMAND_DONE,
+    COMMAND_NOT_DONE,
+    COMMAND_RENDER_PRIO,
+    COMMAND_RENDER_BULK,
+    COMMAND_RENDER_LOW,
+} protocol_command;
+
+typedef struct protocol_message {
+    int32_t version, command, x, y, z;
+    char name[NAME_SIZE], media_type[NAME_SIZE], options[NAME_SIZE];
+} protocol_message;
+
+/* The sizes of the structs of versions 1, 2 and 3. */
+static const size_t sizes[] = {0, 20, 64, sizeof(protocol_message)};
+
+typedef struct renderd_client {
+    camber_renderd *renderd;
+    pthread_t thread;
+    int socket;       /* -1: the place is free */
+    atomic_bool ends; /* the thread is to be joined */
+} renderd_client;
+
+struct camber_renderd {
+    camber_renderd_desc desc;
+    int socket;
+    pthread_t thread;
+    bool started;
+    atomic_bool stopping;
+    pthread_mutex_t mutex;   /* of clients' sockets */
+    pthread_mutex_t drawing; /* one metatile at a time */
+    renderd_client clients[MOST_CLIENTS];
+};
+
+/* ---- A metatile ---- */
+
+typedef struct metatile_ask {
+    pthread_mutex_t mutex;
+    pthread_cond_t told;
+    size_t left;
+    camber_ask asks[CAMBER_METATILE_FILE_TILES];
+    camber_body *bodies[CAMBER_METATILE_FILE_TILES];
+} metatile_ask;
+
+static void take(camber_ask *ask) {
+    metatile_ask *m = ask->user;
+    pthread_mutex_lock(&m->mutex);
+    m->bodies[ask - m->asks] = ask->body;
+    m->left--;
+    pthread_cond_signal(&m->told);
+    pthread_mutex_unlock(&m->mutex);
+}
+
+/* Asks for one tile, again and again while the queue is full. */
+static void ask_for(camber_renderd *renderd, metatile_ask *m, size_t index, const camber_route_request *first) {
+    const struct timespec pause = {.tv_nsec = 2000000};
+    camber_ask *ask = m->asks + index;
+    *ask = (camber_ask){.request = *first, .done = take, .user = m};
+    ask->request.column += (uint32_t)(index / SIDE);
+    ask->request.row += (uint32_t)(index % SIDE);
+    pthread_mutex_lock(&m->mutex);
+    m->left++;
+    pthread_mutex_unlock(&m->mutex);
+    while (!camber_draw_queue_ask(renderd->desc.queue, ask)) {
+        if (renderd->stopping) {
+            ask->body = NULL;
+            take(ask);
+            return;
+        }
+        nanosleep(&pause, NULL);
+    }
+}
+
+static int write_metatile(camber_renderd *renderd, const char *name, const camber_route_request *first) {
+    metatile_ask m = {.left = 0};
+    const uint32_t tiles = first->zoom < 3 ? 1u << first->zoom : SIDE;
+    bool whole = true;
+    pthread_mutex_init(&m.mutex, NULL);
+    pthread_cond_init(&m.told, NULL);
+    for (size_t i = 0; i < CAMBER_METATILE_FILE_TILES; i++)
+        if (i / SIDE < tiles && i % SIDE < tiles)
+            ask_for(renderd, &m, i, first);
+    pthread_mutex_lock(&m.mutex);
+    while (m.left)
+        pthread_cond_wait(&m.told, &m.mutex);
+    pthread_mutex_unlock(&m.mutex);
+    for (size_t i = 0; i < CAMBER_METATILE_FILE_TILES; i++)
+        whole = whole && (m.bodies[i] || i / SIDE >= tiles || i % SIDE >= tiles);
+    const camber_metatile_file file = {.folder = renderd->desc.folder,
+                                       .name = name,
+                                       .zoom = first->zoom,
+                                       .column = first->column,
+                                       .row = first->row,
+                                       .tiles = m.bodies};
+    const int cause = whole ? camber_metatile_file_write(&file) : 0;
+    for (size_t i = 0; i < CAMBER_METATILE_FILE_TILES; i++)
+        camber_body_release(m.bodies[i]);
+    pthread_cond_destroy(&m.told);
+    pthread_mutex_destroy(&m.mutex);
+    if (cause) {
+        char message[512];
+        snprintf(message, sizeof message, "%s: %s; free some space, or let it be written to", renderd->desc.folder,
+                 strerror(cause));
+        renderd->desc.failed(renderd->desc.user, message);
+    }
+    return whole && !cause;
+}
+
+/* ---- Requests ---- */
+
+/* A name becomes a folder: letters, digits, - and _ alone. */
+static bool is_name(const char *name) {
+    const size_t length = strnlen(name, NAME_SIZE);
+    return length >= 1 && length < NAME_SIZE &&
+           strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") == length;
+}
+
+static bool take_message(const protocol_message *message, camber_route_request *first) {
+    const char *type = message->media_type;
+    const bool png = message->version < 3 || !*type || strncmp(type, "image/png", NAME_SIZE) == 0;
+    if (message->z < 0 || message->z > MOST_ZOOM || message->x < 0 || message->y < 0 || message->x >> message->z ||
+        message->y >> message->z || !is_name(message->name))
+        return false;
+    if (!png && (strncmp(type, "image/webp", NAME_SIZE) != 0 || !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
+        return false;
+    *first = (camber_route_request){.route = CAMBER_ROUTE_TILE,
+                                    .type = png ? CAMBER_ROUTE_PNG : CAMBER_ROUTE_WEBP,
+                                    .ratio = 1,
+                                    .zoom = message->z,
+                                    .column = (uint32_t)message->x / SIDE * SIDE,
+                                    .row = (uint32_t)message->y / SIDE * SIDE};
+    return true;
+}
+
+static bool draw(camber_renderd *renderd, const protocol_message *message) {
+    camber_route_request first;
+    const bool wanted = message->command == COMMAND_RENDER || message->command == COMMAND_DIRTY ||
+                        (message->command >= COMMAND_RENDER_PRIO && message->command <= COMMAND_RENDER_LOW);
+    if (!wanted || renderd->stopping || !renderd->desc.is_ready(renderd->desc.user) || !take_message(message, &first))
+        return false;
+    pthread_mutex_lock(&renderd->drawing);
+    const bool drawn = write_metatile(renderd, message->name, &first);
+    pthread_mutex_unlock(&renderd->drawing);
+    return drawn;
+}
+
+static bool receive(int from, void *bytes, size_t size) {
+    for (char *at = bytes; size > 0;) {
+        const ssize_t got = recv(from, at, size, 0);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return false;
+        at += got;
+        size -= (size_t)got;
+    }
+    return true;
+}
+
+/* Reads a request whole. Version 1 has no name: it is that of mod_tile's default. */
+static bool receive_message(int from, protocol_message *message) {
+    *message = (protocol_message){.name = "default"};
+    if (!receive(from, message, sizes[1]) || message->version < 1 || message->version > 3)
+        return false;
+    const size_t size = sizes[message->version];
+    if (!receive(from, (char *)message + sizes[1], size - sizes[1]))
+        return false;
+    if (message->version == 2) /* its end is padding, where a later version has a media type */
+        message->media_type[0] = 0;
+    return true;
+}
+
+static void *serve_client(void *user) {
+    renderd_client *client = user;
+    protocol_message message;
+    while (receive_message(client->socket, &message)) {
+        const bool drawn = draw(client->renderd, &message);
+        const bool silent = message.command == COMMAND_DIRTY;
+        message.command = drawn ? COMMAND_DONE : COMMAND_NOT_DONE;
+        const size_t size = sizes[message.version];
+        if (!silent && send(client->socket, &message, size, MSG_NOSIGNAL) != (ssize_t)size)
+            break;
+    }
+    (void)shutdown(client->socket, SHUT_RDWR); /* it is closed when the place is needed, or at the end */
+    client->ends = true;
+    return NULL;
+}
+
+/* ---- Connections ---- */
+
+static void close_client(camber_renderd *renderd, renderd_client *client) {
+    pthread_join(client->thread, NULL);
+    pthread_mutex_lock(&renderd->mutex);
+    close(client->socket);
+    client->socket = -1;
+    client->ends = false;
+    pthread_mutex_unlock(&renderd->mutex);
+}
+
+/* One more than there is room for is closed at once. */
+static void take_client(camber_renderd *renderd, int socket) {
+    renderd_client *place = NULL;
+    for (size_t i = 0; i < MOST_CLIENTS; i++) {
+        renderd_client *client = renderd->clients + i;
+        if (client->socket >= 0 && client->ends)
+            close_client(renderd, client);
+        if (client->socket < 0)
+            place = client;
+    }
+    if (place) {
+        pthread_mutex_lock(&renderd->mutex);
+        place->socket = socket;
+        if (pthread_create(&place->thread, NULL, serve_client, place) != 0)
+            place->socket = -1;
+        pthread_mutex_unlock(&renderd->mutex);
+    }
+    if (!place || place->socket < 0)
+        close(socket);
+}
+
+static void *accept_clients(void *user) {
+    camber_renderd *renderd = user;
+    while (!renderd->stopping) {
+        const int client = accept(renderd->socket, NULL, NULL);
+        if (client >= 0 && !renderd->stopping)
+            take_client(renderd, client);
+        else if (client >= 0)
+            close(client);
+        else if (errno != EINTR && errno != ECONNABORTED && errno != EMFILE && errno != ENFILE)
+            break;
+    }
+    return NULL;
+}
+
+/* ---- The socket ---- */
+
+/* Binds; a socket at that path that nobody listens at goes. */
+static int bind_socket(int made, const struct sockaddr_un *address) {
+    struct stat about;
+    if (bind(made, (const struct sockaddr *)address, sizeof *address) == 0)
+        return 0;
+    if (errno != EADDRINUSE || lstat(address->sun_path, &about) != 0 || !S_ISSOCK(about.st_mode))
+        return errno;
+    const int probe = socket(AF_UNIX, SOCK_STREAM, 0);
+    const bool used =
+        probe < 0 || connect(probe, (const struct sockaddr *)address, sizeof *address) == 0 || errno != ECONNREFUSED;
+    if (probe >= 0)
+        close(probe);
+    if (used || unlink(address->sun_path) != 0)
+        return EADDRINUSE;
+    return bind(made, (const struct sockaddr *)address, sizeof *address) == 0 ? 0 : errno;
+}
+
+static int listen_at(const char *path, int *made) {
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    if (strlen(path) >= sizeof address.sun_path)
+        return ENAMETOOLONG;
+    memcpy(address.sun_path, path, strlen(path) + 1);
+    const int socket_made = socket(AF_UNIX, SOCK_STREAM, 0);
+    if (socket_made < 0)
+        return errno;
+    int cause = fcntl(socket_made, F_SETFD, FD_CLOEXEC) == 0 ? bind_socket(socket_made, &address) : errno;
+    if (!cause && listen(socket_made, MOST_CLIENTS) != 0)
+        cause = errno;
+    if (cause)
+        close(socket_made);
+    else
+        *made = socket_made;
+    return cause;
+}
+
+int camber_renderd_create(const camber_renderd_desc *desc, camber_renderd **renderd) {
+    camber_renderd *made = calloc(1, sizeof *made);
+    if (!made)
+        return ENOMEM;
+    made->desc = *desc;
+    made->socket = -1;
+    for (size_t i = 0; i < MOST_CLIENTS; i++)
+        made->clients[i] = (renderd_client){.renderd = made, .socket = -1};
+    pthread_mutex_init(&made->mutex, NULL);
+    pthread_mutex_init(&made->drawing, NULL);
+    int cause = listen_at(desc->socket, &made->socket);
+    if (!cause && (cause = pthread_create(&made->thread, NULL, accept_clients, made)) == 0)
+        made->started = true;
+    if (cause) {
+        camber_renderd_destroy(made);
+        return cause;
+    }
+    *renderd = made;
+    return 0;
+}
+
+void camber_renderd_destroy(camber_renderd *renderd) {
+    if (!renderd)
+        return;
+    renderd->stopping = true;
+    if (renderd->socket >= 0) {
+        (void)unlink(renderd->desc.socket);
+        (void)shutdown(renderd->socket, SHUT_RDWR); /* wakes accept */
+    }
+    if (renderd->started)
+        pthread_join(renderd->thread, NULL);
+    if (renderd->socket >= 0)
+        close(renderd->socket);
+    for (size_t i = 0; i < MOST_CLIENTS; i++)
+        if (renderd->clients[i].socket >= 0) {
+            (void)shutdown(renderd->clients[i].socket, SHUT_RD); /* its answer is sent still */
+            close_client(renderd, renderd->clients + i);
+        }
+    pthread_mutex_destroy(&renderd->drawing);
+    pthread_mutex_destroy(&renderd->mutex);
+    free(renderd);
+}

@@ -1,0 +1,197 @@
+/* Parses paths by a fixed table. Numbers are decimal without signs, blanks or zeros before them, so that a tile has one
+ * path; whatever else a path has makes it unknown. */
+#include "serve/route.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_DIGITS = 8, MOST_ZOOM = 24, MOST_PITCH_DEG = 85, MOST_FRACTION_DIGITS = 15 };
+
+static const struct {
+    const char *ending, *other, *media_type;
+} types[CAMBER_ROUTE_TYPES] = {
+    [CAMBER_ROUTE_PNG] = {"png", NULL, "image/png"},
+    [CAMBER_ROUTE_WEBP] = {"webp", NULL, "image/webp"},
+    [CAMBER_ROUTE_JPEG] = {"jpg", "jpeg", "image/jpeg"},
+    [CAMBER_ROUTE_AVIF] = {"avif", NULL, "image/avif"},
+    [CAMBER_ROUTE_MVT] = {"pbf", "mvt", "application/vnd.mapbox-vector-tile"},
+    [CAMBER_ROUTE_MLT] = {"mlt", NULL, "application/vnd.maplibre-vector-tile"},
+    [CAMBER_ROUTE_GLB] = {"glb", NULL, "model/gltf-binary"},
+};
+
+const char *camber_route_get_name(camber_route route) {
+    static const char *const names[CAMBER_ROUTES] = {"none",   "page",   "tilejson", "tile",
+                                                     "static", "health", "events",   "metrics"};
+    return names[route];
+}
+
+const char *camber_route_get_media_type(camber_route_type type) {
+    return types[type].media_type;
+}
+
+const char *camber_route_get_ending(camber_route_type type) {
+    return types[type].ending;
+}
+
+bool camber_route_find_type(const char *name, camber_route_type *type) {
+    for (int i = 0; i < CAMBER_ROUTE_TYPES; i++)
+        if (strcmp(name, types[i].ending) == 0 || (types[i].other && strcmp(name, types[i].other) == 0)) {
+            *type = (camber_route_type)i;
+            return true;
+        }
+    return false;
+}
+
+/* ---- Parts of a path ---- */
+
+/* The rest of the path. */
+typedef struct cursor {
+    const char *at, *end;
+} cursor;
+
+static bool take(cursor *c, const char *word) {
+    const size_t length = strlen(word);
+    if ((size_t)(c->end - c->at) < length || memcmp(c->at, word, length) != 0)
+        return false;
+    c->at += length;
+    return true;
+}
+
+static bool is_digit(const cursor *c) {
+    return c->at < c->end && *c->at >= '0' && *c->at <= '9';
+}
+
+static bool take_count(cursor *c, uint32_t *count) {
+    const char *first = c->at;
+    uint32_t made = 0;
+    while (is_digit(c) && c->at - first <= MOST_DIGITS)
+        made = 10 * made + (uint32_t)(*c->at++ - '0');
+    const ptrdiff_t digits = c->at - first;
+    if (digits < 1 || digits > MOST_DIGITS || (*first == '0' && digits > 1))
+        return false;
+    *count = made;
+    return true;
+}
+
+/* A number between two bounds: digits, maybe with a minus before them and a fraction behind. */
+static bool take_number(cursor *c, double least, double most, double *number) {
+    const bool negative = take(c, "-");
+    uint32_t whole;
+    if (!take_count(c, &whole))
+        return false;
+    double made = whole, unit = 1.0;
+    if (take(c, ".")) {
+        const char *first = c->at;
+        double fraction = 0.0;
+        for (; is_digit(c); c->at++) {
+            fraction = 10.0 * fraction + (*c->at - '0');
+            unit *= 10.0;
+        }
+        if (c->at == first || c->at - first > MOST_FRACTION_DIGITS)
+            return false;
+        made += fraction / unit;
+    }
+    made = negative ? -made : made;
+    if (!(made >= least && made <= most))
+        return false;
+    *number = made;
+    return true;
+}
+
+/* [@Rx].type, to the end of the path. */
+static bool take_ending(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    r->ratio = 1;
+    if (take(c, "@") && (!take_count(c, &r->ratio) || !take(c, "x") || r->ratio < 1 || r->ratio > limits->most_ratio))
+        return false;
+    if (!take(c, "."))
+        return false;
+    char name[8];
+    const size_t length = (size_t)(c->end - c->at);
+    if (length >= sizeof name)
+        return false;
+    memcpy(name, c->at, length);
+    name[length] = 0;
+    return strlen(name) == length && camber_route_find_type(name, &r->type);
+}
+
+/* ---- Routes ---- */
+
+static bool take_tile(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    uint32_t zoom;
+    if (!take_count(c, &zoom) || zoom > MOST_ZOOM || !take(c, "/") || !take_count(c, &r->column) || !take(c, "/") ||
+        !take_count(c, &r->row) || r->column >> zoom || r->row >> zoom)
+        return false;
+    r->zoom = (int)zoom;
+    r->route = CAMBER_ROUTE_TILE;
+    return take_ending(c, limits, r);
+}
+
+static bool take_static(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    if (!take_number(c, -180, 180, &r->longitude) || !take(c, ",") || !take_number(c, -90, 90, &r->latitude) ||
+        !take(c, ",") || !take_number(c, 0, MOST_ZOOM, &r->map_zoom))
+        return false;
+    if (take(c, "@") && (!take_number(c, -360, 360, &r->bearing_deg) ||
+                         (take(c, ",") && !take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg))))
+        return false;
+    if (!take(c, "/") || !take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) ||
+        !take_ending(c, limits, r))
+        return false;
+    r->route = CAMBER_ROUTE_STATIC;
+    const uint64_t width = (uint64_t)r->width * r->ratio, height = (uint64_t)r->height * r->ratio;
+    return width >= 1 && height >= 1 && width <= limits->most_px && height <= limits->most_px &&
+           r->type <= CAMBER_ROUTE_WEBP;
+}
+
+/* Letters, digits, dots, minus and underscores, and no dot first; the table of files knows the rest. */
+static bool take_name(cursor *c, camber_route_request *r) {
+    r->route = CAMBER_ROUTE_PAGE;
+    r->name = c->at;
+    r->name_length = (size_t)(c->end - c->at);
+    if (r->name_length < 1 || r->name_length > 64 || *c->at == '.')
+        return false;
+    for (; c->at < c->end; c->at++)
+        if (!((*c->at >= 'a' && *c->at <= 'z') || (*c->at >= 'A' && *c->at <= 'Z') || is_digit(c) ||
+              strchr("._-", *c->at)))
+            return false;
+    return true;
+}
+
+static bool take_word(cursor *c, const char *word, camber_route route, camber_route_request *r) {
+    if ((size_t)(c->end - c->at) != strlen(word) || !take(c, word))
+        return false;
+    r->route = route;
+    return true;
+}
+
+static bool take_path(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    if (!take(c, "/"))
+        return false;
+    if (c->at == c->end) {
+        r->route = CAMBER_ROUTE_PAGE;
+        r->name = c->at;
+        return true;
+    }
+    if (take(c, "page/"))
+        return take_name(c, r);
+    r->dark = take(c, "dark/");
+    if (is_digit(c))
+        return take_tile(c, limits, r);
+    if (take(c, "static/"))
+        return take_static(c, limits, r);
+    return take_word(c, "tiles.json", CAMBER_ROUTE_TILEJSON, r) ||
+           (!r->dark &&
+            (take_word(c, "health", CAMBER_ROUTE_HEALTH, r) || take_word(c, "events", CAMBER_ROUTE_EVENTS, r) ||
+             take_word(c, "metrics", CAMBER_ROUTE_METRICS, r)));
+}
+
+int camber_route_parse(const camber_route_limits *limits, const char *method, const char *path,
+                       camber_route_request *request) {
+    cursor c = {path, path + strcspn(path, "?")};
+    *request = (camber_route_request){.name = ""};
+    if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
+        return 405;
+    if (take_path(&c, limits, request))
+        return 200;
+    *request = (camber_route_request){.name = ""};
+    return 404;
+}

@@ -1,0 +1,363 @@
+/* The server's life: sockets, daemons, what is shown, and the end.
+ *
+ * A pool of threads waits for sockets by epoll and answers; the drawing has threads of its own. At the end no new
+ * connection is taken, requests that are here are answered, each with "Connection: close", and then all is freed. */
+#define _XOPEN_SOURCE 700
+
+#include "serve/server.h"
+
+#include "serve/answer.h"
+#include "serve/gzip.h"
+#include "serve/page.h"
+#include "serve/tilejson.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum {
+    DEFAULT_CACHE_BYTES = 256 << 20,
+    DEFAULT_PX = 2048,
+    DEFAULT_RATIO = 4,
+    DEFAULT_SIDE = 1,
+    MOST_CONNECTIONS = 12000,
+    SPARE_DESCRIPTORS = 128, /* for files and drivers */
+    CONNECTION_BYTES = 16 << 10,
+    MOST_QUEUED = 128,
+    MOST_PICTURES = 24,
+    LONGEST_END_S = 20,
+};
+
+static const double MOST_SECONDS = 30; /* that a phase of a connection takes */
+
+/* ---- Daemons ---- */
+
+static void notice_connection(void *user, struct MHD_Connection *connection, void **context,
+                              enum MHD_ConnectionNotificationCode code) {
+    const camber_listener *listener = user;
+    if (code == MHD_CONNECTION_NOTIFY_STARTED) {
+        const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+        *context = info ? camber_clients_add(listener->server->clients, info->connect_fd) : NULL;
+    } else {
+        camber_clients_remove(listener->server->clients, *context);
+        *context = NULL;
+    }
+}
+
+/* As many as the process may have; the rest waits in the system's queue. */
+static unsigned count_connections(void) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+        return 256;
+    const rlim_t wanted = MOST_CONNECTIONS + SPARE_DESCRIPTORS;
+    if (limit.rlim_cur < wanted && limit.rlim_cur < limit.rlim_max) {
+        const rlim_t before = limit.rlim_cur;
+        limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
+        if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
+            limit.rlim_cur = before;
+    }
+    if (limit.rlim_cur >= wanted)
+        return MOST_CONNECTIONS;
+    return limit.rlim_cur > 2 * SPARE_DESCRIPTORS ? (unsigned)limit.rlim_cur - SPARE_DESCRIPTORS : SPARE_DESCRIPTORS;
+}
+
+/* The page loads what this server has, and tiles and tiles.json by the URL that they name. */
+static void write_url(camber_server *server) {
+    if (server->desc.public_url)
+        snprintf(server->url, sizeof server->url, "%s", server->desc.public_url);
+    else
+        snprintf(server->url, sizeof server->url, "http://%s", server->page.address);
+    const char *url = server->url, *host = strstr(url, "://");
+    const size_t length = host ? (size_t)(host - url) + 3 + strcspn(host + 3, "/") : 0;
+    snprintf(server->policy, sizeof server->policy,
+             "default-src 'none'; script-src 'self'; style-src 'self'; "
+             "img-src 'self' data: %.*s; connect-src 'self' %.*s; base-uri 'none'; form-action 'none'",
+             (int)length, url, (int)length, url);
+}
+
+static int start(camber_listener *listener, const char *address, unsigned threads, unsigned connections) {
+    const int listening = camber_address_listen(address, listener->address);
+    if (listening < 0)
+        return -listening;
+    if (!listener->is_for_metrics)
+        write_url(listener->server); /* before the first request can come */
+    struct MHD_OptionItem pool[] = {{MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)threads, NULL}, {MHD_OPTION_END, 0, NULL}};
+    listener->daemon =
+        MHD_start_daemon(MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, camber_request_answer,
+                         listener, MHD_OPTION_LISTEN_SOCKET, (MHD_socket)listening, MHD_OPTION_CONNECTION_LIMIT,
+                         connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES,
+                         MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)(2 * MOST_SECONDS), MHD_OPTION_URI_LOG_CALLBACK,
+                         camber_request_begin, listener, MHD_OPTION_NOTIFY_COMPLETED, camber_request_end, listener,
+                         MHD_OPTION_NOTIFY_CONNECTION, notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP,
+                         1, threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
+    if (listener->daemon)
+        return 0;
+    close(listening);
+    return errno ? errno : ENOMEM;
+}
+
+/* ---- Bodies that never change ---- */
+
+static bool make_errors(camber_server *server) {
+    static const char *const texts[] = {"404 not found\n", "405 method not allowed\n", "500 internal error\n",
+                                        "503 not now; try again\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        if (!(server->errors[i] = camber_body_create(texts[i], strlen(texts[i]))))
+            return false;
+    return true;
+}
+
+static bool make_page(camber_server *server) {
+    if (!(server->page_bodies = calloc(2 * camber_page_file_count, sizeof(camber_body *))))
+        return false;
+    for (size_t i = 0; i < camber_page_file_count; i++) {
+        camber_body **bodies = server->page_bodies + 2 * i;
+        if (!(bodies[0] = camber_body_create(camber_page_files[i].bytes, camber_page_files[i].size)))
+            return false;
+        bodies[1] = camber_body_gzip(bodies[0]);
+    }
+    return true;
+}
+
+static camber_server_desc fill_in(const camber_server_desc *desc) {
+    camber_server_desc made = *desc;
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    made.listen = desc->listen ? desc->listen : "127.0.0.1:8080";
+    made.cors = desc->cors ? desc->cors : "*";
+    made.cache_bytes = desc->cache_bytes ? desc->cache_bytes : DEFAULT_CACHE_BYTES;
+    made.most_px = desc->most_px ? desc->most_px : DEFAULT_PX;
+    made.most_ratio = desc->most_ratio ? desc->most_ratio : DEFAULT_RATIO;
+    made.side = desc->side ? desc->side : DEFAULT_SIDE;
+    made.threads = desc->threads ? desc->threads : cores > 1 ? (uint32_t)cores : 1;
+    return made;
+}
+
+/* Metatiles are drawn for mod_tile; an archive has its own tiles. */
+static bool is_drawing(void *user) {
+    camber_server *server = user;
+    pthread_mutex_lock(&server->mutex);
+    const bool ready = server->view.ready && !server->view.is_archive;
+    pthread_mutex_unlock(&server->mutex);
+    return ready;
+}
+
+static void tell_failure(void *user, const char *message) {
+    const camber_server *server = user;
+    if (server->desc.log)
+        server->desc.log(server->desc.user, CAMBER_LOG_ERROR, message);
+}
+
+static int check_folder(const char *path) {
+    struct stat about;
+    if (stat(path, &about) != 0)
+        return errno;
+    return S_ISDIR(about.st_mode) ? 0 : ENOTDIR;
+}
+
+static int start_all(camber_server *server, const char **failed) {
+    const camber_server_desc *desc = &server->desc;
+    *failed = desc->cache_dir;
+    int cause = desc->cache_dir ? check_folder(desc->cache_dir) : 0;
+    if (cause)
+        return cause;
+    *failed = NULL;
+    const camber_draw_queue_desc drawing = {.cache = server->cache,
+                                            .metrics = &server->metrics,
+                                            .draw = camber_painter_draw,
+                                            .prepare = camber_painter_prepare,
+                                            .user = server->painter,
+                                            .side = desc->side,
+                                            .threads = desc->threads,
+                                            .most_queued = MOST_QUEUED,
+                                            .most_pictures = MOST_PICTURES,
+                                            .log = desc->log,
+                                            .log_user = desc->user};
+    if (!(server->drawing = camber_draw_queue_create(&drawing)))
+        return ENOMEM;
+    *failed = desc->metrics;
+    cause = desc->metrics ? start(&server->metrics_page, desc->metrics, 1, 64) : 0;
+    if (cause)
+        return cause;
+    *failed = desc->listen;
+    cause = start(&server->page, desc->listen, desc->threads, count_connections());
+    const camber_renderd_desc renderd = {.socket = desc->renderd,
+                                         .folder = desc->cache_dir,
+                                         .queue = server->drawing,
+                                         .is_ready = is_drawing,
+                                         .failed = tell_failure,
+                                         .user = server};
+    if (!cause && desc->renderd) {
+        *failed = desc->renderd;
+        cause = camber_renderd_create(&renderd, &server->renderd);
+    }
+    return cause;
+}
+
+int camber_server_create(const camber_server_desc *desc, camber_server **server, const char **failed) {
+    camber_server *made = calloc(1, sizeof *made);
+    *failed = NULL;
+    if (!made)
+        return ENOMEM;
+    made->desc = fill_in(desc);
+    made->start_s = camber_server_now_s();
+    made->page = (camber_listener){.server = made, .quiesced = MHD_INVALID_SOCKET};
+    made->metrics_page = (camber_listener){.server = made, .is_for_metrics = true, .quiesced = MHD_INVALID_SOCKET};
+    pthread_mutex_init(&made->mutex, NULL);
+    pthread_mutex_init(&made->reader_mutex, NULL);
+    int cause = ENOMEM;
+    made->folder = (camber_tile_folder){.path = made->desc.cache_dir, .failed = tell_failure, .user = made};
+    const bool has_folder = made->desc.cache_dir && !made->desc.renderd; /* else it is mod_tile's */
+    if ((made->cache = camber_tile_cache_create(made->desc.cache_bytes, has_folder ? &made->folder : NULL)) &&
+        (made->painter = camber_painter_create(made->cache, made->desc.side)) &&
+        (made->clients = camber_clients_create(MOST_SECONDS)) &&
+        (!desc->edits || (made->events = camber_events_create())) && make_errors(made) && make_page(made))
+        cause = start_all(made, failed);
+    if (cause) {
+        camber_server_destroy(made);
+        return cause;
+    }
+    *server = made;
+    return 0;
+}
+
+/* ---- The end ---- */
+
+/* No new connection is taken. The socket stays open until the daemon has ended, whose threads let go of it by and by.
+ */
+static void quiesce(camber_listener *listener) {
+    if (listener->daemon && (listener->quiesced = MHD_quiesce_daemon(listener->daemon)) != MHD_INVALID_SOCKET)
+        shutdown(listener->quiesced, SHUT_RDWR);
+}
+
+static void stop(const camber_listener *listener) {
+    if (listener->daemon)
+        MHD_stop_daemon(listener->daemon);
+    if (listener->quiesced != MHD_INVALID_SOCKET)
+        close(listener->quiesced);
+}
+
+static void wait_for_requests(const camber_server *server) {
+    const struct timespec pause = {.tv_nsec = 5000000};
+    const double end_s = camber_server_now_s() + LONGEST_END_S;
+    while (server->in_flight > 0 && camber_server_now_s() < end_s)
+        nanosleep(&pause, NULL);
+}
+
+static void forget_view(camber_view_of_shown *view) {
+    for (int i = 0; i < 4; i++)
+        camber_body_release(view->tilejson[i / 2][i % 2]);
+}
+
+void camber_server_destroy(camber_server *server) {
+    if (!server)
+        return;
+    server->stopping = true;
+    quiesce(&server->page);
+    if (server->events)
+        camber_events_end(server->events);
+    camber_renderd_destroy(server->renderd);
+    wait_for_requests(server);
+    if (server->drawing)
+        camber_draw_queue_stop(server->drawing); /* whoever sleeps still is woken */
+    stop(&server->page);
+    stop(&server->metrics_page);
+    camber_draw_queue_destroy(server->drawing);
+    camber_painter_destroy(server->painter);
+    camber_tile_cache_destroy(server->cache);
+    camber_clients_destroy(server->clients);
+    camber_events_destroy(server->events);
+    if (server->reader && server->close_reader)
+        server->close_reader(server->reader_owner);
+    forget_view(&server->view);
+    for (size_t i = 0; i < sizeof server->errors / sizeof *server->errors; i++)
+        camber_body_release(server->errors[i]);
+    for (size_t i = 0; server->page_bodies && i < 2 * camber_page_file_count; i++)
+        camber_body_release(server->page_bodies[i]);
+    free(server->page_bodies);
+    pthread_mutex_destroy(&server->reader_mutex);
+    pthread_mutex_destroy(&server->mutex);
+    free(server);
+}
+
+/* ---- Showing ---- */
+
+const char *camber_server_get_url(const camber_server *server) {
+    return server->url;
+}
+
+const char *camber_server_get_address(const camber_server *server) {
+    return server->page.address;
+}
+
+const char *camber_server_get_metrics_address(const camber_server *server) {
+    return server->desc.metrics ? server->metrics_page.address : NULL;
+}
+
+static bool describe(const camber_server *server, const camber_shown *shown, camber_view_of_shown *view) {
+    const bool has_dark = !shown->reader && shown->chart.styles[1];
+    struct tm parts;
+    *view = (camber_view_of_shown){.ready = true, .is_archive = shown->reader != NULL, .has_dark = has_dark};
+    if (shown->modified && gmtime_r(&shown->modified, &parts))
+        (void)strftime(view->last_modified, sizeof view->last_modified, "%a, %d %b %Y %H:%M:%S GMT", &parts);
+    for (int dark = 0; dark < (has_dark ? 2 : 1); dark++) {
+        const camber_tilejson_desc desc = {.shown = shown,
+                                           .url = server->url,
+                                           .theme = dark || shown->is_dark ? "dark"
+                                                    : has_dark             ? "light"
+                                                                           : NULL,
+                                           .below_dark = dark,
+                                           .most_ratio = server->desc.most_ratio,
+                                           .edits = server->desc.edits};
+        if (!(view->tilejson[dark][0] = camber_tilejson_create(&desc)))
+            return false;
+        view->tilejson[dark][1] = camber_body_gzip(view->tilejson[dark][0]);
+    }
+    return true;
+}
+
+/* An archive is exchanged between two look-ups. */
+static void exchange_reader(camber_server *server, const camber_shown *shown) {
+    pthread_mutex_lock(&server->reader_mutex);
+    if (server->reader && server->close_reader)
+        server->close_reader(server->reader_owner);
+    server->reader = shown->reader;
+    server->close_reader = shown->close;
+    server->reader_owner = shown->owner;
+    camber_tile_cache_clear(server->cache, 0);
+    pthread_mutex_unlock(&server->reader_mutex);
+}
+
+void camber_server_tell(camber_server *server, const char *error) {
+    if (server->events)
+        camber_events_tell(server->events, error);
+}
+
+void camber_server_beat(camber_server *server) {
+    if (server->events)
+        camber_events_beat(server->events);
+}
+
+bool camber_server_show(camber_server *server, const camber_shown *shown) {
+    camber_view_of_shown view, before;
+    if (!describe(server, shown, &view)) {
+        forget_view(&view);
+        return false;
+    }
+    if (shown->reader) {
+        (void)camber_route_find_type(camber_tiles_reader_get_info(shown->reader)->type, &view.type);
+        exchange_reader(server, shown);
+    } else {
+        camber_painter_put(server->painter, &shown->chart);
+        camber_draw_queue_wake(server->drawing);
+    }
+    pthread_mutex_lock(&server->mutex);
+    before = server->view;
+    server->view = view;
+    pthread_mutex_unlock(&server->mutex);
+    forget_view(&before);
+    return true;
+}

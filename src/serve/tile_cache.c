@@ -1,0 +1,237 @@
+/* A cache of encoded tiles: a hash table finds a tile, and a list has the tiles in the order of their last use.
+ *
+ *     newest <-> ... <-> oldest        what does not fit leaves at the right end
+ *
+ * Buckets are chains; their number doubles when there are more tiles than buckets. */
+#include "serve/tile_folder.h"
+
+#include "base/base.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_BUCKETS = 1024 };
+
+/* ---- Bodies ---- */
+
+static uint64_t hash_bytes(uint64_t hash, const unsigned char *bytes, size_t size) {
+    uint64_t word = 0;
+    for (; size >= sizeof word; size -= sizeof word, bytes += sizeof word) {
+        memcpy(&word, bytes, sizeof word);
+        hash = camber_mix(hash, word);
+    }
+    word = 0;
+    if (size)
+        memcpy(&word, bytes, size);
+    return camber_mix(hash, word);
+}
+
+camber_body *camber_body_create(const void *bytes, size_t size_bytes) {
+    camber_body *body = size_bytes < SIZE_MAX / 2 ? malloc(sizeof *body + size_bytes) : NULL;
+    if (!body)
+        return NULL;
+    atomic_init(&body->holders, 1);
+    body->encoding = NULL;
+    body->size_bytes = size_bytes;
+    if (size_bytes)
+        memcpy(body->bytes, bytes, size_bytes);
+    /* Two hashes of different beginnings: bodies that differ have one tag once in 2^96 or so. */
+    const uint64_t first = camber_mix(CAMBER_HASH_START, size_bytes), second = camber_mix(~CAMBER_HASH_START, first);
+    snprintf(body->etag, sizeof body->etag, "\"%016" PRIx64 "%08" PRIx32 "\"",
+             hash_bytes(first, body->bytes, size_bytes), (uint32_t)(hash_bytes(second, body->bytes, size_bytes) >> 32));
+    return body;
+}
+
+camber_body *camber_body_hold(camber_body *body) {
+    atomic_fetch_add_explicit(&body->holders, 1, memory_order_relaxed);
+    return body;
+}
+
+void camber_body_release(camber_body *body) {
+    if (body && atomic_fetch_sub_explicit(&body->holders, 1, memory_order_acq_rel) == 1)
+        free(body);
+}
+
+/* ---- The cache ---- */
+
+typedef struct cached_tile {
+    camber_tile_key key;
+    camber_body *body;
+    struct cached_tile *next;          /* of its bucket */
+    struct cached_tile *newer, *older; /* by their last use */
+} cached_tile;
+
+struct camber_tile_cache {
+    pthread_mutex_t mutex;
+    cached_tile **buckets; /* bucket_count, a power of two */
+    size_t bucket_count, most_bytes;
+    cached_tile *newest, *oldest;
+    uint64_t generation, input;
+    camber_tile_folder *folder;
+    camber_tile_cache_stats stats;
+};
+
+static size_t bucket_of(const camber_tile_cache *cache, camber_tile_key key) {
+    return (size_t)camber_mix(camber_mix(0, key.place), key.look) & (cache->bucket_count - 1);
+}
+
+static size_t cost_of(const camber_body *body) {
+    return sizeof(cached_tile) + 2 * sizeof(cached_tile *) + sizeof *body + body->size_bytes;
+}
+
+camber_tile_cache *camber_tile_cache_create(size_t most_bytes, camber_tile_folder *folder) {
+    camber_tile_cache *cache = calloc(1, sizeof *cache);
+    if (!cache || !(cache->buckets = calloc(FIRST_BUCKETS, sizeof(cached_tile *)))) {
+        free(cache);
+        return NULL;
+    }
+    cache->bucket_count = FIRST_BUCKETS;
+    cache->most_bytes = most_bytes;
+    cache->folder = folder;
+    pthread_mutex_init(&cache->mutex, NULL);
+    return cache;
+}
+
+static void unlist(camber_tile_cache *cache, cached_tile *tile) {
+    *(tile->newer ? &tile->newer->older : &cache->newest) = tile->older;
+    *(tile->older ? &tile->older->newer : &cache->oldest) = tile->newer;
+}
+
+static void list_first(camber_tile_cache *cache, cached_tile *tile) {
+    tile->newer = NULL;
+    tile->older = cache->newest;
+    *(cache->newest ? &cache->newest->newer : &cache->oldest) = tile;
+    cache->newest = tile;
+}
+
+/* The link that leads to the tile of this key; it is NULL where there is none. */
+static cached_tile **find_link(camber_tile_cache *cache, camber_tile_key key) {
+    cached_tile **link = cache->buckets + bucket_of(cache, key);
+    while (*link && ((*link)->key.place != key.place || (*link)->key.look != key.look))
+        link = &(*link)->next;
+    return link;
+}
+
+static void drop(camber_tile_cache *cache, cached_tile **link) {
+    cached_tile *tile = *link;
+    if (!tile)
+        return;
+    *link = tile->next;
+    unlist(cache, tile);
+    cache->stats.tiles--;
+    cache->stats.size_bytes -= cost_of(tile->body);
+    camber_body_release(tile->body);
+    free(tile);
+}
+
+static void drop_all(camber_tile_cache *cache) {
+    while (cache->oldest)
+        drop(cache, find_link(cache, cache->oldest->key));
+}
+
+void camber_tile_cache_destroy(camber_tile_cache *cache) {
+    if (!cache)
+        return;
+    drop_all(cache);
+    pthread_mutex_destroy(&cache->mutex);
+    free(cache->buckets);
+    free(cache);
+}
+
+/* Without memory for more buckets the chains grow longer. */
+static void grow_buckets(camber_tile_cache *cache) {
+    const size_t count = 2 * cache->bucket_count;
+    cached_tile **buckets = cache->stats.tiles >= cache->bucket_count ? calloc(count, sizeof(cached_tile *)) : NULL;
+    if (!buckets)
+        return;
+    free(cache->buckets);
+    cache->buckets = buckets;
+    cache->bucket_count = count;
+    for (cached_tile *tile = cache->newest; tile; tile = tile->older) {
+        cached_tile **link = buckets + bucket_of(cache, tile->key);
+        tile->next = *link;
+        *link = tile;
+    }
+}
+
+/* The input that the folder has tiles of. 0: the folder has none, or there is no folder. */
+static uint64_t stored_input(const camber_tile_cache *cache) {
+    return cache->folder ? cache->input : 0;
+}
+
+/* Keeps a tile in memory, if there is room. Returns the input that the folder keeps it for. 0: it does not. */
+static uint64_t keep(camber_tile_cache *cache, camber_tile_key key, camber_body *body, uint64_t generation,
+                     bool from_folder) {
+    cached_tile *tile = cost_of(body) <= cache->most_bytes ? malloc(sizeof *tile) : NULL;
+    if (tile)
+        *tile = (cached_tile){.key = key, .body = body};
+    pthread_mutex_lock(&cache->mutex);
+    const bool current = generation == cache->generation;
+    const uint64_t input = current ? stored_input(cache) : 0;
+    cache->stats.folder_hits += from_folder;
+    if (current && tile) {
+        drop(cache, find_link(cache, key));
+        while (cache->oldest && cache->stats.size_bytes + cost_of(body) > cache->most_bytes)
+            drop(cache, find_link(cache, cache->oldest->key));
+        grow_buckets(cache);
+        cached_tile **link = cache->buckets + bucket_of(cache, key);
+        tile->next = *link;
+        *link = tile;
+        list_first(cache, tile);
+        camber_body_hold(body);
+        cache->stats.tiles++;
+        cache->stats.size_bytes += cost_of(body);
+    }
+    pthread_mutex_unlock(&cache->mutex);
+    if (!current)
+        free(tile);
+    return input;
+}
+
+void camber_tile_cache_put(camber_tile_cache *cache, camber_tile_key key, camber_body *body, uint64_t generation) {
+    const uint64_t input = keep(cache, key, body, generation, false);
+    if (input)
+        camber_tile_folder_put(cache->folder, input, key, body);
+}
+
+camber_body *camber_tile_cache_get(camber_tile_cache *cache, camber_tile_key key) {
+    pthread_mutex_lock(&cache->mutex);
+    cached_tile *tile = *find_link(cache, key);
+    if (tile && tile != cache->newest) {
+        unlist(cache, tile);
+        list_first(cache, tile);
+    }
+    cache->stats.hits += tile != NULL;
+    cache->stats.misses += tile == NULL;
+    camber_body *body = tile ? camber_body_hold(tile->body) : NULL;
+    const uint64_t input = stored_input(cache), generation = cache->generation;
+    pthread_mutex_unlock(&cache->mutex);
+    if (!body && input && (body = camber_tile_folder_get(cache->folder, input, key)) != NULL)
+        (void)keep(cache, key, body, generation, true);
+    return body;
+}
+
+uint64_t camber_tile_cache_get_generation(camber_tile_cache *cache) {
+    pthread_mutex_lock(&cache->mutex);
+    const uint64_t generation = cache->generation;
+    pthread_mutex_unlock(&cache->mutex);
+    return generation;
+}
+
+void camber_tile_cache_clear(camber_tile_cache *cache, uint64_t input) {
+    pthread_mutex_lock(&cache->mutex);
+    drop_all(cache);
+    cache->input = input;
+    cache->generation++;
+    pthread_mutex_unlock(&cache->mutex);
+}
+
+camber_tile_cache_stats camber_tile_cache_get_stats(camber_tile_cache *cache) {
+    pthread_mutex_lock(&cache->mutex);
+    const camber_tile_cache_stats stats = cache->stats;
+    pthread_mutex_unlock(&cache->mutex);
+    return stats;
+}

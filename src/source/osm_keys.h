@@ -1,0 +1,19 @@
+/* Keys of OpenStreetMap, for both readers of its files. */
+#ifndef CAMBER_SOURCE_OSM_KEYS_H
+#define CAMBER_SOURCE_OSM_KEYS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Keys that make a closed way without a highway an area, unless their value is "no"; NULL at the end. */
+extern const char *const camber_osm_area_keys[];
+bool camber_osm_is_no(const char *value);
+
+/* The characters of keys that can be read. */
+bool camber_osm_is_key_character(char c);
+bool camber_osm_is_key(const char *text, size_t length);
+
+/* Whom to name beside a picture of OpenStreetMap's data. */
+#define CAMBER_OSM_ATTRIBUTION "(c) OpenStreetMap contributors"
+
+#endif

@@ -1,0 +1,18 @@
+/* The part of the world that a view needs: files are then read for it alone, by their index where they have one. */
+#ifndef CAMBER_SOURCE_REGION_H
+#define CAMBER_SOURCE_REGION_H
+
+#include "base/base.h"
+
+/* A box in world coordinates, less than a world wide. x may go beyond 0 to 1: the box then shows two copies of it. */
+typedef struct camber_region {
+    double x0, y0, x1, y1;
+} camber_region;
+
+/* The parts of a region that lie in the one world from 0 to 1: one, or two at the antimeridian. Returns how many. */
+size_t camber_region_parts(const camber_region *region, camber_region parts[2]);
+bool camber_region_has_point(const camber_region *region, const double *point);
+/* Whether a polyline has a point in common with the region in any copy of the world. points: count pairs. */
+bool camber_region_touches(const camber_region *region, const double *points, size_t count);
+
+#endif

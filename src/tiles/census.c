@@ -1,0 +1,349 @@
+/* Takes the census of a zoom: which tiles lines touch, before anything is drawn.
+ *
+ * Input: features and a zoom's plan. Output: metatiles of tiles along the Hilbert curve, each with the tiles that a
+ * line comes near, and the polylines that it is drawn of. Main idea: walk the points that the zoom draws, in tiles as
+ * units, and mark the tiles that a segment touches, grown by how far its stroke reaches. Threads walk ranges of
+ * polylines; each has a table of metatiles, and the tables are put together in order, so the result does not depend on
+ * the threads.
+ *
+ *     +-----+-----+-----+
+ *     |  x  |  x  |     |      x: touched by the segment, or within its reach
+ *     |  .__|     |     |
+ *     +--x-\+--x--+-----+
+ *     |     \__x__|__x__|
+ *     +-----+-----+-----+
+ */
+#include "tiles/census.h"
+
+#include "source/pmtiles.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { NOT_YET = UINT32_MAX };
+
+typedef struct metatile_pair {
+    uint32_t metatile, polyline;
+} metatile_pair;
+
+/* A metatile that a thread has met. */
+typedef struct found_metatile {
+    uint32_t column, row;
+    uint32_t last; /* polyline that was listed for it; NOT_YET at first */
+    uint64_t tiles, points;
+} found_metatile;
+
+/* The share of one thread. */
+typedef struct share {
+    camber_context *context;
+    const camber_zoom_plan *plan;
+    int64_t tiles; /* a side of the world */
+    uint32_t side;
+    size_t first, end; /* polylines */
+    found_metatile *metatiles;
+    size_t metatile_count, metatile_capacity;
+    uint32_t *slots; /* metatile + 1; 0: free. slot_count is a power of two */
+    size_t slot_count;
+    metatile_pair *pairs; /* in the order of polylines */
+    size_t pair_count, pair_capacity;
+    uint32_t polyline;
+    size_t metatile; /* the one that was marked last; metatile_count: none yet */
+} share;
+
+/* ---- Metatiles of a thread ---- */
+
+static size_t slot_of(const share *s, uint32_t column, uint32_t row) {
+    const uint64_t hash = camber_mix(0, (uint64_t)row << 32 | column);
+    size_t at = (size_t)hash & (s->slot_count - 1);
+    while (s->slots[at] &&
+           (s->metatiles[s->slots[at] - 1].column != column || s->metatiles[s->slots[at] - 1].row != row))
+        at = (at + 1) & (s->slot_count - 1);
+    return at;
+}
+
+static bool grow_slots(share *s) {
+    if (s->slot_count > 2 * (s->metatile_count + 1))
+        return true;
+    const size_t count = s->slot_count ? 4 * s->slot_count : 256;
+    uint32_t *slots = camber_alloc_zero(s->context, count, sizeof *slots);
+    if (!slots)
+        return false;
+    camber_free(s->context, s->slots);
+    s->slots = slots;
+    s->slot_count = count;
+    for (size_t i = 0; i < s->metatile_count; i++)
+        slots[slot_of(s, s->metatiles[i].column, s->metatiles[i].row)] = (uint32_t)i + 1;
+    return true;
+}
+
+/* Finds the metatile, or adds it. false: no memory. */
+static bool find_metatile(share *s, uint32_t column, uint32_t row) {
+    if (s->metatile < s->metatile_count && s->metatiles[s->metatile].column == column &&
+        s->metatiles[s->metatile].row == row)
+        return true;
+    if (!grow_slots(s))
+        return false;
+    const size_t slot = slot_of(s, column, row);
+    if (!s->slots[slot]) {
+        if (!camber_grow(s->context, &s->metatiles, &s->metatile_capacity, s->metatile_count + 1, sizeof *s->metatiles))
+            return false;
+        s->metatiles[s->metatile_count] = (found_metatile){.column = column, .row = row, .last = NOT_YET};
+        s->slots[slot] = (uint32_t)++s->metatile_count;
+    }
+    s->metatile = s->slots[slot] - 1;
+    return true;
+}
+
+/* ---- Marking ---- */
+
+/* Marks a tile, whose column is one of the world that repeats itself. */
+static bool mark_tile(share *s, int64_t column, int64_t row) {
+    if (row < 0 || row >= s->tiles)
+        return true;
+    column = ((column % s->tiles) + s->tiles) % s->tiles;
+    const uint32_t side = s->side, x = (uint32_t)column, y = (uint32_t)row;
+    if (!find_metatile(s, x / side, y / side))
+        return false;
+    found_metatile *metatile = s->metatiles + s->metatile;
+    metatile->tiles |= UINT64_C(1) << (y % side * side + x % side);
+    if (metatile->last == s->polyline)
+        return true;
+    metatile->last = s->polyline;
+    if (!camber_grow(s->context, &s->pairs, &s->pair_capacity, s->pair_count + 1, sizeof *s->pairs))
+        return false;
+    s->pairs[s->pair_count++] = (metatile_pair){(uint32_t)s->metatile, s->polyline};
+    return true;
+}
+
+static int64_t clamp(double value, int64_t least, int64_t most) {
+    const double whole = floor(value);
+    return whole < (double)least ? least : whole > (double)most ? most : (int64_t)whole;
+}
+
+/* Marks the columns of a row, from x0 to x1 in tiles. */
+static bool mark_row(share *s, int64_t row, double x0, double x1) {
+    const int64_t first = clamp(x0, -s->tiles, 2 * s->tiles);
+    int64_t last = clamp(x1, -s->tiles, 2 * s->tiles);
+    last = last - first < s->tiles ? last : first + s->tiles - 1;
+    for (int64_t column = first; column <= last; column++)
+        if (!mark_tile(s, column, row))
+            return false;
+    return true;
+}
+
+typedef struct tile_point {
+    double x, y; /* in tiles */
+} tile_point;
+
+/* Marks the tiles of a segment that is wider than a few tiles: row by row, the part of it that comes near the row. */
+static bool mark_long(share *s, tile_point a, tile_point b, double reach, int64_t first_row, int64_t last_row) {
+    const tile_point top = a.y <= b.y ? a : b, bottom = a.y <= b.y ? b : a;
+    const double height = bottom.y - top.y, slope = height > 0.0 ? (bottom.x - top.x) / height : 0.0;
+    for (int64_t row = first_row; row <= last_row; row++) {
+        const double y0 = fmax(top.y, (double)row - reach), y1 = fmin(bottom.y, (double)row + 1.0 + reach);
+        double x0 = top.x + (y0 - top.y) * slope, x1 = top.x + (y1 - top.y) * slope;
+        if (!(height > 0.0)) {
+            x0 = top.x;
+            x1 = bottom.x;
+        }
+        if (!mark_row(s, row, fmin(x0, x1) - reach, fmax(x0, x1) + reach))
+            return false;
+    }
+    return true;
+}
+
+static bool mark_segment(share *s, tile_point a, tile_point b, double reach) {
+    const double x0 = fmin(a.x, b.x) - reach, x1 = fmax(a.x, b.x) + reach;
+    const int64_t first_row = clamp(fmin(a.y, b.y) - reach, 0, s->tiles - 1);
+    const int64_t last_row = clamp(fmax(a.y, b.y) + reach, 0, s->tiles - 1);
+    if (fmax(a.y, b.y) + reach < 0.0 || fmin(a.y, b.y) - reach > (double)s->tiles)
+        return true;
+    if (last_row - first_row > 1 && x1 - x0 > 1.0)
+        return mark_long(s, a, b, reach, first_row, last_row);
+    for (int64_t row = first_row; row <= last_row; row++)
+        if (!mark_row(s, row, x0, x1))
+            return false;
+    return true;
+}
+
+/* Counts a point where it lies. */
+static bool count_point(share *s, tile_point at) {
+    if (!(at.y >= 0.0 && at.y < (double)s->tiles))
+        return true;
+    if (!mark_tile(s, (int64_t)floor(at.x), (int64_t)at.y))
+        return false;
+    s->metatiles[s->metatile].points++;
+    return true;
+}
+
+static bool mark_polyline(share *s, size_t polyline) {
+    const camber_features *features = s->plan->features;
+    const double reach_px = (double)camber_zoom_plan_reach(s->plan, polyline), scale = (double)s->tiles;
+    const double reach = reach_px / (s->plan->view.scale_px / scale);
+    const size_t first = features->offsets[polyline], end = features->offsets[polyline + 1];
+    tile_point before = {0};
+    if (reach_px < 0.0)
+        return true;
+    s->polyline = (uint32_t)polyline;
+    for (size_t i = first; i < end; i++) {
+        if (i > first && i + 1 < end && features->importance && features->importance[i] < s->plan->least_importance)
+            continue;
+        const tile_point at = {features->points[2 * i] * scale, features->points[2 * i + 1] * scale};
+        if (!isfinite(at.x) || !isfinite(at.y))
+            continue;
+        if (!count_point(s, at) || !mark_segment(s, i > first ? before : at, at, reach))
+            return false;
+        before = at;
+    }
+    return true;
+}
+
+/* ---- The threads ---- */
+
+typedef struct taking_census {
+    share *shares;
+} taking_census;
+
+static camber_status walk_share(void *user, size_t number) {
+    share *s = ((taking_census *)user)->shares + number;
+    for (size_t i = s->first; i < s->end; i++)
+        if (!mark_polyline(s, i))
+            return CAMBER_ERROR_MEMORY;
+    return CAMBER_OK;
+}
+
+/* Divides the polylines by their points. */
+static void divide(const camber_zoom_plan *plan, uint32_t side, int zoom, camber_workers *workers, share *shares) {
+    const camber_features *features = plan->features;
+    const size_t count = workers->count, polylines = features->polyline_count;
+    size_t at = 0;
+    for (size_t i = 0; i < count; i++) {
+        const size_t end_point = (size_t)((double)features->point_count * (double)(i + 1) / (double)count);
+        shares[i] = (share){
+            .context = workers->contexts[i], .plan = plan, .tiles = (int64_t)1 << zoom, .side = side, .first = at};
+        while (at < polylines && (i + 1 == count || features->offsets[at] < end_point))
+            at++;
+        shares[i].end = at;
+    }
+}
+
+/* ---- Putting together ---- */
+
+typedef struct numbered_metatile {
+    uint64_t number; /* along the Hilbert curve */
+    uint32_t share, metatile;
+} numbered_metatile;
+
+static int compare_numbers(const void *left, const void *right) {
+    const numbered_metatile *a = left, *b = right;
+    return a->number != b->number ? (a->number < b->number ? -1 : 1) : a->share < b->share ? -1 : a->share > b->share;
+}
+
+static camber_status list_metatiles(camber_census *census, share *shares, size_t count, numbered_metatile **all,
+                                    size_t *all_count) {
+    const int zoom = camber_metatile_level(census->zoom, census->side);
+    size_t total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += shares[i].metatile_count;
+    numbered_metatile *list = camber_alloc(census->context, total, sizeof *list);
+    if (!list)
+        return CAMBER_ERROR_MEMORY;
+    size_t at = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < shares[i].metatile_count; k++)
+            list[at++] = (numbered_metatile){
+                camber_pmtiles_number(zoom, shares[i].metatiles[k].column, shares[i].metatiles[k].row), (uint32_t)i,
+                (uint32_t)k};
+    qsort(list, total, sizeof *list, compare_numbers);
+    *all = list;
+    *all_count = total;
+    return CAMBER_OK;
+}
+
+/* Unites what the threads have met, and lists the polylines of each metatile: those of the first thread come first. */
+static camber_status unite(camber_census *census, share *shares, size_t count) {
+    numbered_metatile *all = NULL;
+    size_t all_count = 0, pairs = 0;
+    camber_status status = list_metatiles(census, shares, count, &all, &all_count);
+    if (status != CAMBER_OK)
+        return status;
+    for (size_t i = 0; i < count; i++)
+        pairs += shares[i].pair_count;
+    size_t *fill = camber_alloc_zero(census->context, all_count, sizeof *fill);
+    if (!fill || !(census->metatiles = camber_alloc(census->context, all_count, sizeof *census->metatiles)) ||
+        !(census->polylines = camber_alloc(census->context, pairs, sizeof *census->polylines)))
+        status = CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < all_count && status == CAMBER_OK; i++) {
+        found_metatile *met = shares[all[i].share].metatiles + all[i].metatile;
+        const bool same = i > 0 && all[i].number == all[i - 1].number;
+        if (!same)
+            census->metatiles[census->metatile_count++] = (camber_metatile){.column = met->column, .row = met->row};
+        camber_metatile *metatile = census->metatiles + census->metatile_count - 1;
+        metatile->tiles |= met->tiles;
+        metatile->points += met->points;
+        met->last = (uint32_t)census->metatile_count - 1; /* where it went */
+    }
+    for (int put = 0; put < 2 && status == CAMBER_OK; put++) {
+        for (size_t i = 0; i < count; i++)
+            for (size_t k = 0; k < shares[i].pair_count; k++) {
+                const size_t metatile = shares[i].metatiles[shares[i].pairs[k].metatile].last;
+                if (put)
+                    census->polylines[fill[metatile]++] = shares[i].pairs[k].polyline;
+                else
+                    census->metatiles[metatile].end++;
+            }
+        for (size_t b = 0, at = 0; b < census->metatile_count && !put; b++) {
+            const size_t size = census->metatiles[b].end;
+            census->metatiles[b].first = fill[b] = at;
+            census->metatiles[b].end = at += size;
+        }
+    }
+    camber_free(census->context, fill);
+    camber_free(census->context, all);
+    return status;
+}
+
+camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_t side, camber_workers *workers,
+                                 camber_census *census) {
+    *census = (camber_census){.context = workers->context, .zoom = zoom, .side = side};
+    taking_census task = {camber_alloc_zero(workers->context, workers->count, sizeof *task.shares)};
+    if (!task.shares)
+        return CAMBER_ERROR_MEMORY;
+    divide(plan, side, zoom, workers, task.shares);
+    camber_status status = camber_workers_run(workers, walk_share, &task);
+    if (status == CAMBER_OK)
+        status = unite(census, task.shares, workers->count);
+    for (size_t i = 0; i < workers->count; i++) {
+        camber_free(workers->contexts[i], task.shares[i].metatiles);
+        camber_free(workers->contexts[i], task.shares[i].slots);
+        camber_free(workers->contexts[i], task.shares[i].pairs);
+    }
+    camber_free(workers->context, task.shares);
+    return status;
+}
+
+void camber_census_free(camber_census *census) {
+    if (!census->context)
+        return;
+    camber_free(census->context, census->metatiles);
+    camber_free(census->context, census->polylines);
+    *census = (camber_census){0};
+}
+
+const camber_metatile *camber_census_find(const camber_census *census, uint32_t column, uint32_t row) {
+    const int zoom = camber_metatile_level(census->zoom, census->side);
+    const uint64_t wanted = camber_pmtiles_number(zoom, column, row);
+    size_t low = 0, high = census->metatile_count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        const camber_metatile *metatile = census->metatiles + middle;
+        const uint64_t number = camber_pmtiles_number(zoom, metatile->column, metatile->row);
+        if (number == wanted)
+            return metatile;
+        if (number < wanted)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return NULL;
+}

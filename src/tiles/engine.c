@@ -1,0 +1,315 @@
+/* The engine: pictures of metatiles of tiles, with a network and a camera for each.
+ *
+ * Input: features, a renderer, and which tile is wanted. Output: pixels of its metatile. Main idea: a census tells
+ * which lines reach into a metatile; of these an excerpt is made, tessellated and drawn as one picture, which tiles are
+ * cut of.
+ */
+#include "tiles/engine.h"
+
+#include <math.h>
+
+enum {
+    PICTURE_PX = 2048,
+    LEAST_TILE_PX = 64,
+    /* The census of a higher zoom would grow with the tiles that lines pass, without an end; on demand it is taken in
+     * tiles of this zoom, which have few lines. */
+    FINEST_CENSUS_ZOOM = 16,
+};
+/* A network of more points does not wait in the mesh until the next one is made. */
+static const size_t MANY_POINTS = (size_t)1 << 20;
+
+/* ---- The engine ---- */
+
+/* Fills in the defaults. */
+static camber_tiles_engine_desc whole_desc(const camber_tiles_engine_desc *desc) {
+    camber_tiles_engine_desc whole = *desc;
+    whole.tile_size = desc->tile_size ? desc->tile_size : 256;
+    whole.ratio = desc->ratio != 0.0 ? desc->ratio : 1.0;
+    return whole;
+}
+
+double camber_engine_tile_px(const camber_tiles_engine_desc *desc) {
+    const camber_tiles_engine_desc whole = whole_desc(desc);
+    return floor(whole.tile_size * whole.ratio + 0.5);
+}
+
+camber_zoom_desc camber_engine_zoom_desc(const camber_tiles_engine_desc *desc, int zoom) {
+    const camber_tiles_engine_desc whole = whole_desc(desc);
+    return (camber_zoom_desc){.zoom = zoom - (whole.tile_size == 256 ? 1.0 : 0.0),
+                              .scale_px = camber_engine_tile_px(desc) * exp2(zoom),
+                              .ratio = whole.ratio,
+                              .simplify_px = whole.simplify_px};
+}
+
+static camber_status check_desc(camber_tiles_engine *engine, const camber_tiles_engine_desc *desc) {
+    camber_tiles_engine_desc *own = &engine->desc;
+    *own = whole_desc(desc);
+    if (own->tile_size != 256 && own->tile_size != 512)
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: a size of %u; choose 256 or 512",
+                           own->tile_size);
+    const double tile_px = camber_engine_tile_px(own);
+    if (!(tile_px >= LEAST_TILE_PX && tile_px <= PICTURE_PX))
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: a ratio of %g makes %g px of a tile of %u; choose one that makes %d to %d",
+                           own->ratio, tile_px, own->tile_size, LEAST_TILE_PX, PICTURE_PX);
+    if (!(own->simplify_px >= 0.0 && isfinite(own->simplify_px)))
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: a simplification of %g px; choose 0 or a distance in pixels", own->simplify_px);
+    if (own->on_demand_side > CAMBER_METATILE_SIDE_MOST || own->on_demand_side & (own->on_demand_side - 1))
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: %u tiles on a side; choose 1, 2, 4 or 8",
+                           own->on_demand_side);
+    engine->tile_px = (uint32_t)tile_px;
+    return CAMBER_OK;
+}
+
+camber_status camber_tiles_engine_create(const camber_features *features, const camber_tiles_engine_desc *desc,
+                                         camber_tiles_engine **engine) {
+    camber_tiles_engine *made = camber_alloc_zero(features->context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->context = features->context;
+    made->features = features;
+    camber_status status = check_desc(made, desc);
+    if (status == CAMBER_OK)
+        status = camber_workers_make(made->context, desc->threads, &made->workers);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(desc->device, desc->renderer, &made->mesh);
+    if (status == CAMBER_OK)
+        *engine = made;
+    else
+        camber_tiles_engine_destroy(made);
+    return status;
+}
+
+void camber_tiles_engine_forget(camber_tiles_engine *engine, int zoom) {
+    if (zoom < 0 || zoom > CAMBER_LARGEST_TILE_ZOOM)
+        return;
+    camber_census_free(&engine->zooms[zoom].census);
+    camber_zoom_plan_destroy(engine->zooms[zoom].plan);
+    engine->zooms[zoom].plan = NULL;
+}
+
+void camber_tiles_engine_destroy(camber_tiles_engine *engine) {
+    if (!engine)
+        return;
+    camber_mesh_destroy(engine->mesh);
+    for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
+        camber_tiles_engine_forget(engine, zoom);
+    camber_workers_free(&engine->workers);
+    camber_free(engine->context, engine);
+}
+
+size_t camber_tiles_engine_get_picture_bytes(const camber_tiles_engine *engine) {
+    const size_t side = (size_t)camber_engine_side(engine, CAMBER_LARGEST_TILE_ZOOM) * engine->tile_px;
+    return 4 * side * side;
+}
+
+/* ---- Zooms ---- */
+
+uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom) {
+    const uint32_t most = engine->desc.on_demand_side ? engine->desc.on_demand_side : CAMBER_METATILE_SIDE_MOST;
+    uint32_t side = 1;
+    for (int i = 0; i < zoom && side < most && 2 * side * engine->tile_px <= PICTURE_PX; i++)
+        side *= 2;
+    return side;
+}
+
+/* The zoom in whose tiles the census of a zoom is taken. */
+static int census_zoom(const camber_tiles_engine *engine, int zoom) {
+    return engine->desc.on_demand_side && zoom > FINEST_CENSUS_ZOOM ? FINEST_CENSUS_ZOOM : zoom;
+}
+
+/* The lines of a picture, and maybe others beside it. NULL: none touches it. */
+static const camber_metatile *find_metatile(const camber_tiles_engine *engine, int zoom, uint32_t column,
+                                            uint32_t row) {
+    const int counted = census_zoom(engine, zoom);
+    const uint32_t side = camber_engine_side(engine, counted);
+    return camber_census_find(&engine->zooms[zoom].census, (column >> (zoom - counted)) / side,
+                              (row >> (zoom - counted)) / side);
+}
+
+static bool take_first_pixel(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    (void)row_count;
+    if (first_row == 0)
+        memcpy(user, rgba, 4);
+    return true;
+}
+
+/* Draws the background alone, so that its colour is what pixels of it are. */
+static camber_status find_background(camber_tiles_engine *engine, camber_engine_zoom *zoom) {
+    const camber_plan_patterns *patterns = &zoom->plan->plan.patterns;
+    zoom->has_background = !zoom->plan->has_images;
+    camber_pass *passes = camber_alloc_zero(engine->context, patterns->fill_count, sizeof *passes);
+    if (!passes)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < patterns->fill_count; i++)
+        passes[i] = (camber_pass){.kind = CAMBER_PASS_FILL, .fill = patterns->fills[i].fill};
+    const camber_frame frame = {.width = 32,
+                                .height = 32,
+                                .background = zoom->plan->plan.background,
+                                .passes = passes,
+                                .pass_count = patterns->fill_count};
+    camber_status status = CAMBER_OK;
+    if (zoom->has_background)
+        status = camber_renderer_render(engine->desc.renderer, &frame, take_first_pixel, zoom->background, NULL);
+    camber_free(engine->context, passes);
+    return status;
+}
+
+camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **planned) {
+    camber_engine_zoom *it = engine->zooms + zoom;
+    camber_status status = CAMBER_OK;
+    const double start_ms = camber_now_ms();
+    if (!it->plan) {
+        const camber_zoom_desc desc = camber_engine_zoom_desc(&engine->desc, zoom);
+        status = camber_zoom_plan_create(engine->features, &desc, &it->plan);
+        if (status == CAMBER_OK)
+            status = find_background(engine, it);
+        if (status != CAMBER_OK)
+            camber_tiles_engine_forget(engine, zoom);
+    }
+    engine->census_ms += camber_now_ms() - start_ms;
+    *planned = it;
+    return status;
+}
+
+camber_status camber_engine_open_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **opened) {
+    camber_status status = camber_engine_plan_zoom(engine, zoom, opened);
+    const double start_ms = camber_now_ms();
+    if (status == CAMBER_OK && !(*opened)->census.context)
+        status = camber_census_make((*opened)->plan, census_zoom(engine, zoom),
+                                    camber_engine_side(engine, census_zoom(engine, zoom)), &engine->workers,
+                                    &(*opened)->census);
+    if (status != CAMBER_OK)
+        camber_tiles_engine_forget(engine, zoom);
+    engine->census_ms += camber_now_ms() - start_ms;
+    return status;
+}
+
+/* ---- Pictures ---- */
+
+camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
+                                            const camber_metatile *metatile) {
+    const camber_engine_zoom *it = engine->zooms + zoom;
+    const uint32_t side = camber_engine_side(engine, zoom);
+    camber_tiles_picture picture = {.zoom = zoom,
+                                    .column = column * side,
+                                    .row = row * side,
+                                    .side = side,
+                                    .tile_px = engine->tile_px,
+                                    .tiles = !metatile                          ? 0
+                                             : census_zoom(engine, zoom) < zoom ? UINT64_MAX >> (64 - side * side)
+                                                                                : metatile->tiles,
+                                    .has_background = it->has_background};
+    memcpy(picture.background, it->background, sizeof picture.background);
+    return picture;
+}
+
+typedef struct row_taker {
+    uint8_t *rgba;
+    const camber_tiles_picture *picture;
+    uint64_t tiles; /* that are wanted; others are not copied */
+} row_taker;
+
+/* Copies the wanted tiles of one row of pixels, those side by side at once. */
+static void take_row(const row_taker *taker, const uint8_t *row, uint32_t y) {
+    const camber_tiles_picture *picture = taker->picture;
+    const uint32_t side = picture->side;
+    const size_t tile_bytes = 4 * (size_t)picture->tile_px;
+    const uint64_t wanted = taker->tiles >> (y / picture->tile_px * side);
+    uint8_t *to = taker->rgba + tile_bytes * side * y;
+    for (uint32_t x = 0, end; x < side; x = end + 1) {
+        for (end = x; end < side && wanted >> end & 1; end++)
+            ;
+        memcpy(to + tile_bytes * x, row + tile_bytes * x, tile_bytes * (end - x));
+    }
+}
+
+static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const row_taker *taker = user;
+    const size_t row_bytes = 4 * (size_t)taker->picture->tile_px * taker->picture->side;
+    for (uint32_t i = 0; i < row_count; i++)
+        take_row(taker, rgba + row_bytes * i, first_row + i);
+    return true;
+}
+
+/* Frees what the mesh holds of a large network. */
+static camber_status renew_mesh(camber_tiles_engine *engine) {
+    camber_mesh_destroy(engine->mesh);
+    engine->mesh = NULL;
+    return camber_mesh_create(engine->desc.device, engine->desc.renderer, &engine->mesh);
+}
+
+camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
+                                          uint8_t *rgba, camber_tiles_picture *picture) {
+    const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
+    const double across = exp2(picture->zoom), half = 0.5 * picture->side;
+    const uint32_t side_px = picture->side * picture->tile_px;
+    const camber_excerpt_window window = {(picture->column + half) / across, (picture->row + half) / across, side_px,
+                                          side_px};
+    const double start_ms = camber_now_ms();
+    camber_excerpt excerpt = {0};
+    row_taker taker = {rgba, picture, tiles};
+    const uint32_t *polylines = metatile ? zoom->census.polylines + metatile->first : NULL;
+    static const uint32_t none[1] = {0};
+    camber_status status = camber_excerpt_make(zoom->plan, polylines ? polylines : none,
+                                               metatile ? metatile->end - metatile->first : 0, &window, &excerpt);
+    const double made_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_excerpt_tessellate(&excerpt, engine->mesh);
+    if (status == CAMBER_OK) {
+        camber_frame frame = camber_excerpt_get_frame(&excerpt, engine->mesh);
+        frame.coverage = engine->desc.coverage;
+        status = camber_renderer_render(engine->desc.renderer, &frame, take_rows, &taker, NULL);
+    }
+    const bool large = excerpt.network && camber_network_get_stats(excerpt.network).kept_points > MANY_POINTS;
+    camber_excerpt_free(&excerpt);
+    if (status == CAMBER_OK && large)
+        status = renew_mesh(engine);
+    engine->make_ms += made_ms - start_ms;
+    engine->draw_ms += camber_now_ms() - made_ms;
+    picture->rgba = status == CAMBER_OK ? rgba : NULL;
+    return status;
+}
+
+static camber_status find(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
+                          const camber_metatile **metatile, camber_tiles_picture *picture) {
+    camber_engine_zoom *opened;
+    if (zoom < 0 || zoom > CAMBER_LARGEST_TILE_ZOOM || column >> zoom || row >> zoom)
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: there is no tile %d/%u/%u; zooms are 0 to %d, with 2^zoom columns and rows", zoom,
+                           column, row, CAMBER_LARGEST_TILE_ZOOM);
+    const camber_status status = camber_engine_open_zoom(engine, zoom, &opened);
+    if (status != CAMBER_OK)
+        return status;
+    const uint32_t side = camber_engine_side(engine, zoom);
+    *metatile = find_metatile(engine, zoom, column, row);
+    *picture = camber_engine_describe(engine, zoom, column / side, row / side, *metatile);
+    return CAMBER_OK;
+}
+
+camber_status camber_tiles_engine_look(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
+                                       camber_tiles_picture *picture) {
+    const camber_metatile *metatile = NULL;
+    return find(engine, zoom, column, row, &metatile, picture);
+}
+
+camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
+                                       uint8_t *rgba, camber_tiles_picture *picture) {
+    const camber_metatile *metatile = NULL;
+    camber_tiles_picture made = {0};
+    camber_status status = find(engine, zoom, column, row, &metatile, &made);
+    if (status == CAMBER_OK)
+        status = camber_engine_draw_metatile(engine, metatile, UINT64_MAX, rgba, &made);
+    if (status == CAMBER_OK)
+        *picture = made;
+    return status;
+}
+
+void camber_tiles_picture_get_tile(const camber_tiles_picture *picture, uint32_t x, uint32_t y, camber_pixels *pixels) {
+    const size_t stride = 4 * (size_t)picture->side * picture->tile_px;
+    *pixels = (camber_pixels){.rgba = picture->rgba + stride * picture->tile_px * y + 4 * (size_t)picture->tile_px * x,
+                              .width = picture->tile_px,
+                              .height = picture->tile_px,
+                              .stride_bytes = stride};
+}

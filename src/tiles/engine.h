@@ -1,0 +1,43 @@
+/* The engine's inside, for the files that draw archives. */
+#ifndef CAMBER_TILES_ENGINE_H
+#define CAMBER_TILES_ENGINE_H
+
+#include "camber_tiles.h"
+#include "tiles/census.h"
+
+typedef struct camber_engine_zoom {
+    camber_zoom_plan *plan; /* NULL: not evaluated yet */
+    camber_census census;   /* context NULL: not made yet */
+    bool has_background;
+    uint8_t background[4];
+} camber_engine_zoom;
+
+struct camber_tiles_engine {
+    camber_context *context;
+    const camber_features *features;
+    camber_tiles_engine_desc desc; /* defaults filled in */
+    uint32_t tile_px;
+    camber_workers workers;
+    camber_mesh *mesh;
+    camber_engine_zoom zooms[CAMBER_LARGEST_TILE_ZOOM + 1];
+    double census_ms, make_ms, draw_ms;
+};
+
+/* Evaluates the style for the zoom, unless that is done. */
+camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **planned);
+/* Does the same, and takes the census of the zoom. */
+camber_status camber_engine_open_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **opened);
+/* How large a tile is, device px; less than 1: the desc makes no sense. */
+double camber_engine_tile_px(const camber_tiles_engine_desc *desc);
+/* How the style is evaluated for tiles of a zoom. */
+camber_zoom_desc camber_engine_zoom_desc(const camber_tiles_engine_desc *desc, int zoom);
+/* How many tiles a picture has on a side; for archives, a metatile of the census too. */
+uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom);
+/* The picture of a metatile, not drawn. The zoom is open. metatile NULL: no line touches it. */
+camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
+                                            const camber_metatile *metatile);
+/* Draws a metatile of an open zoom into rgba: the pixels of these tiles; others stay what they were. */
+camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
+                                          uint8_t *rgba, camber_tiles_picture *picture);
+
+#endif

@@ -1,0 +1,503 @@
+/* Draws a pyramid of tiles into an archive.
+ *
+ * Input: an engine, and which tiles are wanted. Output: an archive. Main idea: the calling thread makes networks, draws
+ * pictures and writes tiles; threads cut and encode them beside it. Each picture is a unit of the archive's writer, so
+ * that a killed run loses the pictures that were under way.
+ *
+ *     census -> schedule -> [resumed?] -> draw --> encode (threads) --> writer --> archive
+ *                                          ^------- the next picture ----' */
+#include "archive/archive.h"
+#include "source/features.h"
+#include "source/pmtiles.h"
+#include "tiles/encoding.h"
+#include "tiles/features_file.h"
+#include "tiles/schedule_file.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+
+typedef struct pyramid {
+    camber_context *context;
+    camber_tiles_engine *engine;
+    const camber_tiles_draw_desc *desc;
+    camber_tiles_area area;
+    camber_schedule schedule;
+    camber_archive *renewed; /* the archive whose tiles are replaced. NULL: none */
+    camber_archive_writer *writer;
+    camber_encode_queue *queue;
+    camber_tiles_stats stats;
+    char fingerprint[CAMBER_FINGERPRINT_SIZE];
+    double done_cost;
+    /* A tile of the background, for those that are kept. */
+    uint8_t *blank;
+    size_t blank_bytes, blank_capacity;
+    int blank_zoom; /* negative: none yet */
+} pyramid;
+
+static uint64_t unit_of(const camber_tile_task *task, uint32_t side) {
+    return camber_pmtiles_number(task->zoom, task->column * side, task->row * side);
+}
+
+static uint64_t count_bits(uint64_t bits) {
+    uint64_t count = 0;
+    for (; bits; bits &= bits - 1)
+        count++;
+    return count;
+}
+
+/* ---- Writing ---- */
+
+static camber_tile_index tile_of(const camber_tiles_picture *picture, uint32_t bit) {
+    return (camber_tile_index){picture->column + bit % picture->side, picture->row + bit / picture->side};
+}
+
+/* Gives the tiles of an encoded picture to the writer, which from then on keeps them. */
+static camber_status write_job(pyramid *p, const camber_encode_job *job) {
+    const double start_ms = camber_now_ms();
+    const camber_tiles_picture *picture = &job->picture;
+    camber_status status = job->status;
+    for (uint32_t bit = 0; bit < picture->side * picture->side && status == CAMBER_OK; bit++) {
+        const camber_encoded_tile *tile = job->tiles + bit;
+        if (!(job->wanted >> bit & 1))
+            continue;
+        if (tile->size_bytes && !p->desc->dry_run)
+            status = camber_archive_writer_add(p->writer, picture->zoom, tile_of(picture, bit), tile->bytes,
+                                               tile->size_bytes);
+        else if (p->renewed)
+            status = camber_archive_writer_remove(p->writer, picture->zoom, tile_of(picture, bit));
+        p->stats.tiles += tile->size_bytes > 0;
+        p->stats.background += tile->size_bytes == 0;
+        p->stats.bytes += tile->size_bytes;
+    }
+    if (status == CAMBER_OK && !p->desc->dry_run)
+        status = camber_archive_writer_end_unit(p->writer, job->unit);
+    p->stats.write_ms += camber_now_ms() - start_ms;
+    return status;
+}
+
+/* Writes what is encoded; with waits, at least one picture, if any is under way. */
+static camber_status write_ready(pyramid *p, bool waits) {
+    camber_encode_job *job;
+    camber_status status = CAMBER_OK;
+    do {
+        const double start_ms = camber_now_ms();
+        job = camber_encode_queue_take(p->queue, waits);
+        p->stats.wait_ms += camber_now_ms() - start_ms;
+        if (!job)
+            return CAMBER_OK;
+        status = write_job(p, job);
+        camber_encode_queue_release(p->queue, job);
+        waits = false;
+    } while (status == CAMBER_OK);
+    return status;
+}
+
+/* ---- Tiles without lines ---- */
+
+static camber_status make_blank(pyramid *p, int zoom) {
+    const uint32_t px = p->engine->tile_px;
+    const camber_encoder_desc desc = {.encoding = p->desc->encoding, .quality = p->desc->quality};
+    camber_encoder *encoder = NULL;
+    const uint8_t *bytes = NULL;
+    uint8_t *rgba = camber_alloc(p->context, px, 4 * (size_t)px);
+    camber_status status = rgba ? camber_encoder_create(p->context, &desc, &encoder) : CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; rgba && i < (size_t)px * px; i++)
+        memcpy(rgba + 4 * i, p->engine->zooms[zoom].background, 4);
+    const camber_pixels pixels = {.rgba = rgba, .width = px, .height = px};
+    if (status == CAMBER_OK)
+        status = camber_encoder_encode(encoder, &pixels, &bytes, &p->blank_bytes);
+    if (status == CAMBER_OK && !camber_grow(p->context, &p->blank, &p->blank_capacity, p->blank_bytes, 1))
+        status = CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK) {
+        memcpy(p->blank, bytes, p->blank_bytes);
+        p->blank_zoom = zoom;
+    }
+    camber_encoder_destroy(encoder);
+    camber_free(p->context, rgba);
+    return status;
+}
+
+/* Writes a metatile that no line touches: its tiles are kept as blanks, or removed. */
+static camber_status write_blanks(pyramid *p, const camber_tile_task *task, const camber_tiles_picture *picture) {
+    const bool keeps = p->desc->keep_empty;
+    camber_status status = keeps && p->blank_zoom != task->zoom ? make_blank(p, task->zoom) : CAMBER_OK;
+    for (uint32_t bit = 0; bit < picture->side * picture->side && status == CAMBER_OK; bit++) {
+        if (!(task->wanted >> bit & 1))
+            continue;
+        const camber_tile_index tile = tile_of(picture, bit);
+        status = keeps ? camber_archive_writer_add(p->writer, task->zoom, tile, p->blank, p->blank_bytes)
+                       : camber_archive_writer_remove(p->writer, task->zoom, tile);
+        p->stats.tiles += keeps;
+        p->stats.bytes += keeps ? p->blank_bytes : 0;
+    }
+    return status == CAMBER_OK ? camber_archive_writer_end_unit(p->writer, unit_of(task, picture->side)) : status;
+}
+
+/* ---- Drawing ---- */
+
+/* Draws a metatile of an open zoom, and hands it to the threads. */
+static camber_status draw_task(pyramid *p, const camber_tile_task *task, const camber_metatile *metatile) {
+    camber_encode_job *job;
+    camber_status status = write_ready(p, false);
+    while (status == CAMBER_OK && !(job = camber_encode_queue_get_free(p->queue)))
+        status = write_ready(p, true);
+    if (status != CAMBER_OK)
+        return status;
+    job->picture = camber_engine_describe(p->engine, task->zoom, task->column, task->row, metatile);
+    job->wanted = task->wanted;
+    job->unit = unit_of(task, job->picture.side);
+    job->drops_background = !p->desc->keep_empty && job->picture.has_background;
+    if (!p->desc->keep_empty && !job->picture.has_background && !p->renewed)
+        job->wanted &= task->touched;
+    status = camber_engine_draw_metatile(p->engine, metatile, job->wanted, job->rgba, &job->picture);
+    if (status != CAMBER_OK)
+        return status;
+    memcpy(job->background, job->picture.background, sizeof job->background);
+    camber_encode_queue_put(p->queue, job);
+    p->stats.units++;
+    p->stats.points += task->points;
+    return CAMBER_OK;
+}
+
+static camber_status do_task(pyramid *p, const camber_tile_task *task) {
+    camber_engine_zoom *zoom;
+    const uint32_t side = camber_engine_side(p->engine, task->zoom);
+    if (!p->desc->dry_run && camber_archive_writer_has_unit(p->writer, unit_of(task, side))) {
+        p->stats.resumed++;
+        return CAMBER_OK;
+    }
+    camber_status status = camber_engine_open_zoom(p->engine, task->zoom, &zoom);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_metatile *metatile = camber_census_find(&zoom->census, task->column, task->row);
+    if (task->touched || !zoom->has_background)
+        return draw_task(p, task, metatile);
+    const camber_tiles_picture picture =
+        camber_engine_describe(p->engine, task->zoom, task->column, task->row, metatile);
+    return write_blanks(p, task, &picture);
+}
+
+/* Draws tasks of one zoom. */
+static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
+    const camber_schedule *s = &p->schedule;
+    camber_status status = CAMBER_OK;
+    for (size_t i = first; i < end && status == CAMBER_OK; i++) {
+        status = do_task(p, s->tasks + i);
+        p->done_cost += camber_task_cost(s->tasks + i);
+        camber_progress(p->context, "drawing tiles", s->cost > 0.0 ? p->done_cost / s->cost : -1.0);
+    }
+    camber_tiles_engine_forget(p->engine, s->tasks[first].zoom);
+    return status;
+}
+
+/* Drops the points that neither this zoom nor any before it draws. Where a style asks for lengths along lines, all
+ * points count. */
+static camber_status spend_points(pyramid *p, int zoom) {
+    camber_engine_zoom *opened;
+    if (!p->desc->spent || p->schedule.has_arc_length)
+        return CAMBER_OK;
+    const camber_status status = camber_engine_plan_zoom(p->engine, zoom, &opened);
+    return status == CAMBER_OK ? camber_features_thin(p->desc->spent, opened->plan->least_importance) : status;
+}
+
+/* Draws the deepest zoom first: where points may go, each zoom leaves the next one fewer, and the first zooms, whose
+ * networks have all lines, are drawn when least is held. */
+static camber_status draw_all(pyramid *p) {
+    const camber_schedule *s = &p->schedule;
+    camber_status status = CAMBER_OK;
+    for (size_t end = s->count, first; end > 0 && status == CAMBER_OK; end = first) {
+        for (first = end; first > 0 && s->tasks[first - 1].zoom == s->tasks[end - 1].zoom; first--)
+            ;
+        status = spend_points(p, s->tasks[first].zoom);
+        if (status == CAMBER_OK)
+            status = draw_zoom(p, first, end);
+    }
+    while (status == CAMBER_OK && camber_encode_queue_is_busy(p->queue))
+        status = write_ready(p, true);
+    return status;
+}
+
+/* ---- A dry run ---- */
+
+/* Draws some metatiles of a zoom, to tell how many bytes all of them will take. */
+static camber_status try_zoom(pyramid *p, size_t first, size_t end) {
+    enum { TRIED = 3 };
+    const camber_tiles_stats before = p->stats;
+    uint64_t tiles = 0;
+    camber_status status = CAMBER_OK;
+    for (size_t i = first; i < end; i++)
+        tiles += count_bits(p->schedule.tasks[i].wanted);
+    p->stats.tiles = p->stats.bytes = p->stats.background = 0;
+    /* Who wants a schedule has no use for the bytes, and pictures take longer than all the rest. */
+    const size_t most = p->desc->schedule_path ? 0 : TRIED;
+    for (size_t i = 0; i < most && i < end - first && status == CAMBER_OK; i++)
+        status = do_task(p, p->schedule.tasks + first + (end - first) * (2 * i + 1) / (2 * TRIED));
+    while (status == CAMBER_OK && camber_encode_queue_is_busy(p->queue))
+        status = write_ready(p, true);
+    const uint64_t tried = p->stats.tiles + p->stats.background;
+    const double bytes = tried ? (double)p->stats.bytes / (double)tried * (double)tiles : 0.0;
+    p->stats.bytes = before.bytes + (uint64_t)bytes;
+    p->stats.tiles = before.tiles + tiles;
+    p->stats.background = before.background;
+    return status;
+}
+
+static camber_status try_all(pyramid *p) {
+    const camber_schedule *s = &p->schedule;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0, end; i < s->count && status == CAMBER_OK; i = end) {
+        for (end = i; end < s->count && s->tasks[end].zoom == s->tasks[i].zoom; end++)
+            ;
+        status = try_zoom(p, i, end);
+        camber_tiles_engine_forget(p->engine, s->tasks[i].zoom);
+    }
+    p->stats.units = s->count;
+    p->stats.points = 0;
+    for (size_t i = 0; i < s->count; i++)
+        p->stats.points += s->tasks[i].points;
+    return status;
+}
+
+/* ---- The archive ---- */
+
+static void put_text(json_t *metadata, const char *name, const char *text) {
+    if (text && *text)
+        json_object_set_new(metadata, name, json_string(text));
+}
+
+static json_t *make_metadata(const pyramid *p) {
+    const camber_tiles_draw_desc *desc = p->desc;
+    const camber_features *features = p->engine->features;
+    json_t *metadata = json_object();
+    char generator[64];
+    snprintf(generator, sizeof generator, "camber %s", camber_version());
+    put_text(metadata, "name", desc->name ? desc->name : "camber");
+    put_text(metadata, "description", desc->description);
+    put_text(metadata, "attribution",
+             desc->attribution ? desc->attribution : camber_features_get_attribution(features));
+    put_text(metadata, "type", "baselayer");
+    put_text(metadata, "version", camber_version());
+    put_text(metadata, "generator", generator);
+    put_text(metadata, "style", features->style->name);
+    json_object_set_new(metadata, "tileSize", json_integer((json_int_t)p->engine->tile_px));
+    json_object_set_new(metadata, "ratio", json_real(p->engine->desc.ratio));
+    return metadata;
+}
+
+/* The zoom at which the bounds are about four tiles wide. */
+static int find_center_zoom(const camber_tiles_area *area) {
+    const double side = fmax(area->bounds.x1 - area->bounds.x0, area->bounds.y1 - area->bounds.y0);
+    const double zoom = side > 0.0 ? floor(log2(4.0 / side)) : area->max_zoom;
+    return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
+}
+
+static camber_tile_type type_of(camber_encoding encoding) {
+    return encoding == CAMBER_ENCODING_WEBP ? CAMBER_TILE_WEBP : CAMBER_TILE_PNG;
+}
+
+static camber_status fail_renewed(const pyramid *p, const char *names) {
+    return camber_fail(p->context, CAMBER_ERROR_INPUT,
+                       "%s: is made of another %s; renew it with the options that it was drawn with, or draw it anew",
+                       p->desc->output, names);
+}
+
+/* Opens the archive whose tiles are replaced, and makes the description of what it becomes. */
+static camber_status open_renewed(pyramid *p, camber_archive_desc *whole) {
+    char names[128], own[CAMBER_FINGERPRINT_SIZE];
+    const camber_status status = camber_archive_open(p->context, p->desc->output, &p->renewed);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_archive *there = p->renewed;
+    if (!there->fingerprint)
+        return camber_fail(p->context, CAMBER_ERROR_INPUT,
+                           "%s: does not say what it is made of, so its tiles cannot be renewed; draw it anew",
+                           p->desc->output);
+    if (there->type != whole->type)
+        return fail_renewed(p, "format");
+    if (!camber_fingerprint_renew(there->fingerprint, p->fingerprint, own, names, sizeof names))
+        return fail_renewed(p, names);
+    memcpy(p->fingerprint, own, sizeof own);
+    whole->force = true;
+    whole->resume = false;
+    whole->min_zoom = there->min_zoom;
+    whole->max_zoom = there->max_zoom;
+    if (there->has_bounds)
+        memcpy(whole->bounds, there->bounds, sizeof whole->bounds);
+    whole->center = there->center;
+    whole->center.zoom = there->whole_center_zoom;
+    whole->metadata = there->metadata;
+    whole->shard = there->shard;
+    whole->shards = there->shards;
+    return CAMBER_OK;
+}
+
+static camber_status open_writer(pyramid *p) {
+    const camber_tiles_draw_desc *desc = p->desc;
+    json_t *metadata = make_metadata(p);
+    camber_archive_desc whole = {.path = desc->output,
+                                 .type = type_of(desc->encoding),
+                                 .force = desc->force,
+                                 .resume = desc->resume,
+                                 .min_zoom = p->area.min_zoom,
+                                 .max_zoom = p->area.max_zoom,
+                                 .metadata = metadata,
+                                 .fingerprint = p->fingerprint,
+                                 .shard = desc->shard,
+                                 .shards = desc->shards};
+    camber_status status = metadata ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    camber_tiles_area_bounds(&p->area, whole.bounds);
+    whole.center = (camber_archive_center){true, 0.5 * (whole.bounds[0] + whole.bounds[2]),
+                                           0.5 * (whole.bounds[1] + whole.bounds[3]), find_center_zoom(&p->area)};
+    if (!camber_archive_get_format(desc->output, &whole.format))
+        status = camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
+                             "%s: its name tells no format; name it .pmtiles, .mbtiles, or a folder with a slash",
+                             desc->output);
+    if (status == CAMBER_OK && desc->renew)
+        status = open_renewed(p, &whole);
+    if (status == CAMBER_OK)
+        status = camber_archive_writer_create(p->context, &whole, &p->writer);
+    if (status == CAMBER_OK && p->renewed)
+        status = camber_archive_writer_take(p->writer, p->renewed);
+    json_decref(metadata);
+    if (status == CAMBER_OK && desc->begun && !camber_archive_writer_is_done(p->writer))
+        desc->begun(desc->user);
+    return status;
+}
+
+static camber_status draw_archive(pyramid *p) {
+    const double start_ms = camber_now_ms();
+    camber_status status = open_writer(p);
+    p->stats.write_ms += camber_now_ms() - start_ms;
+    if (status == CAMBER_OK && camber_archive_writer_is_done(p->writer)) {
+        p->stats.done = true;
+        return CAMBER_OK;
+    }
+    if (status == CAMBER_OK)
+        status = draw_all(p);
+    const double drawn_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_archive_writer_finish(p->writer);
+    p->stats.write_ms += camber_now_ms() - drawn_ms;
+    return status;
+}
+
+/* ---- The call ---- */
+
+static camber_status check_desc(const pyramid *p) {
+    const camber_tiles_draw_desc *desc = p->desc;
+    if (desc->shards && (desc->shard < 1 || desc->shard > desc->shards))
+        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT, "tiles: part %u of %u; choose 1 to %u", desc->shard,
+                           desc->shards, desc->shards);
+    if (desc->renew && (desc->shards || desc->resume))
+        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: an archive is renewed at once; leave out shards and resuming");
+    if (p->engine->desc.on_demand_side)
+        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: the engine draws tiles on demand; make one without on_demand_side");
+    return CAMBER_OK;
+}
+
+/* Whether no tile needs an alpha: then the encoders need not look for one. */
+static bool is_opaque(const pyramid *p) {
+    for (int zoom = p->area.min_zoom; zoom <= p->area.max_zoom; zoom++)
+        if (!p->engine->zooms[zoom].has_background || p->engine->zooms[zoom].background[3] < 255)
+            return false;
+    return true;
+}
+
+/* Writes the features, then the schedule: where it is, they are. */
+static camber_status save_schedule(pyramid *p, uint64_t input, camber_box data) {
+    const camber_tiles_draw_desc *desc = p->desc;
+    camber_tiles_schedule whole = {.context = p->context, .input = input, .data = data, .schedule = p->schedule};
+    memcpy(whole.fingerprint, p->fingerprint, sizeof whole.fingerprint);
+    if (!camber_schedule_name_features(desc->schedule_path, whole.features, sizeof whole.features))
+        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT, "%s: is too long; choose a shorter name",
+                           desc->schedule_path);
+    camber_status status = camber_files_hash(p->context, desc->inputs, desc->input_count, &whole.files);
+    if (status == CAMBER_OK)
+        status = camber_features_save(p->engine->features, input, whole.features, desc->force);
+    return status == CAMBER_OK ? camber_schedule_write(&whole, desc->schedule_path, desc->force) : status;
+}
+
+/* Looks where lines are. */
+static camber_status make_schedule(pyramid *p) {
+    camber_box data;
+    const double start_ms = camber_now_ms();
+    const uint64_t input = camber_features_hash(p->engine->features, &data);
+    p->stats.census_ms += camber_now_ms() - start_ms;
+    camber_status status = camber_tiles_area_make(p->context, p->desc, data, &p->area);
+    if (status != CAMBER_OK)
+        return status;
+    camber_fingerprint_write(p->engine, p->desc, &p->area, input, p->fingerprint);
+    status = camber_schedule_make(p->engine, &p->area, p->desc->keep_empty || p->desc->renew, &p->schedule);
+    return status == CAMBER_OK && p->desc->dry_run && p->desc->schedule_path ? save_schedule(p, input, data) : status;
+}
+
+/* Takes the schedule that a dry run has written. */
+static camber_status take_schedule(pyramid *p) {
+    const camber_tiles_schedule *given = p->desc->schedule;
+    camber_engine_zoom *planned;
+    camber_status status = camber_tiles_area_make(p->context, p->desc, given->data, &p->area);
+    if (status != CAMBER_OK)
+        return status;
+    camber_fingerprint_write(p->engine, p->desc, &p->area, given->input, p->fingerprint);
+    if (strcmp(p->fingerprint, given->fingerprint) != 0)
+        return camber_fail(p->context, CAMBER_ERROR_INPUT,
+                           "tiles: the schedule is of another style, other options, tiles or version; give what it was "
+                           "made with, or make it anew");
+    p->schedule = given->schedule;
+    if (!(p->schedule.tasks = camber_alloc(p->context, given->schedule.count, sizeof *p->schedule.tasks)))
+        return CAMBER_ERROR_MEMORY;
+    memcpy(p->schedule.tasks, given->schedule.tasks, given->schedule.count * sizeof *p->schedule.tasks);
+    p->schedule.context = p->context;
+    for (int zoom = p->area.min_zoom; zoom <= p->area.max_zoom && status == CAMBER_OK; zoom++)
+        status = camber_engine_plan_zoom(p->engine, zoom, &planned);
+    return status;
+}
+
+static camber_status prepare(pyramid *p) {
+    camber_status status = check_desc(p);
+    if (status == CAMBER_OK)
+        status = p->desc->schedule ? take_schedule(p) : make_schedule(p);
+    if (status != CAMBER_OK)
+        return status;
+    camber_schedule_meet(&p->schedule, &p->area);
+    if (p->desc->shards)
+        status = camber_schedule_choose(&p->schedule, p->desc->shard, p->desc->shards);
+    const camber_encoder_desc encoder = {
+        .encoding = p->desc->encoding, .opaque = is_opaque(p), .quality = p->desc->quality};
+    if (status == CAMBER_OK)
+        status = camber_encode_queue_create(&p->engine->workers, &encoder,
+                                            camber_tiles_engine_get_picture_bytes(p->engine), &p->queue);
+    return status;
+}
+
+camber_status camber_tiles_draw(camber_tiles_engine *engine, const camber_tiles_draw_desc *desc,
+                                camber_tiles_stats *stats) {
+    pyramid p = {.context = engine->context, .engine = engine, .desc = desc, .blank_zoom = -1};
+    assert(!desc->spent || desc->spent == engine->features);
+    engine->census_ms = engine->make_ms = engine->draw_ms = 0.0;
+    camber_status status = prepare(&p);
+    if (status == CAMBER_OK)
+        status = desc->dry_run ? try_all(&p) : draw_archive(&p);
+    if (p.queue) {
+        const camber_encode_times times = camber_encode_queue_get_times(p.queue);
+        p.stats.encode_ms = times.wall_ms;
+        p.stats.encode_cpu_ms = times.cpu_ms;
+    }
+    camber_encode_queue_destroy(p.queue);
+    camber_archive_writer_destroy(p.writer);
+    camber_archive_close(p.renewed);
+    camber_schedule_free(&p.schedule);
+    camber_tiles_area_free(&p.area);
+    camber_free(p.context, p.blank);
+    for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
+        camber_tiles_engine_forget(engine, zoom);
+    p.stats.census_ms += engine->census_ms;
+    p.stats.make_ms = engine->make_ms;
+    p.stats.draw_ms = engine->draw_ms;
+    if (status == CAMBER_OK && stats)
+        *stats = p.stats;
+    return status;
+}

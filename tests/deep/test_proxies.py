@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""The files of examples/serve, run: camber serve behind nginx and behind Caddy, and systemd's own check of the unit.
+
+    test_proxies.py TOOL EXAMPLES
+
+TOOL is camber, EXAMPLES the folder. Names, ports, paths and certificates are the test's; all else is as the files have
+it. Needs nginx, caddy, systemd-analyze, openssl; what is not there is left out, and told. Exit status 1: the first
+failure, on standard error; 77: nothing is there.
+"""
+
+import atexit
+import json
+import os
+import re
+import shutil
+import socket
+import ssl
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(TESTS, "fixtures"))
+
+from served import COLUMN, ROW, ZOOM, Server, expect, write_map  # noqa: E402
+
+TOOL, EXAMPLES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+TILE = f"/{ZOOM}/{COLUMN}/{ROW}.png"
+MOST_EXPOSED = 20  # of 100, as systemd-analyze counts
+
+
+def read_example(name):
+    with open(os.path.join(EXAMPLES, name), encoding="utf-8") as file:
+        return file.read()
+
+
+def replace(text, *pairs):
+    for old, new in pairs:
+        expect(old in text, f"the example has no {old!r}")
+        text = text.replace(old, new)
+    return text
+
+
+def find_port():
+    with socket.socket() as made:
+        made.bind(("127.0.0.1", 0))
+        return made.getsockname()[1]
+
+
+def get(url, **headers):
+    """Status, headers, body of a server whose certificate nobody signed."""
+    anyone = ssl._create_unverified_context()
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}), urllib.request.HTTPSHandler(context=anyone))
+    try:
+        with opener.open(urllib.request.Request(url, headers=headers), timeout=30) as answer:
+            return answer.status, answer.headers, answer.read()
+    except urllib.error.HTTPError as error:
+        return error.code, error.headers, error.read()
+
+
+def start(url, *command):
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    atexit.register(process.kill)
+    end = time.monotonic() + 30
+    while True:
+        try:
+            if get(url)[0] == 200:
+                return process
+        except (urllib.error.URLError, ConnectionError):
+            pass
+        if process.poll() is not None or time.monotonic() > end:
+            process.kill()
+            sys.exit(f"FAILED: {command[0]} does not answer at {url}: {process.stderr.read()}")
+        time.sleep(0.1)
+
+
+def expect_same(server, url):
+    direct = server.get(TILE)
+    status, headers, body = get(url + TILE)
+    expect(status == 200 and body == direct[2] and headers["ETag"] == direct[1]["etag"], f"{url}{TILE}: {status}")
+    expect(get(url + TILE, **{"If-None-Match": headers["ETag"]})[0] == 304, "an ETag that is known")
+    expect(get(url + "/1/9/9.png")[0] == 404, "a path that is none")
+    about = json.loads(get(url + "/tiles.json")[2])
+    expect(about["tiles"][0].startswith("https://tiles.example.org/"), about)
+    expect(b"<!doctype html>" in get(url + "/")[2].lower(), "the page")
+
+
+def check_nginx(server):
+    port = find_port()
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "key.pem", "-out", "cert.pem",
+                    "-days", "2", "-subj", "/CN=tiles.example.org"], check=True, capture_output=True)
+    here = os.getcwd()
+    text = replace(read_example("nginx.conf"), ("/var/cache/nginx/camber", here + "/cache"),
+                   ("127.0.0.1:8080", f"127.0.0.1:{server.port}"), ("listen 443", f"listen 127.0.0.1:{port}"),
+                   ("/etc/letsencrypt/live/tiles.example.org/fullchain.pem", here + "/cert.pem"),
+                   ("/etc/letsencrypt/live/tiles.example.org/privkey.pem", here + "/key.pem"))
+    with open("nginx.conf", "w", encoding="utf-8") as file:
+        # Root's workers would be another user, who may not enter the folder.
+        file.write(f"daemon off; pid {here}/pid; error_log stderr; {'user root;' if os.geteuid() == 0 else ''}\n"
+                   f"events {{}}\nhttp {{ access_log off;\n{text}\n}}\n")
+    url = f"https://127.0.0.1:{port}"
+    process = start(url + "/health", "nginx", "-p", here, "-c", here + "/nginx.conf")
+    expect_same(server, url)
+    expect(get(url + TILE)[1]["X-Cache"] == "HIT", "a tile is asked for again")
+    process.terminate()
+    expect(process.wait(timeout=30) == 0, process.stderr.read())
+
+
+def check_caddy(server):
+    port = find_port()
+    text = replace(read_example("Caddyfile"), ("\ntiles.example.org {", f"\nhttp://127.0.0.1:{port} {{"),
+                   ("127.0.0.1:8080", f"127.0.0.1:{server.port}"))
+    with open("Caddyfile", "w", encoding="utf-8") as file:
+        file.write("{\n\tadmin off\n}\n" + text)
+    os.environ["XDG_DATA_HOME"] = os.environ["XDG_CONFIG_HOME"] = os.getcwd()
+    url = f"http://127.0.0.1:{port}"
+    process = start(url + "/health", "caddy", "run", "--config", "Caddyfile")
+    expect_same(server, url)
+    expect(get(url + "/", **{"Accept-Encoding": "gzip"})[1]["Content-Encoding"] == "gzip", "the page is not compressed")
+    process.terminate()
+    expect(process.wait(timeout=30) == 0, process.stderr.read())
+
+
+def check_unit():
+    with open("camber.service", "w", encoding="utf-8") as file:
+        file.write(replace(read_example("camber.service"), ("/usr/local/bin/camber", TOOL),
+                           ("Documentation=man:camber(1)\n", "")))  # which is looked for on this machine
+    done = subprocess.run(["systemd-analyze", "verify", "./camber.service"], capture_output=True, text=True, timeout=60)
+    said = [line for line in (done.stdout + done.stderr).splitlines() if "camber" in line]
+    expect(done.returncode == 0 and not said, f"the unit: {done.stderr}")
+    done = subprocess.run(["systemd-analyze", "security", "--offline=true", f"--threshold={MOST_EXPOSED}",
+                           "./camber.service"], capture_output=True, text=True, timeout=60)
+    found = re.search(r"Overall exposure level.*: ([0-9.]+) ", done.stdout)
+    expect(done.returncode == 0 and found, f"the unit: {done.stdout[-400:]}{done.stderr}")
+    print(f"the unit: exposed by {found.group(1)} of 10")
+
+
+def main():
+    os.environ["PATH"] += ":/usr/sbin"
+    checks = [("systemd-analyze", check_unit), ("nginx", check_nginx), ("caddy", check_caddy)]
+    there = [(name, check) for name, check in checks if shutil.which(name)]
+    for name in {name for name, _ in checks} - {name for name, _ in there}:
+        print(f"no {name}: left out")
+    if not there:
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        write_map("map.json")
+        server = Server("map.json", "--public-url", "https://tiles.example.org")
+        for name, check in there:
+            check(*([] if check is check_unit else [server]))
+            print(f"{name}: as it should")
+        server.stop()
+        os.chdir("/")
+
+
+main()

@@ -1,0 +1,69 @@
+/* The server's router: a method, a zero byte or line end, and a path. */
+#include "fuzz.h"
+
+#include "serve/route.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const camber_route_limits LIMITS = {4, 2048};
+
+static bool is_within(double number, double least, double most) {
+    return number >= least && number <= most;
+}
+
+static void check_tile(const camber_route_request *r) {
+    REQUIRE(r->zoom >= 0 && r->zoom <= 24 && !(r->column >> r->zoom) && !(r->row >> r->zoom));
+}
+
+static void check_picture(const camber_route_request *r) {
+    REQUIRE(is_within(r->longitude, -180, 180) && is_within(r->latitude, -90, 90) && is_within(r->map_zoom, 0, 24));
+    REQUIRE(is_within(r->bearing_deg, -360, 360) && is_within(r->pitch_deg, 0, 85));
+    REQUIRE(r->width >= 1 && r->height >= 1 && r->type <= CAMBER_ROUTE_WEBP);
+    REQUIRE((uint64_t)r->width * r->ratio <= LIMITS.most_px && (uint64_t)r->height * r->ratio <= LIMITS.most_px);
+}
+
+/* A file of the page: no way out of the table. */
+static void check_name(const camber_route_request *r, const char *path) {
+    REQUIRE(r->name >= path && r->name + r->name_length <= path + strlen(path) && r->name_length <= 64);
+    REQUIRE(!memchr(r->name, '/', r->name_length) && !memchr(r->name, '%', r->name_length));
+    REQUIRE(r->name_length == 0 || r->name[0] != '.');
+}
+
+static void check(const camber_route_request *r, const char *path) {
+    REQUIRE(r->route > CAMBER_ROUTE_NONE && r->route < CAMBER_ROUTES);
+    const bool picture = r->route == CAMBER_ROUTE_TILE || r->route == CAMBER_ROUTE_STATIC;
+    if (picture)
+        REQUIRE(r->ratio >= 1 && r->ratio <= LIMITS.most_ratio && r->type < CAMBER_ROUTE_TYPES);
+    if (r->route == CAMBER_ROUTE_TILE)
+        check_tile(r);
+    if (r->route == CAMBER_ROUTE_STATIC)
+        check_picture(r);
+    if (r->route == CAMBER_ROUTE_PAGE)
+        check_name(r, path);
+    REQUIRE(!r->dark || picture || r->route == CAMBER_ROUTE_TILEJSON);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
+    char *text = malloc(size + 1), *path = text;
+    REQUIRE(text);
+    memcpy(text, bytes, size);
+    text[size] = 0;
+    while (*path && *path != '\n')
+        path++;
+    if (*path)
+        *path++ = 0;
+    camber_route_request request, again;
+    memset(&request, 0xa5, sizeof request);
+    memset(&again, 0x5a, sizeof again);
+    const int status = camber_route_parse(&LIMITS, text, path, &request);
+    REQUIRE(status == 200 || status == 404 || status == 405);
+    REQUIRE((status == 405) == (strcmp(text, "GET") != 0 && strcmp(text, "HEAD") != 0));
+    REQUIRE(camber_route_parse(&LIMITS, text, path, &again) == status && again.route == request.route);
+    if (status == 200)
+        check(&request, path);
+    else
+        REQUIRE(request.route == CAMBER_ROUTE_NONE);
+    free(text);
+    return 0;
+}

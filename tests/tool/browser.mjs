@@ -1,0 +1,55 @@
+// What the tests that drive Debian's Chromium share: starting it, and comparing what it shows with what camber draws.
+import {existsSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {join} from 'node:path';
+
+const modules = process.env.NODE_PATH ?? '';
+
+export function skip(what) {
+    console.log(`skipped: ${what}`);
+    process.exit(77);
+}
+
+// Skips where something is missing: Chromium on PATH, npm's playwright-core and the packages named in NODE_PATH.
+export function launchBrowser(...packages) {
+    for (const name of [...packages, 'playwright-core'])
+        if (!existsSync(join(modules, name)))
+            skip(`npm package ${name} is not installed`);
+    const executablePath = (process.env.PATH ?? '').split(':').flatMap(path =>
+        ['chromium', 'chromium-browser', 'google-chrome'].map(name => join(path, name))).find(existsSync);
+    if (!executablePath)
+        skip('no Chromium (Debian: chromium)');
+    return createRequire(import.meta.url)('playwright-core').chromium.launch({executablePath,
+        args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb']});
+}
+
+// The corner of tiles of 256 px next to a place. Such a tile has one zoom more than the map.
+export function cornerAt([longitude, latitude], zoom) {
+    const tiles = 2 ** (zoom + 1), y = (1 - Math.asinh(Math.tan(latitude * Math.PI / 180)) / Math.PI) / 2;
+    const column = Math.round((longitude + 180) / 360 * tiles) / tiles, row = Math.round(y * tiles) / tiles;
+    return [column * 360 - 180, Math.atan(Math.sinh((1 - 2 * row) * Math.PI)) * 180 / Math.PI];
+}
+
+// Compares two PNGs in a page that allows data: URLs. `most` is the largest difference of a channel, `off` counts the
+// pixels that differ, `colors` the colours of the second.
+export function comparePictures(page, shown, drawn) {
+    return page.evaluate(async pictures => {
+        const [a, b] = await Promise.all(pictures.map(async bytes => {
+            const image = await createImageBitmap(await (await fetch('data:image/png;base64,' + bytes)).blob());
+            const canvas = new OffscreenCanvas(image.width, image.height).getContext('2d');
+            canvas.drawImage(image, 0, 0);
+            return canvas.getImageData(0, 0, image.width, image.height);
+        }));
+        let most = 0, off = 0;
+        const colors = new Set();
+        for (let i = 0; i < a.data.length; i += 4) {
+            let apart = 0;
+            for (let c = 0; c < 3; c++)
+                apart = Math.max(apart, Math.abs(a.data[i + c] - b.data[i + c]));
+            most = Math.max(most, apart);
+            off += apart > 0;
+            colors.add(b.data[i] << 16 | b.data[i + 1] << 8 | b.data[i + 2]);
+        }
+        return {most, off, colors: colors.size, same: a.width === b.width && a.height === b.height};
+    }, [shown.toString('base64'), drawn.toString('base64')]);
+}

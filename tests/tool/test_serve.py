@@ -1,0 +1,860 @@
+#!/usr/bin/env python3
+"""camber serve from outside, over loopback: routes, caching, hostile clients, signals, load, and the tiles themselves.
+
+    test_serve.py TOOL [NAME...]
+
+TOOL is camber. NAME...: these tests alone. Ports come from the system. The lines are made up by a seed. Needs Python's
+standard library alone; strace where it is there. Exit status 1: the first failure, on standard error; 77: the tool has no
+server.
+"""
+
+import gzip
+import http.client
+import json
+import os
+import random
+import re
+import resource
+import select
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(TESTS, "fixtures"))
+
+from png_rows import decode, difference  # noqa: E402
+from served import COLUMN, ROW, TOOL, ZOOM, Server, expect, is_sanitized, write_map  # noqa: E402
+
+# ---- Routes ----
+
+
+def test_routes():
+    write_map("map.json")
+    server = Server("map.json", "--name", "Täst", "--attribution", "(c) Us", "--max-size", "600")
+    tile = f"/{ZOOM}/{COLUMN}/{ROW}"
+    status, headers, body = server.get("/tiles.json")
+    about = json.loads(body)
+    expect(status == 200 and headers["content-type"] == "application/json", "tiles.json")
+    expect(about["tilejson"] == "3.0.0" and about["name"] == "Täst" and about["attribution"] == "(c) Us", about)
+    expect(about["tiles"] == [server.url + "/{z}/{x}/{y}.png"] and about["minzoom"] == 0, about)
+    expect(about["camber"] == {"theme": "light", "drawn": True, "ratio_max": 4, "edit": False}, about)
+    expect(about["tileSize"] == 256, about)
+    west, south, east, north = about["bounds"]
+    expect(-180 <= west < about["center"][0] < east <= 180 and south < about["center"][1] < north, about)
+    dark = json.loads(server.get("/dark/tiles.json")[2])
+    expect(dark["tiles"] == [server.url + "/dark/{z}/{x}/{y}.png"] and dark["camber"]["theme"] == "dark", dark)
+
+    pictures = set()
+    for path, start, kind in ((tile + ".png", b"\x89PNG", "image/png"), (tile + "@2x.png", b"\x89PNG", "image/png"),
+                              ("/dark" + tile + ".png", b"\x89PNG", "image/png"),
+                              (tile + ".webp", b"RIFF", "image/webp"), ("/0/0/0.png", b"\x89PNG", "image/png"),
+                              ("/24/8814592/5685248.png", b"\x89PNG", "image/png"),
+                              ("/static/9.14,55.2,11/300x200.png", b"\x89PNG", "image/png"),
+                              ("/static/9.14,55.2,11@30,60/300x200@2x.webp", b"RIFF", "image/webp")):
+        status, headers, body = server.get(path)
+        expect(status == 200 and headers["content-type"] == kind and body.startswith(start), f"{path}: {status} {headers}")
+        expect(headers["x-content-type-options"] == "nosniff" and headers["access-control-allow-origin"] == "*", headers)
+        expect("max-age" in headers["cache-control"] and headers["last-modified"].endswith("GMT"), headers)
+        pictures.add(body)
+    expect(len(pictures) == 8, "pictures of different paths are the same")
+    expect(len(decode(server.get(tile + "@2x.png")[2])) == 512, "a tile @2x is not of 512 px")
+
+    status, headers, body = server.get("/")
+    expect(status == 200 and headers["content-type"].startswith("text/html"), headers)
+    expect("default-src 'none'" in headers["content-security-policy"], headers)
+    expect(server.get("/page/page.css")[1]["content-type"].startswith("text/css"), "page.css")
+    expect(server.get("/health")[::2] == (200, b"ok\n"), "health")
+    for path in ("/metrics", "/page/none.js", "/static/0,0,0/601x1.png", "/static/0,0,0/301x1@2x.png", "/events",
+                 tile + "@5x.png", tile + ".pbf", "/dark" + tile + ".jpg", "/favicon.ico", "/robots.txt"):
+        status, headers, body = server.get(path)
+        expect(status == 404 and body == b"404 not found\n", f"{path}: {status}")
+    metrics = server.get("/metrics", port=server.metrics_port)
+    expect(metrics[0] == 200 and b'camber_requests_total{route="tile",status="200"}' in metrics[2], metrics)
+    expect(server.get(tile + ".png", port=server.metrics_port)[0] == 404, "tiles at the metrics' address")
+    server.stop()
+
+    server = Server("map.json", "--theme", "dark", "--public-url", "https://example.org/map/", "--cors",
+                    "https://example.com")
+    status, headers, body = server.request("/tiles.json", Host="evil.example")
+    expect(json.loads(body)["tiles"] == ["https://example.org/map/{z}/{x}/{y}.png"], body)
+    expect(json.loads(body)["camber"]["theme"] == "dark", body)
+    expect(headers["access-control-allow-origin"] == "https://example.com", headers)
+    expect(server.get("/dark" + tile + ".png")[0] == 404 and server.get("/dark/tiles.json")[0] == 404, "another theme")
+    expect(server.get(tile + ".png")[2] in pictures, "the dark theme differs by how it is asked for")
+    server.stop()
+
+
+def test_usage():
+    write_map("map.json")
+    for arguments, status in (((), 2), (("-",), 2), (("map.json", "--style", "-"), 2), (("none.json",), 66),
+                              (("map.json", "--listen", "8080"), 2), (("map.json", "--listen", "a.example:1"), 2),
+                              (("map.json", "--listen", "127.0.0.1:65536"), 2), (("map.json", "--max-ratio", "9"), 2),
+                              (("map.json", "--listen", "192.0.2.1:0"), 74), (("map.json", "--cors", "x\r\ny"), 2),
+                              (("map.json", "--public-url", "ftp://x"), 2),
+                              (("map.json", "--cache-dir", "none", "--listen", "127.0.0.1:0"), 74),
+                              (("map.json", "--cache-dir", "map.json", "--listen", "127.0.0.1:0"), 74),
+                              (("map.json", "--renderd", "x"), 2),
+                              (("map.json", "--renderd", "x", "--cache-dir", "none", "--listen", "127.0.0.1:0"), 74),
+                              (("map.json", "--edit", "x", "--style", "y"), 2)):
+        done = subprocess.run([TOOL, "serve", *arguments], capture_output=True, text=True, timeout=60)
+        expect(done.returncode == status, f"{arguments}: {done.returncode}, not {status}: {done.stderr}")
+        last = done.stderr.splitlines()[-1]
+        expect(last.startswith("camber: "), done.stderr)
+    with open("bad.json", "w", encoding="utf-8") as file:
+        file.write('{"type": "FeatureCollection", "features": [')
+    done = subprocess.run([TOOL, "serve", "bad.json", "-q", "--listen", "127.0.0.1:0"], capture_output=True, text=True,
+                          timeout=60)
+    expect(done.returncode == 65 and done.stderr.count("\n") == 1, f"bad input: {done.returncode} {done.stderr}")
+    server = Server("map.json")
+    done = subprocess.run([TOOL, "serve", "map.json", "--listen", f"127.0.0.1:{server.port}"], capture_output=True,
+                          text=True, timeout=60)
+    expect(done.returncode == 74 and "in use" in done.stderr, f"a port in use: {done.returncode} {done.stderr}")
+    server.stop()
+
+
+def test_caching():
+    write_map("map.json")
+    server = Server("map.json")
+    path = f"/{ZOOM}/{COLUMN}/{ROW}.png"
+    first = server.get(path)
+    tag = first[1]["etag"]
+    expect(re.fullmatch(r'"[0-9a-f]{24}"', tag), tag)
+    expect(server.get(path) [2] == first[2] and server.metric("cache_hits_total") == 1, "it is not cached")
+    for known in (tag, f'"x", {tag}', "W/" + tag, "*"):
+        status, headers, body = server.request(path, If_None_Match=known)
+        expect(status == 304 and body == b"" and headers["etag"] == tag, f"{known}: {status} {headers}")
+        expect("cache-control" in headers and "content-encoding" not in headers, headers)
+    for unknown in ('"x"', tag[:-2] + '"', ""):
+        expect(server.request(path, If_None_Match=unknown)[0] == 200, unknown)
+    expect(server.request(path, If_Modified_Since=first[1]["last-modified"])[0] == 304, "If-Modified-Since")
+    expect(server.request(path, If_None_Match='"x"', If_Modified_Since=first[1]["last-modified"])[0] == 200, "both")
+    for asked in (path, "/tiles.json", "/", "/health", "/none", "/static/9.14,55.2,11/100x100.png"):
+        got, head = server.request(asked), server.request(asked, "HEAD")
+        same = all(got[1].get(name) == head[1].get(name) for name in ("content-length", "etag", "content-type"))
+        expect(got[0] == head[0] and head[2] == b"" and same, f"HEAD {asked}: {head} {got[1]}")
+
+    plain = server.get("/")
+    packed = server.request("/", Accept_Encoding="br, gzip")
+    expect("content-encoding" not in plain[1] and packed[1]["content-encoding"] == "gzip", packed[1])
+    expect(gzip.decompress(packed[2]) == plain[2] and packed[1]["etag"] != plain[1]["etag"], "gzip")
+    expect(plain[1]["vary"] == packed[1]["vary"] == "Accept-Encoding", packed[1])
+    expect(server.request("/", Accept_Encoding="gzip", If_None_Match=packed[1]["etag"])[0] == 304, "304 of gzip")
+    expect("content-encoding" not in server.request(path, Accept_Encoding="gzip")[1], "a PNG is packed again")
+    server.stop()
+
+
+# ---- Hostile clients ----
+
+
+def status_of(back):
+    found = re.match(rb"HTTP/1\.[01] (\d\d\d) ", back)
+    return int(found.group(1)) if found else None
+
+
+def test_hostile():
+    write_map("map.json")
+    server = Server("map.json")
+    inside = f"/{ZOOM}/{COLUMN}/{ROW}.png".encode()
+    paths = [b"/../../etc/passwd", b"/%2e%2e/%2e%2e/etc/passwd", b"/..%2f..%2fetc/passwd", b"/page/../../etc/passwd",
+             b"/page/%2e%2e%2f", b"//etc/passwd", inside + b"%00", inside + b"/..", b"/%00", b"/\xff\xfe",
+             b"/99999999999999999999/0/0.png", b"/1/4294967296/0.png", b"/1/-1/0.png", b"/0/0/0.png%20", b"/0x0/0/0.png",
+             b"/static/1e308,0,0/1x1.png", b"/static/0,0,0/99999x99999.png", b"<script>alert(1)</script>", b"/<b>",
+             b"http://127.0.0.1/0/0/0.png", b"*", b"0/0/0.png"]
+    for path in paths:
+        back = server.send(b"GET " + path + b" HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
+        expect(400 <= (status_of(back) or 0) < 500, f"{path}: {back[:200]}")
+        expect(b"script" not in back and b"passwd" not in back and b"root" not in back, f"{path}: {back[:300]}")
+    for request in (b"GET " + inside + b"\0 HTTP/1.1\r\nHost: x\r\n\r\n", b"\0\0\0\0\r\n\r\n", b"GET\r\n\r\n", b"\r\n" * 50,
+                    b"GET / HTTP/9.9\r\nHost: x\r\n\r\n", b"GET / HTTP/1.1\r\nContent-Length: -1\r\nHost: x\r\n\r\n",
+                    b"GET / HTTP/1.1\r\nHost x\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" * 20):
+        back = server.send(request, seconds=1)
+        expect(status_of(back) is None or 400 <= status_of(back) <= 505 or request.startswith(b"GET / HTTP/9"),
+               f"{request[:40]}: {back[:200]}")
+    for method in ("POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "BREW"):
+        status, headers, _ = server.request(inside.decode(), method)
+        expect(status == 405 and headers["allow"] == "GET, HEAD", f"{method}: {status}")
+
+    large = 1 << 20
+    back = server.send(b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % large + b"x" * large, seconds=3)
+    expect(status_of(back) in (405, None), back[:100])
+    back = server.send(b"GET /" + b"a" * large + b" HTTP/1.1\r\nHost: x\r\n\r\n", seconds=3)
+    expect(status_of(back) in (414, 413, 431, 400, None), back[:100])
+    back = server.send(b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"a" * large + b"\r\n\r\n", seconds=3)
+    expect(status_of(back) in (413, 431, 400, None), back[:100])
+    back = server.send(b"GET / HTTP/1.1\r\nHost: x\r\n" + b"X: y\r\n" * 200000 + b"\r\n", seconds=3)
+    expect(status_of(back) in (413, 431, 400, None), back[:100])
+
+    source, connection = random.Random(7), http.client.HTTPConnection(server.host, server.port, timeout=60)
+    pieces = ["/", "..", "%2e", "%00", "static", "dark", "page", "tiles", ".json", ".png", "@2x", "@", ",", "x", "0", "1",
+              "-", "9" * 30, "e5", "nan", "?", "&", ";", "//", "\\", "~", "'", "\"", "health", "events", "{z}"]
+    answered = 0
+    for _ in range(4000):
+        path = "/" + "".join(source.choice(pieces) for _ in range(source.randint(1, 8))).replace("?", "%3f")
+        try:
+            status = server.request(path, connection=connection)[0]
+        except (http.client.HTTPException, ConnectionError, http.client.InvalidURL):
+            connection.close()
+            continue
+        answered += 1
+        expect(400 <= status < 500 or path in ("/health", "/tiles.json", "/dark/tiles.json") or status == 200
+               and re.fullmatch(r"/+|/(dark/)?(static/.*|[01]/[01]/[01](@2x)?)\.png", path), f"{path}: {status}")
+    expect(answered > 3900, f"{answered} answers")
+    connection.close()
+    expect(server.get(inside.decode())[0] == 200, "it does not answer any more")
+    server.stop()
+
+
+def test_pipelining():
+    write_map("map.json")
+    server = Server("map.json")
+    count = 60
+    paths = [f"/{ZOOM}/{COLUMN + i % 8}/{ROW + i // 8}.png" for i in range(count)]
+    data = b"".join(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode() for path in paths[:-1])
+    data += f"GET {paths[-1]} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n".encode()
+    back = server.send(data, seconds=60)
+    for path in paths:
+        head, _, back = back.partition(b"\r\n\r\n")
+        expect(status_of(head) == 200, f"{path}: {head}")
+        size = int(re.search(rb"Content-Length: (\d+)", head).group(1))
+        expect(back[:size] == server.get(path)[2], f"{path}: another tile came")
+        back = back[size:]
+    expect(back == b"", "more came than was asked for")
+    server.stop()
+
+
+def has_ended(made):
+    """Whether the other side has shut the connection down, whatever it had sent before."""
+    poller = select.poll()
+    poller.register(made, select.POLLRDHUP)
+    return any(event & (select.POLLRDHUP | select.POLLHUP | select.POLLERR) for _, event in poller.poll(0))
+
+
+def test_slow():
+    """A request byte by byte, an answer byte by byte, one that begins and says nothing more: all are closed."""
+    write_map("map.json")
+    server = Server("map.json")
+    trickle, silent, reader = server.open(), server.open(), server.open()
+    silent.sendall(b"GET / HT")
+    reader.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+    server.get(f"/{ZOOM}/{COLUMN}/{ROW}@4x.png")
+    reader.settimeout(2)
+    try:
+        while True: # until neither side can write
+            reader.sendall(f"GET /{ZOOM}/{COLUMN}/{ROW}@4x.png HTTP/1.1\r\nHost: x\r\n\r\n".encode() * 100)
+    except socket.timeout:
+        pass
+    start, ended = time.monotonic(), {}
+    trickle.sendall(b"GET / HTTP/1.1\r\nX: ")
+    while time.monotonic() - start < 50 and len(ended) < 3:
+        for name, made in (("trickle", trickle), ("silent", silent), ("reader", reader)):
+            if name in ended:
+                continue
+            try:
+                if name == "trickle":
+                    made.sendall(b"a")
+                made.settimeout(0.05)
+                if name != "reader" and made.recv(1) == b"" or name == "reader" and has_ended(made):
+                    ended[name] = time.monotonic() - start
+            except socket.timeout:
+                pass
+            except OSError:
+                ended[name] = time.monotonic() - start
+        time.sleep(0.2)
+        expect(server.get("/health")[0] == 200, "slow clients stop the others")
+    expect(len(ended) == 3 and all(20 < seconds < 45 for seconds in ended.values()), f"slow clients: {ended}")
+    for made in (trickle, silent, reader):
+        made.close()
+    server.stop()
+
+
+def test_idle():
+    write_map("map.json")
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    count = min(10000, hard - 300)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, count + 200), hard))
+    server = Server("map.json")
+    before, made = server.resident(), []
+    for _ in range(count):
+        made.append(server.open())
+    expect(server.get(f"/{ZOOM}/{COLUMN}/{ROW}.png")[0] == 200, "idle connections stop the others")
+    expect(server.metric("connections") > 0.8 * count, f"connections: {server.metric('connections')}")
+    expect(server.resident() - before < count * 20000 + (64 << 20), f"{server.resident() - before} bytes more")
+    for one in made:
+        one.close()
+    end = time.monotonic() + 20
+    while server.metric("connections") > 10:
+        expect(time.monotonic() < end, "closed connections stay")
+        time.sleep(0.1)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+    server.stop()
+
+
+def test_overload():
+    write_map("map.json", count=400)
+    server = Server("map.json", "--cache", "256K")
+    results, lock = {}, threading.Lock()
+
+    def ask(first):
+        connections = [http.client.HTTPConnection(server.host, server.port, timeout=120) for _ in range(60)]
+        for i, one in enumerate(connections):
+            n = first * 60 + i
+            one.request("GET", f"/16/{8 * COLUMN + 2 * (n % 32)}/{8 * ROW + 2 * (n // 32)}@4x.webp")
+        for one in connections:
+            answer = one.getresponse()
+            answer.read()
+            with lock:
+                results[answer.status] = results.get(answer.status, 0) + 1
+                if answer.status == 503:
+                    expect(answer.getheader("Retry-After") == "1", "503 without Retry-After")
+            one.close()
+
+    threads = [threading.Thread(target=ask, args=(first,)) for first in range(8)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    expect(set(results) == {200, 503}, f"overload: {results}")
+    expect(server.metric("queue_refused_total") == results[503], "refused requests are not counted")
+    expect(server.get(f"/16/{8 * COLUMN}/{8 * ROW}@4x.webp")[0] == 200, "it does not recover")
+    server.stop()
+
+
+def test_left():
+    """Pictures that nobody waits for any more are not drawn."""
+    write_map("map.json", count=400)
+    server = Server("map.json")
+    for i in range(100):
+        made = server.open()
+        made.sendall(f"GET /static/{i / 10},55,{i / 10}/2048x2048.png HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+        made.close()
+    expect(server.get(f"/{ZOOM}/{COLUMN}/{ROW}.png")[0] == 200, "those who left stop the others")
+    end = time.monotonic() + 20
+    while server.metric("queue") > 0:
+        expect(time.monotonic() < end, "the queue stays")
+    expect(server.metric("queue_dropped_total") > 50, f"dropped: {server.metric('queue_dropped_total')}")
+    server.stop()
+
+
+def test_memory():
+    if is_sanitized():
+        print("the sanitizer keeps what was freed: test_memory is left out")
+        return
+    write_map("map.json", count=300)
+    server = Server("map.json", "--cache", "1M")
+    source, connection = random.Random(3), http.client.HTTPConnection(server.host, server.port, timeout=60)
+
+    def ask(count):
+        for _ in range(count):
+            zoom = source.randint(12, 17)
+            scale = 2.0 ** (zoom - ZOOM)
+            x, y = int((COLUMN + source.uniform(-6, 6)) * scale), int((ROW + source.uniform(-6, 6)) * scale)
+            expect(server.request(f"/{zoom}/{x}/{y}.png", connection=connection)[0] == 200, "a tile")
+
+    ask(2500)
+    before = server.resident()
+    ask(5000)
+    expect(server.resident() < 1.05 * before + (8 << 20), f"memory: {before} bytes, then {server.resident()}")
+    expect(server.metric("cache_bytes") <= 1 << 20, "the cache has grown")
+    connection.close()
+    server.stop()
+
+
+# ---- Signals ----
+
+
+def test_reload():
+    write_map("map.json")
+    server = Server("map.json")
+    path, stop, results = f"/{ZOOM}/{COLUMN}/{ROW}.png", threading.Event(), []
+
+    def ask(seed):
+        source, connection = random.Random(seed), http.client.HTTPConnection(server.host, server.port, timeout=60)
+        while not stop.is_set():
+            x, y = COLUMN + source.randint(-3, 3), ROW + source.randint(-3, 3)
+            results.append(server.request(f"/{ZOOM}/{x}/{y}.png", connection=connection)[0])
+        connection.close()
+
+    threads = [threading.Thread(target=ask, args=(seed,)) for seed in range(4)]
+    for one in threads:
+        one.start()
+    tag = server.get(path)[1]["etag"]
+    for seed in (2, 3, 4):
+        write_map("new.json", seed=seed)
+        os.rename("new.json", "map.json")
+        server.process.send_signal(signal.SIGHUP)
+        end = time.monotonic() + 30
+        while server.get(path)[1]["etag"] == tag:
+            expect(time.monotonic() < end, "SIGHUP changes nothing")
+            time.sleep(0.02)
+        tag = server.get(path)[1]["etag"]
+    with open("map.json", "w", encoding="utf-8") as file:
+        file.write("{")
+    server.process.send_signal(signal.SIGHUP)
+    end = time.monotonic() + 30
+    while not any("goes on" in line for line in server.errors):
+        expect(time.monotonic() < end, f"a broken input is not told: {server.errors}")
+        time.sleep(0.02)
+    expect(server.get(path)[1]["etag"] == tag, "a broken input changes what is served")
+    while len(results) <= 100:
+        expect(time.monotonic() < end, f"{len(results)} requests in all this time")
+        time.sleep(0.02)
+    stop.set()
+    for one in threads:
+        one.join()
+    expect(set(results) == {200}, f"requests while it reads again: {set(results)}")
+    server.stop()
+
+
+def test_end():
+    """SIGTERM ends what is begun; kill -9 leaves nothing in the way of the next."""
+    write_map("map.json", count=400)
+    server = Server("map.json")
+    results = []
+
+    def ask(i):
+        status, _, body = server.get(f"/static/9.{i},55.2,11/2000x2000.png")
+        results.append((status, body[-8:]))
+
+    threads = [threading.Thread(target=ask, args=(i,)) for i in range(10)]
+    for one in threads:
+        one.start()
+    end = time.monotonic() + 20
+    while server.metric("requests_in_flight") - 1 + len(results) < 10:  # the question itself is one
+        expect(time.monotonic() < end, "not all requests arrive")
+    expect(len(results) < 10, "nothing is begun any more")
+    server.stop()
+    for one in threads:
+        one.join()
+    expect(len(results) == 10 and all(status == 200 and tail == b"IEND\xaeB`\x82" for status, tail in results), results)
+
+    server = Server("map.json", listen=f"127.0.0.1:{server.port}")
+    server.get(f"/{ZOOM}/{COLUMN}/{ROW}.png")
+    server.stop(signal.SIGKILL, -signal.SIGKILL)
+    server = Server("map.json", listen=f"127.0.0.1:{server.port}")
+    server.stop(signal.SIGINT, 130)
+
+
+def test_reach():
+    """It opens what its command line named, drivers and libraries, and nothing by a request."""
+    if not shutil.which("strace"):
+        print("no strace: test_reach is left out")
+        return
+    write_map("map.json")
+    with open("secret.txt", "w", encoding="utf-8") as file:
+        file.write("secret")
+    no_leaks = "ASAN_OPTIONS=detect_leaks=0:" + os.environ.get("ASAN_OPTIONS", "")  # which cannot run under strace
+    server = Server("map.json", wrapper=("strace", "-f", "-qq", "-o", "trace", "-E", no_leaks,
+                                         "-e", "trace=open,openat,openat2,stat"))
+    server.get(f"/{ZOOM}/{COLUMN}/{ROW}.png")
+    server.get("/static/9.14,55.2,11/300x200.png")
+    size = os.path.getsize("trace")
+    for path in ("/secret.txt", "/page/secret.txt", "/../secret.txt", "/%2e%2e/map.json", "/etc/passwd", "/page/map.json",
+                 f"/{ZOOM}/{COLUMN + 1}/{ROW}.png", "/dark/0/0/0.png", "/", "/tiles.json", "/static/9,55,9/30x20.webp"):
+        server.get(path)
+    time.sleep(0.2)
+    with open("trace", encoding="utf-8", errors="replace") as file:
+        file.seek(size - size % 1)
+        late = file.read()
+    opened = set(re.findall(r'open(?:at2?)?\((?:AT_FDCWD, )?"([^"]*)"', late))
+    allowed = re.compile(r"/proc/|/sys/|/dev/|/usr/|/lib|/etc/(ld|OpenCL|localtime)|.*/camber|.*pocl")
+    expect(not [path for path in opened if not allowed.match(path)], f"opened by requests: {opened}")
+    child = int(subprocess.run(["pgrep", "-P", str(server.process.pid)], capture_output=True, text=True,
+                               check=True).stdout.split()[0])
+    os.kill(child, signal.SIGTERM)
+    expect(server.process.wait(timeout=60) == 0, "it does not end")
+    with open("trace", encoding="utf-8", errors="replace") as file:
+        expect("secret" not in file.read(), "it has looked for what a path named")
+
+
+STYLE = {"version": 8, "sources": {}, "layers": [
+    {"id": "back", "type": "background", "paint": {"background-color": "#ffffff"}},
+    {"id": "roads", "type": "line", "paint": {"line-color": "#000000", "line-width": 3}}]}
+
+
+def save_style(color):
+    STYLE["layers"][1]["paint"]["line-color"] = color
+    with open("style.new", "w", encoding="utf-8") as file:
+        json.dump(STYLE, file)
+    os.rename("style.new", "style.json")
+
+
+class Events:
+    """What the server tells those who listen, as it comes."""
+
+    def __init__(self, server):
+        self.made, self.got = server.open(), b""
+        self.made.settimeout(0.1)
+        self.made.sendall(b"GET /events HTTP/1.1\r\nHost: x\r\n\r\n")
+
+    def wait(self, wanted, seconds=20):
+        """The first event that wanted takes."""
+        end = time.monotonic() + seconds
+        while True:
+            for text in re.findall(rb"event: style\ndata: (.*)\n\n", self.got):
+                event = json.loads(text)
+                if wanted(event):
+                    return event
+            expect(time.monotonic() < end, f"no such event: {self.got}")
+            try:
+                self.got += self.made.recv(4096)
+            except socket.timeout:
+                pass
+
+
+def test_edit():
+    write_map("map.json")
+    save_style("#0000ff")
+    server = Server("map.json", "--edit", "style.json")
+    path, listeners = f"/{ZOOM}/{COLUMN}/{ROW}.png", [Events(server), Events(server)]
+    about = json.loads(server.get("/tiles.json")[2])
+    expect(about["camber"] == {"theme": None, "drawn": True, "ratio_max": 4, "edit": True}, about)
+    first = listeners[0].wait(lambda event: event["error"] is None)["revision"]
+    expect(b"text/event-stream" in listeners[0].got, listeners[0].got)
+    blue = server.get(path)
+    expect(blue[1]["cache-control"] == "no-cache", blue[1])
+    start = time.monotonic()
+    save_style("#ff0000")
+    for one in listeners:
+        one.wait(lambda event: event["revision"] == first + 1 and event["error"] is None)
+    took = time.monotonic() - start
+    red = server.get(path)
+    expect(red[2] != blue[2] and took < 5, f"the style has not changed, after {took} s")
+    with open("style.json", "w", encoding="utf-8") as file:
+        file.write('{"version": 8,\n "layers": [\n{"id": 3,,}]}')
+    event = listeners[0].wait(lambda event: event["error"])
+    expect("style.json" in event["error"] and "line 3" in event["error"], event)
+    expect(event["revision"] == first + 1 and server.get(path)[2] == red[2], "a broken style is shown")
+    late = Events(server)
+    late.wait(lambda event: event["error"] and "line 3" in event["error"])
+    os.remove("style.json")
+    time.sleep(0.5)
+    save_style("#0000ff")
+    late.wait(lambda event: event["revision"] == first + 2 and event["error"] is None)
+    expect(server.get(path)[2] == blue[2], "the style is not what it was")
+    expect(server.request("/events", "HEAD")[0] == 503, "HEAD of events")
+    listeners[0].made.close()
+    server.stop()
+    server = Server("map.json")
+    expect(server.get("/events")[0] == 404, "events without --edit")
+    server.stop()
+
+
+# ---- Tiles ----
+
+
+def test_tiles():
+    """They are those of camber tiles: the same bytes where metatiles agree, else within one level."""
+    write_map("map.json", count=200)
+    done = subprocess.run([TOOL, "tiles", "map.json", "-o", "there/", "--keep-empty", "-q", "--max-zoom", "14", "-f"],
+                          capture_output=True, text=True, timeout=120)
+    expect(done.returncode == 0, done.stderr)
+    server, compared, same = Server("map.json"), 0, 0
+    for zoom in range(15):
+        scale = 2.0 ** (zoom - ZOOM)
+        for dx in (-2, 0, 1):
+            for dy in (-1, 0, 2):
+                x, y = int((COLUMN + dx) * scale), int((ROW + dy) * scale)
+                path = f"there/{zoom}/{x}/{y}.png"
+                expect(os.path.exists(path), f"{path} is not drawn")
+                with open(path, "rb") as file:
+                    wanted = file.read()
+                got = server.get(f"/{zoom}/{x}/{y}.png")[2]
+                compared += 1
+                same += got == wanted
+                expect(got == wanted or (zoom > 0 and difference(decode(got), decode(wanted)) <= 1),
+                       f"{zoom}/{x}/{y}: differs by {difference(decode(got), decode(wanted))}")
+    expect(compared == 135 and same > 40, f"{same} of {compared} are the same")
+    server.stop()
+
+
+XYZ = """<GDAL_WMS><Service name="TMS"><ServerUrl>%s/${z}/${x}/${y}.png</ServerUrl></Service><DataWindow>
+<UpperLeftX>-20037508.342789244</UpperLeftX><UpperLeftY>20037508.342789244</UpperLeftY>
+<LowerRightX>20037508.342789244</LowerRightX><LowerRightY>-20037508.342789244</LowerRightY>
+<TileLevel>%d</TileLevel><TileCountX>1</TileCountX><TileCountY>1</TileCountY><YOrigin>top</YOrigin></DataWindow>
+<Projection>EPSG:3857</Projection><BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>4</BandsCount>
+</GDAL_WMS>"""
+
+
+def test_gdal():
+    """GDAL, and by it QGIS, reads the tiles by an XYZ description."""
+    if not shutil.which("gdal_translate"):
+        print("test_gdal: no gdal_translate (Debian: gdal-bin): skipped")
+        return
+    write_map("map.json")
+    server = Server("map.json")
+    with open("xyz.xml", "w", encoding="utf-8") as file:
+        file.write(XYZ % (server.url, ZOOM))
+    box = [256 * COLUMN, 256 * ROW, 512, 512]
+    done = subprocess.run(["gdal_translate", "-q", "-of", "ENVI", "-co", "INTERLEAVE=BIP", "-srcwin", *map(str, box),
+                           "xyz.xml", "read.bin"], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, "no_proxy": "*", "NO_PROXY": "*"})
+    if "GDAL_WMS" in done.stderr and done.returncode:
+        print(f"test_gdal: GDAL without this driver: skipped: {done.stderr}")
+        return
+    expect(done.returncode == 0, done.stderr)
+    with open("read.bin", "rb") as file:
+        read = file.read()
+    tiles = [[decode(server.get(f"/{ZOOM}/{COLUMN + x}/{ROW + y}.png")[2]) for x in (0, 1)] for y in (0, 1)]
+    rows = [tiles[y // 256][0][y % 256] + tiles[y // 256][1][y % 256] for y in range(512)]
+    expect(read == b"".join(bytes(row) for row in rows), "GDAL reads other pixels")
+    server.stop()
+
+
+def test_archives():
+    write_map("map.json")
+    for name, size in (("a.pmtiles", 256), ("a.mbtiles", 512), ("a/", 256)):
+        done = subprocess.run([TOOL, "tiles", "map.json", "-o", name, "-q", "--min-zoom", "8", "--max-zoom", "13", "-f",
+                               "--tile-size", str(size), "--name", "Archive", "--attribution", "(c) Them"], capture_output=True, text=True,
+                              timeout=120)
+        expect(done.returncode == 0, done.stderr)
+    tile, body = f"{ZOOM}/{COLUMN}/{ROW}.png", None
+    with open("a/" + tile, "rb") as file:
+        body = file.read()
+    for name, size in (("a.pmtiles", 256), ("a.mbtiles", 512), ("a/", 256), ("a", 256)):
+        server = Server(name)
+        about = json.loads(server.get("/tiles.json")[2])
+        expect(about["name"] == "Archive" and about["attribution"] == "(c) Them", about)
+        expect((about["minzoom"], about["maxzoom"], about["camber"]["theme"]) == (8, 13, None), about)
+        expect(about["camber"]["ratio_max"] == 1 and len(about["bounds"]) == 4, about)
+        expect(not about["camber"]["drawn"] and about["tileSize"] == size, about)
+        status, headers, got = server.get("/" + tile)
+        expect(status == 200 and (got == body or size == 512) and headers["content-type"] == "image/png",
+               f"{name}: {status}")
+        expect(server.request("/" + tile, If_None_Match=headers["etag"])[0] == 304, "304 of an archive")
+        for path in (f"/{ZOOM}/0/0.png", "/24/0/0.png"):
+            status, headers, nothing = server.get(path)
+            expect(status == 204 and nothing == b"" and "content-type" not in headers, f"{name}: {path}: {status}")
+        for path in (f"/{ZOOM}/{COLUMN}/{ROW}.webp", f"/{ZOOM}/{COLUMN}/{ROW}@2x.png", "/dark/" + tile,
+                     "/static/0,0,0/10x10.png"):
+            expect(server.get(path)[0] == 404, f"{name}: {path}")
+        server.stop()
+    server = Server("a.pmtiles")
+    write_map("map.json", seed=9)
+    subprocess.run([TOOL, "tiles", "map.json", "-o", "a.pmtiles", "-q", "--max-zoom", "13", "-f"], check=True, timeout=120)
+    server.process.send_signal(signal.SIGHUP)
+    end = time.monotonic() + 20
+    while server.get("/" + tile)[2] == body:
+        expect(time.monotonic() < end, "SIGHUP does not open the archive again")
+        time.sleep(0.02)
+    server.stop()
+
+
+def test_vector_tiles():
+    """An archive of vector tiles is drawn, as any map is."""
+    server = Server(os.path.join(TESTS, "data", "santa_cruz", "osm.mbtiles"))
+    about = json.loads(server.get("/tiles.json")[2])
+    expect(about["camber"]["drawn"] and about["camber"]["theme"] == "light", about)
+    status, headers, body = server.get("/14/2639/6375.png")
+    expect(status == 200 and headers["content-type"] == "image/png", f"{status}: {headers}")
+    rows = decode(body)
+    expect(len({row[i:i + 4] for row in rows for i in range(0, len(row), 4)}) > 9, "nothing is drawn")
+    server.stop()
+
+
+# ---- mod_tile ----
+
+
+RENDER, DIRTY, DONE, NOT_DONE = 1, 2, 3, 4
+
+
+def metatile_path(folder, zoom, x, y):
+    hashes = [(x >> 4 * i & 15) << 4 | (y >> 4 * i & 15) for i in range(5)]
+    return os.path.join(folder, "default", str(zoom), *(str(one) for one in reversed(hashes))) + ".meta"
+
+
+def renderd_message(version, command, zoom, x, y, name=b"default", kind=b"image/png"):
+    data = struct.pack("=5i", version, command, x, y, zoom)
+    if version > 1:
+        data += struct.pack("41s", name)
+    return data + {1: b"", 2: b"\xff" * 3, 3: struct.pack("41s41sx", kind, b"")}[version]
+
+
+def ask_renderd(path, *messages):
+    """The commands of the answers, one for each message; None where none comes."""
+    with socket.socket(socket.AF_UNIX) as made:
+        made.settimeout(20)
+        made.connect(path)
+        commands = []
+        for message in messages:
+            made.sendall(message)
+            if struct.unpack_from("=5i", message)[1] == DIRTY:
+                made.settimeout(1)
+            try:
+                back = b""
+                while len(back) < len(message):
+                    some = made.recv(len(message) - len(back))
+                    if not some:
+                        return commands + [None]
+                    back += some
+                expect(back[8:61] == message[8:61], "the answer is of another tile")
+                commands.append(struct.unpack_from("=5i", back)[1])
+            except socket.timeout:
+                commands.append(None)
+        return commands
+
+
+def check_metatile(server, folder, zoom, x, y):
+    with open(metatile_path(folder, zoom, x, y), "rb") as file:
+        data = file.read()
+    magic, count, column, row, level = struct.unpack_from("=4s4i", data)
+    expect((magic, count, column, row, level) == (b"META", 64, x, y, zoom), f"{zoom}/{x}/{y}: {data[:20]}")
+    end, side = 20 + 8 * 64, min(8, 2 ** zoom)
+    for i in range(64):
+        offset, size = struct.unpack_from("=2i", data, 20 + 8 * i)
+        expect(offset == end, f"tile {i} does not lie behind the one before")
+        end += size
+        if i // 8 < side and i % 8 < side:
+            expect(data[offset:end] == server.get(f"/{zoom}/{x + i // 8}/{y + i % 8}.png")[2], f"tile {i}")
+        else:
+            expect(size == 0, f"there is no tile {i}")
+    expect(end == len(data), "bytes behind the last tile")
+
+
+def test_renderd():
+    write_map("map.json")
+    os.mkdir("tiles")
+    server = Server("map.json", "--renderd", "socket", "--cache-dir", "tiles")
+    for version in (1, 2, 3):
+        shutil.rmtree("tiles/default", ignore_errors=True)
+        got = ask_renderd("socket", renderd_message(version, RENDER, ZOOM, COLUMN + 1, ROW + 5),
+                          renderd_message(version, RENDER, 1, 1, 0))
+        expect(got == [DONE, DONE], f"version {version}: {got}")
+        check_metatile(server, "tiles", ZOOM, COLUMN, ROW)
+        check_metatile(server, "tiles", 1, 0, 0)
+    bad = [renderd_message(3, RENDER, 21, 0, 0), renderd_message(3, RENDER, 3, 8, 0), renderd_message(3, RENDER, 3, -1, 0),
+           renderd_message(3, RENDER, -1, 0, 0), renderd_message(3, 0, 3, 0, 0), renderd_message(3, 99, 3, 0, 0),
+           renderd_message(3, RENDER, 3, 0, 0, name=b".."), renderd_message(3, RENDER, 3, 0, 0, name=b"a/b"),
+           renderd_message(3, RENDER, 3, 0, 0, name=b""), renderd_message(3, RENDER, 3, 0, 0, name=b"a" * 41),
+           renderd_message(3, RENDER, 3, 0, 0, kind=b"text/html")]
+    got = ask_renderd("socket", *bad)
+    expect(got == [NOT_DONE] * len(bad), f"bad requests: {got}")
+    expect(ask_renderd("socket", struct.pack("=5i", 4, RENDER, 0, 0, 0)) == [None], "version 4")
+    expect(ask_renderd("socket", renderd_message(3, DIRTY, 6, 8, 8)) == [None], "a dirty tile is answered")
+    expect(os.path.exists(metatile_path("tiles", 6, 8, 8)), "a dirty tile is not drawn")
+    found = [name for folder, _, files in os.walk("tiles") for name in files]
+    expect(all(re.fullmatch(r"\d+\.meta", name) for name in found), f"left behind: {found}")
+    expect(os.listdir("tiles") == ["default"], f"folders: {os.listdir('tiles')}")
+    if shutil.which("render_list"):
+        done = subprocess.run(["render_list", "-s", "socket", "-m", "default", "-t", os.path.abspath("tiles"), "-z", "12",
+                               "-Z", "12", "-x", str(COLUMN // 2 - 8), "-X", str(COLUMN // 2 + 7), "-y", str(ROW // 2 - 8),
+                               "-Y", str(ROW // 2 + 7), "-a", "-n", "4", "-f"], capture_output=True, text=True, timeout=60)
+        expect(done.returncode == 0 and "Rendered 4 tiles" in done.stdout + done.stderr, done.stdout + done.stderr)
+        check_metatile(server, "tiles", 12, COLUMN // 2 - 8, ROW // 2 - 4 & ~7)
+    server.stop()
+    expect(not os.path.exists("socket"), "the socket stays")
+    server = Server("map.json", "--renderd", "socket", "--cache-dir", "tiles")
+    done = subprocess.run([TOOL, "serve", "map.json", "--listen", "127.0.0.1:0", "--renderd", "socket", "--cache-dir",
+                           "tiles"], capture_output=True, text=True, timeout=60)
+    expect(done.returncode == 74 and "--renderd socket" in done.stderr, f"a socket in use: {done.stderr}")
+    server.stop(signal.SIGKILL, -signal.SIGKILL)
+    server = Server("map.json", "--renderd", "socket", "--cache-dir", "tiles")
+    expect(ask_renderd("socket", renderd_message(3, RENDER, 9, 0, 0)) == [DONE], "after kill -9")
+    if os.geteuid() != 0:
+        os.chmod("tiles", 0o555)
+        expect(ask_renderd("socket", renderd_message(3, RENDER, 10, 0, 0)) == [NOT_DONE], "a folder that is not written to")
+        os.chmod("tiles", 0o755)
+    server.stop()
+
+
+def test_lost_device():
+    """A device that fails one picture after the other ends the server, with a status that has it started again."""
+    if not os.environ.get("FAULT_CL"):
+        print("test_lost_device: no library that fails: skipped")
+        return
+    write_map("map.json")
+    server = Server("map.json", wrapper=("env", f"LD_PRELOAD={os.environ['FAULT_CL']}", "CAMBER_FAULT=lost:lost"))
+    path = "/%d/%d/%d.png"
+    expect(server.get(path % (ZOOM, COLUMN, ROW))[0] == 200, "a tile before it is lost")
+    with open("lost", "wb"):
+        pass
+    statuses = [server.get(path % (ZOOM, COLUMN - 1, ROW))[0] for _ in range(2)]
+    expect(statuses == [500, 500] and server.get(path % (ZOOM, COLUMN, ROW))[0] == 200, f"lost: {statuses}")
+    os.unlink("lost")
+    expect(server.get(path % (ZOOM, COLUMN - 1, ROW))[0] == 200, "a device that was busy is taken for lost")
+    with open("lost", "wb"):
+        pass
+    statuses = [server.get(path % (ZOOM, COLUMN + 1, ROW + i))[0] for i in range(3)]
+    expect(statuses == [500] * 3, f"lost: {statuses}")
+    expect(server.process.wait(timeout=60) == 69, f"status {server.process.returncode}")
+    server.reader.join(10)
+    expect("the device is lost" in server.errors[-1], server.errors)
+
+
+def stored_tiles(folder):
+    return sorted(os.path.join(where, name) for where, _, files in os.walk(folder) for name in files)
+
+
+def test_folder():
+    """Tiles outlive the server in --cache-dir, those of another input are not taken for its own, and a folder that
+    cannot be written to stops nothing."""
+    write_map("map.json")
+    os.mkdir("tiles")
+    paths = [f"/{ZOOM}/{COLUMN}/{ROW}.png", f"/{ZOOM}/{COLUMN}/{ROW}@2x.png", f"/dark/{ZOOM}/{COLUMN}/{ROW}.png"]
+    server = Server("map.json", "--cache-dir", "tiles")
+    first = [server.get(path)[2] for path in paths]
+    server.stop()
+    files = stored_tiles("tiles")
+    expect(len(set(first)) == 3 and sorted(first) == sorted(open(file, "rb").read() for file in files), files)
+    server = Server("map.json", "--cache-dir", "tiles")
+    expect([server.get(path)[2] for path in paths] == first and server.metric("draw_seconds_count") == 0, "tiles are drawn again")
+    expect(server.metric("cache_folder_hits_total") == 3, "the folder's tiles are not counted")
+    write_map("map.json", seed=2)
+    server.process.send_signal(signal.SIGHUP)
+    end = time.monotonic() + 60
+    while server.get(paths[0])[2] == first[0]:
+        expect(time.monotonic() < end, "another input has the tiles of the one before")
+    server.stop()
+    expect(len(stored_tiles("tiles")) == 4, stored_tiles("tiles"))
+    for file in files: # empty, a folder, a pipe: drawn again
+        os.unlink(file)
+    open(files[0], "wb").close()
+    os.mkdir(files[1])
+    os.mkfifo(files[2])
+    write_map("map.json")
+    server = Server("map.json", "--cache-dir", "tiles")
+    expect([server.get(path)[2] for path in paths] == first and server.metric("draw_seconds_count") >= 2, "what is no tile is served")
+    server.stop()
+
+
+def test_full_folder():
+    write_map("map.json")
+    os.mkdir("tiles")
+    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "none", "tiles"],
+                                           capture_output=True, check=False).returncode != 0:
+        print("test_full_folder: no file system of its own: skipped")
+        return
+    try:
+        server = Server("map.json", "--cache-dir", "tiles")
+        for column in range(COLUMN - 4, COLUMN + 4):
+            for row in range(ROW - 4, ROW + 4):
+                expect(server.get(f"/{ZOOM}/{column}/{row}.png")[0] == 200, "a full folder stops the server")
+        server.stop()
+        told = [line for line in server.errors if "No space left" in line]
+        expect(told and len(told) <= 4 and "free some space" in told[0], server.errors)
+        expect(all(re.fullmatch(r"\d+", os.path.basename(file)) and os.path.getsize(file) > 0
+                   for file in stored_tiles("tiles")), "a part of a tile is left")
+    finally:
+        subprocess.run(["umount", "tiles"], check=False)
+
+
+def main():
+    names = [name for name in globals() if name.startswith("test_")]
+    for name in sys.argv[2:] or names:
+        expect(name in names, f"no test {name}; it is one of {names}")
+        start = time.monotonic()
+        with tempfile.TemporaryDirectory() as folder:
+            before = os.getcwd()
+            os.chdir(folder)
+            globals()[name]()
+            os.chdir(before)
+        print(f"{name}: {time.monotonic() - start:.1f} s", flush=True)
+
+
+main()

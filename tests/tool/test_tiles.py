@@ -1,0 +1,573 @@
+#!/usr/bin/env python3
+"""Pyramids of tiles from outside: a tile is a cut of a large picture, and the bytes depend on nothing else.
+
+    test_tiles.py TOOL [NAME...]
+
+TOOL is camber. NAME...: these tests alone. The lines are made up by a seed, around a corner of four metatiles. Needs
+Python's standard library alone. Exit status 1: the first failure, on standard error.
+"""
+
+import json
+import math
+import os
+import random
+import resource
+import signal
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "fixtures"))
+
+from png_rows import decode, difference  # noqa: E402
+
+TOOL = sys.argv[1]
+ZOOM, COLUMN, ROW = 13, 4304, 2776  # the corner of four metatiles: columns and rows there are multiples of 8
+ENVIRONMENT = {name: text for name, text in os.environ.items()
+               if not name.startswith(("SLURM", "OMPI", "PMI", "JOB_COMPLETION", "AWS_BATCH"))}
+
+
+def run(*arguments, **more):
+    more.setdefault("env", ENVIRONMENT)
+    return subprocess.run([str(a) for a in (TOOL, *arguments)], capture_output=True, text=True, **more)
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def camber(*arguments, status=0, **more):
+    done = run(*arguments, **more)
+    expect(done.returncode == status, f"{arguments}: {done.returncode}, not {status}: {done.stdout} {done.stderr}")
+    if status:
+        expect(done.stderr.count("\n") == 1 and done.stderr.startswith("camber: "), f"{arguments}: {done.stderr}")
+    return done
+
+
+def tiles(*arguments, status=0, **more):
+    return camber("tiles", *arguments, *(["-q"] if status == 0 else []), status=status, **more)
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def write(path, data):
+    with open(path, "wb") as file:
+        file.write(data)
+
+
+# ---- Places ----
+
+
+def place(x, y):
+    """Longitude and latitude of a point in tiles of ZOOM."""
+    tiles_across = 2 ** ZOOM
+    return ((x / tiles_across - 0.5) * 360,
+            math.degrees(math.atan(math.sinh((0.5 - y / tiles_across) * 2 * math.pi))))
+
+
+def write_lines(path, lines):
+    """lines: pairs of a class and points in tiles."""
+    features = [{"type": "Feature", "properties": {"class": kind},
+                 "geometry": {"type": "LineString", "coordinates": [place(x, y) for x, y in points]}}
+                for kind, points in lines]
+    with open(path, "w") as file:
+        json.dump({"type": "FeatureCollection", "features": features}, file)
+
+
+def make_lines(path, count=60, reach=6.0):
+    chance = random.Random(20261123)
+    lines = []
+    for i in range(count):
+        x, y = COLUMN + chance.uniform(-reach, reach), ROW + chance.uniform(-reach, reach)
+        angle, points = chance.uniform(0, 7), []
+        for _ in range(chance.randrange(2, 40)):
+            points.append((x, y))
+            angle += chance.gauss(0, 0.5)
+            length = chance.expovariate(4)
+            x, y = x + length * math.cos(angle), y + length * math.sin(angle)
+        lines.append((i % 5, points))
+    lines.append((0, [(COLUMN - 5.5, ROW), (COLUMN + 5.5, ROW)]))  # along the border of metatiles
+    write_lines(path, lines)
+
+
+# ---- Pictures ----
+
+
+def render(source, center, size, zoom, *options):
+    """A picture around a place in tiles."""
+    longitude, latitude = place(*center)
+    camber("render", source, "-o", "large.png", "-f", "-q", "--center", f"{longitude:.15f},{latitude:.15f}",
+           "--zoom", zoom, "--size", f"{size}x{size}", *options)
+    return decode(read("large.png"))
+
+
+def archive(path, zoom=None):
+    """(zoom, column, row) to bytes of MBTiles; rows from the north."""
+    with sqlite3.connect(path) as base:
+        rows = base.execute("select zoom_level, tile_column, tile_row, tile_data from tiles").fetchall()
+    return {(z, x, 2 ** z - 1 - y): data for z, x, y, data in rows if zoom in (None, z)}
+
+
+STYLES = {
+    "wide": [{"paint": {"line-width": ["match", ["get", "class"], 0, 70, 1, 24, 6], "line-color": "#c04020"}}],
+    "offset": [{"paint": {"line-width": 3, "line-offset": 22, "line-color": "#205080"},
+                "layout": {"line-join": "round"}},
+               {"paint": {"line-width": 2, "line-offset": -31, "line-color": "#208040"}}],
+    "blurred": [{"paint": {"line-width": 26, "line-blur": 14, "line-color": "#4020a0", "line-opacity": 0.6}}],
+    "dashed": [{"paint": {"line-width": 5, "line-dasharray": [3, 2, 0.5, 2], "line-color": "#101010"},
+                "layout": {"line-cap": "round"}}],
+    "patterned": [{"paint": {"line-width": 18, "line-pattern": "arrow"}}],
+    "gap": [{"paint": {"line-width": 4, "line-gap-width": 17, "line-translate": [13, -9], "line-color": "#a06000"}}],
+}
+
+
+def write_style(name, layers, background="#f2efe9"):
+    """Writes NAME.json; without a background pictures are transparent."""
+    style = {"version": 8, "sources": {"lines": {"type": "vector"}}, "layers": []}
+    if background == "arrow":
+        style["layers"].append({"id": "background", "type": "background", "paint": {"background-pattern": "arrow"}})
+    elif background:
+        style["layers"].append({"id": "background", "type": "background",
+                                "paint": {"background-color": background}})
+    for i, layer in enumerate(layers):
+        style["layers"].append({"id": f"layer{i}", "type": "line", "source": "lines", **layer})
+    if "pattern" in json.dumps(style):
+        style["sprite"] = "sprite"
+        write_sprite()
+    with open(f"{name}.json", "w") as file:
+        json.dump(style, file)
+    return f"{name}.json"
+
+
+def write_sprite():
+    size = 12
+    rows = b"".join(b"\0" + b"".join(bytes((200, 20 * y, 20 * x, 255 if abs(x - 6) <= y else 0))
+                                     for x in range(size)) for y in range(size))
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    with open("sprite.png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    with open("sprite.json", "w") as file:
+        json.dump({"arrow": {"x": 0, "y": 0, "width": size, "height": size, "pixelRatio": 1}}, file)
+
+
+# ---- Tests ----
+
+
+def compare_cuts(name, there, picture, first, across, px, most):
+    """Compares the tiles of a square of them with a picture of it. Tiles that are not there show one colour."""
+    seen = 0
+    for i in range(across):
+        for k in range(across):
+            cut = [row[4 * px * i:4 * px * (i + 1)] for row in picture[px * k:px * (k + 1)]]
+            data = there.get((first[0] + i, first[1] + k))
+            if data is None:
+                expect(all(row == cut[0][:4] * px for row in cut), f"{name}: tile {i}, {k} is missing")
+                continue
+            made = decode(data)
+            seen += 1
+            if made != cut:
+                worst = difference(made, cut)
+                expect(worst <= most, f"{name}: tile {i}, {k} differs by {worst} levels, and {most} are allowed")
+    expect(seen > across * across // 4, f"{name}: {seen} tiles show something")
+
+
+def test_cuts():
+    """To the byte within a unit, to one level across units."""
+    make_lines("lines.geojson")
+    for name, layers in STYLES.items():
+        style = write_style(name, layers, None if name == "blurred" else "#f2efe9")
+        tiles("lines.geojson", "-o", "cuts.mbtiles", "-f", "--style", style, "--min-zoom", ZOOM, "--max-zoom", ZOOM)
+        there = {key[1:]: data for key, data in archive("cuts.mbtiles").items()}
+        picture = render("lines.geojson", (COLUMN - 4, ROW - 4), 2048, ZOOM - 1, "--style", style)
+        compare_cuts(f"{name} in a unit", there, picture, (COLUMN - 8, ROW - 8), 8, 256, 0)
+        picture = render("lines.geojson", (COLUMN, ROW), 1536, ZOOM - 1, "--style", style)
+        compare_cuts(f"{name} across units", there, picture, (COLUMN - 3, ROW - 3), 6, 256, 1)
+
+
+def test_paved():
+    """A background of images goes on from tile to tile; tiles without lines are left out, or kept."""
+    make_lines("lines.geojson")
+    style = write_style("paved", STYLES["gap"], "arrow")
+    one = ("lines.geojson", "--style", style, "--min-zoom", ZOOM, "--max-zoom", ZOOM)
+    tiles(*one, "-o", "paved.mbtiles")
+    tiles(*one, "-o", "kept.mbtiles", "--keep-empty")
+    some, there = archive("paved.mbtiles"), archive("kept.mbtiles")
+    expect(0 < len(some) < len(there) and all(there[key] == data for key, data in some.items()), "other tiles are kept")
+    there = {key[1:]: data for key, data in there.items()}
+    for center, most in (((COLUMN - 4, ROW - 4), 0), ((COLUMN, ROW), 1)):
+        picture = render("lines.geojson", center, 1024 if most else 2048, ZOOM - 1, "--style", style)
+        across = 4 if most else 8
+        compare_cuts(f"paved, {most}", there, picture, (center[0] - across // 2, center[1] - across // 2), across, 256,
+                     most)
+
+
+def test_sizes():
+    """Ratios, tiles of 512 px, the dark theme; and WebP without loss shows what the PNG does."""
+    make_lines("lines.geojson")
+    style = write_style("dashed", STYLES["dashed"])
+    tiles("lines.geojson", "-o", "twice.mbtiles", "--style", style, "--ratio", 2, "--min-zoom", ZOOM - 1,
+          "--max-zoom", ZOOM - 1)
+    there = {key[1:]: data for key, data in archive("twice.mbtiles").items()}
+    picture = render("lines.geojson", (COLUMN, ROW), 512, ZOOM - 2, "--style", style, "--ratio", 2)
+    compare_cuts("@2x", there, picture, (COLUMN // 2 - 1, ROW // 2 - 1), 2, 512, 1)
+    tiles("lines.geojson", "-o", "large.mbtiles", "--style", style, "--tile-size", 512, "--min-zoom", ZOOM - 1,
+          "--max-zoom", ZOOM - 1)
+    there = {key[1:]: data for key, data in archive("large.mbtiles").items()}
+    picture = render("lines.geojson", (COLUMN, ROW), 1024, ZOOM - 1, "--style", style)
+    compare_cuts("512", there, picture, (COLUMN // 2 - 1, ROW // 2 - 1), 2, 512, 1)
+    tiles("lines.geojson", "-o", "dark.mbtiles", "--theme", "dark", "--min-zoom", ZOOM, "--max-zoom", ZOOM)
+    there = {key[1:]: data for key, data in archive("dark.mbtiles").items()}
+    picture = render("lines.geojson", (COLUMN, ROW), 1024, ZOOM - 1, "--theme", "dark")
+    compare_cuts("dark", there, picture, (COLUMN - 2, ROW - 2), 4, 256, 1)
+    done = run("tiles", "lines.geojson", "-o", "lossy.pmtiles", "--format", "webp", "--max-zoom", 10)
+    if "no WebP" not in done.stderr:
+        expect(done.returncode == 0, done.stderr)
+        shown = json.loads(camber("tiles", "show", "lossy.pmtiles", "--json").stdout)
+        expect(shown["type"] == "webp" and shown["tiles"] > 0, shown)
+    many = ("lines.geojson", "--style", write_style("blurred", STYLES["blurred"]), "--max-zoom", 13)
+    tiles(*many, "-o", "few.pmtiles", "--format", "png8")
+    tiles(*many, "-o", "all.pmtiles")
+    expect(os.path.getsize("few.pmtiles") < os.path.getsize("all.pmtiles"), "png8 is larger than png")
+    for name in ("few.pmtiles", "all.pmtiles"):
+        camber("tiles", "verify", name)
+
+
+RANGE = ("--min-zoom", "9", "--max-zoom", "13")
+
+
+def test_same_bytes():
+    """Threads, memory and shards change nothing, in each format."""
+    make_lines("lines.geojson")
+    common = ("lines.geojson", "--style", write_style("dashed", STYLES["dashed"]), *RANGE)
+    tiles(*common, "-o", "one.pmtiles")
+    whole = read("one.pmtiles")
+    camber("tiles", "verify", "one.pmtiles")
+    for option, value in (("--threads", 1), ("--threads", 2), ("--threads", 8), ("--memory", "48M"),
+                          ("--memory", "1G")):
+        tiles(*common, "-o", "other.pmtiles", "-f", "--name", "one", option, value)
+        expect(read("other.pmtiles") == whole, f"{option} {value}: other bytes")
+    for count in (1, 3, 7):
+        parts = []
+        for part in range(1, count + 1):
+            tiles(*common, "-o", "one.pmtiles", "--shard", f"{part}/{count}")
+            parts.append(f"one.{part}-of-{count}.pmtiles")
+        random.Random(count).shuffle(parts)
+        camber("tiles", "merge", *parts, "-o", "merged.pmtiles", "-f")
+        expect(read("merged.pmtiles") == whole, f"{count} shards: other bytes")
+    done = tiles(*common, "-o", "one.pmtiles", "--shard", "2/3", "--resume")
+    tiles(*common, "-o", "one.mbtiles")
+    camber("tiles", "merge", "one.pmtiles", "-o", "same.mbtiles")
+    expect(archive("one.mbtiles") == archive("same.mbtiles"), "MBTiles have other tiles than PMTiles")
+    tiles(*common, "-o", "one/")
+    for (zoom, column, row), data in archive("one.mbtiles").items():
+        expect(read(f"one/{zoom}/{column}/{row}.png") == data, "a folder has other tiles than MBTiles")
+
+
+def test_schedule():
+    """Shards that go by a schedule make the same archive, and refuse a schedule that is of something else."""
+    make_lines("lines.geojson", 200, reach=200.0)
+    common = ["lines.geojson", "--style", write_style("dashed", STYLES["dashed"]), "--max-zoom", "13"]
+    tiles(*common, "-o", "one.pmtiles", "-f")
+    whole = read("one.pmtiles")
+    tiles(*common, "-o", "one.pmtiles", "--dry-run", "--schedule", "plan", status=0)
+    expect(os.path.exists("plan") and os.path.exists("plan.features"), "a dry run wrote no schedule")
+    tiles(*common, "-o", "one.pmtiles", "--dry-run", "--schedule", "plan", status=73)
+    first = read("plan"), read("plan.features")
+    tiles(*common, "-o", "one.pmtiles", "--dry-run", "--schedule", "plan", "-f")
+    expect(first == (read("plan"), read("plan.features")), "the same schedule has other bytes")
+    for count, features in ((1, True), (5, True), (5, False)):
+        if not features:
+            os.rename("plan.features", "aside")
+        for part in range(1, count + 1):
+            tiles(*common, "-o", "one.pmtiles", "--schedule", "plan", "--shard", f"{part}/{count}", "-f")
+        parts = [f"one.{part}-of-{count}.pmtiles" for part in range(1, count + 1)]
+        camber("tiles", "merge", *parts, "-o", "merged.pmtiles", "-f")
+        expect(read("merged.pmtiles") == whole, f"{count} shards by a schedule: other bytes, {features}")
+    os.rename("aside", "plan.features")
+    # Parts with a schedule and without one are parts of the same run.
+    tiles(*common, "-o", "one.pmtiles", "--shard", "3/5", "-f")
+    camber("tiles", "merge", *parts, "-o", "merged.pmtiles", "-f")
+    expect(read("merged.pmtiles") == whole, "a part without the schedule: other bytes")
+    tiles(*common, "-o", "other.pmtiles", "--name", "one", "--schedule", "plan")
+    expect(read("other.pmtiles") == whole, "a whole run by a schedule: other bytes")
+    by_schedule = ["-o", "refused.pmtiles", "--schedule", "plan", "--shard", "1/2"]
+    tiles(*common[:-1], "12", *by_schedule, status=65)
+    tiles("lines.geojson", "--max-zoom", "13", *by_schedule, status=65)
+    make_lines("lines.geojson", 199, reach=200.0)
+    tiles(*common, *by_schedule, status=65)
+    make_lines("lines.geojson", 200, reach=200.0)
+    features = bytearray(read("plan.features"))
+    for at in (0, 9, 70, len(features) // 2, len(features) - 20):
+        damaged = bytearray(features)
+        damaged[at] ^= 0x55
+        write("plan.features", damaged)
+        tiles(*common, *by_schedule, status=65)
+    write("plan.features", features[:len(features) // 2])
+    tiles(*common, *by_schedule, status=65)
+    write("plan.features", features)
+    schedule = read("plan")
+    for bad in (b"", b"{}", b"[1]", schedule[:len(schedule) // 2], schedule.replace(b'"d ', b'"19 ', 1)):
+        write("plan", bad)
+        tiles(*common, *by_schedule, status=65)
+    write("plan", schedule)
+    tiles(*common, *by_schedule)
+    tiles(*common, "-o", "x.pmtiles", "--schedule", "missing", "--shard", "1/2", status=66)
+    tiles(*common, "-o", "x.pmtiles", "--schedule", "plan", "--dry-run", "--shard", "1/2", status=2)
+    tiles(*common, "-o", "x.pmtiles", "--schedule", "lines.geojson", "--dry-run", "-f", status=2)
+
+
+def test_auto():
+    """The variables of engines name the part."""
+    write_lines("short.geojson", [(0, [(COLUMN + 1, ROW + 1), (COLUMN + 1.5, ROW + 1.2)])])
+    common = ("short.geojson", "-o", "auto.pmtiles", "--max-zoom", "6", "--shard", "auto", "-f")
+    engines = [({"SLURM_ARRAY_TASK_ID": "5", "SLURM_ARRAY_TASK_MIN": "3", "SLURM_ARRAY_TASK_COUNT": "4",
+                 "SLURM_PROCID": "0", "SLURM_NTASKS": "1"}, (), "3-of-4"),
+               ({"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3", "SLURM_PROCID": "0"}, (), "2-of-3"),
+               ({"PMI_RANK": "0", "PMI_SIZE": "2"}, (), "1-of-2"),
+               ({"SLURM_PROCID": "1", "SLURM_NTASKS": "2"}, (), "2-of-2"),
+               ({"JOB_COMPLETION_INDEX": "2"}, ("--shards", "5"), "3-of-5"),
+               ({"AWS_BATCH_JOB_ARRAY_INDEX": "0"}, ("--shards", "2"), "1-of-2")]
+    for variables, more, part in engines:
+        tiles(*common, *more, env={**ENVIRONMENT, **variables})
+        expect(os.path.exists(f"auto.{part}.pmtiles"), f"{variables}: no auto.{part}.pmtiles")
+        os.unlink(f"auto.{part}.pmtiles")
+    tiles(*common, status=2)
+    tiles(*common, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
+    tiles(*common, "--shards", 2, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
+    tiles(*common, status=2, env={**ENVIRONMENT, "PMI_RANK": "x", "PMI_SIZE": "2"})
+
+
+def test_killed():
+    """kill -9 at random moments, then --resume: the same bytes as uninterrupted."""
+    make_lines("lines.geojson", 120)
+    common = ("lines.geojson", "--style", write_style("wide", STYLES["wide"]), "--min-zoom", 9, "--max-zoom", 13)
+    start = time.monotonic()
+    tiles(*common, "-o", "whole.pmtiles", "--resume")  # from the start, where nothing is there
+    took, whole = time.monotonic() - start, read("whole.pmtiles")
+    chance, resumed = random.Random(), 0
+    seed = chance.randrange(10 ** 9)
+    chance.seed(seed)
+    left = 20
+    while left > 0:
+        for _ in range(chance.randrange(1, 4)):
+            child = subprocess.Popen([TOOL, "tiles", *map(str, common), "-o", "killed.pmtiles", "-q", "--resume",
+                                      "--name", "whole"], env=ENVIRONMENT)
+            time.sleep(chance.uniform(0.1, took))
+            child.kill()
+            expect(child.wait() in (0, -signal.SIGKILL), f"seed {seed}: ended with {child.returncode}")
+            left -= 1
+            if child.returncode == 0:
+                break
+        done = camber("tiles", *common, "-o", "killed.pmtiles", "--resume", "--name", "whole", "--json")
+        told = json.loads(done.stdout)
+        resumed += told["resumed_units"]
+        expect(read("killed.pmtiles") == whole, f"seed {seed}: resumed, other bytes")
+        left_over = [name for name in os.listdir(".") if ".camber-" in name]
+        expect(not left_over, f"seed {seed}: files are left beside: {left_over}")
+        os.unlink("killed.pmtiles")
+    expect(resumed > 0, f"seed {seed}: no unit was ever resumed")
+    for ending in ("tiles", "units"):  # as a run leaves them that is killed once its archive has its name
+        with open(f"whole.pmtiles.camber-{ending}", "wb") as file:
+            file.write(b"left over")
+    told = json.loads(camber("tiles", *common, "-o", "whole.pmtiles", "--resume", "--json").stdout)
+    expect(not [name for name in os.listdir(".") if ".camber-" in name], "files of a whole archive stay")
+    expect(told["done"] and told["units"] == 0, f"a whole archive is drawn again: {told}")
+
+
+def test_stopped():
+    """A signal ends the run with its status; nothing is half-written, and --resume goes on."""
+    make_lines("lines.geojson", 400)
+    common = ["tiles", "lines.geojson", "--style", write_style("wide", STYLES["wide"]), "--max-zoom", "17", "-q"]
+    for number in (signal.SIGINT, signal.SIGTERM):
+        child = subprocess.Popen([TOOL, *common, "-o", "stopped.pmtiles", "--resume"], env=ENVIRONMENT,
+                                 stderr=subprocess.PIPE, text=True)
+        while not os.path.exists("stopped.pmtiles.camber-units") and child.poll() is None:
+            time.sleep(0.01)
+        time.sleep(0.05)
+        child.send_signal(number)
+        told = child.communicate()[1]
+        expect(child.returncode == 128 + number, f"signal {number}: {child.returncode}")
+        expect(told.count("\n") <= 1, told)
+        expect(not os.path.exists("stopped.pmtiles"), "half an archive is there")
+
+
+def test_other_run():
+    """What is resumed or renewed must be of the same input, style and options; one writer at a time."""
+    make_lines("lines.geojson", 200)
+    style = write_style("wide", STYLES["wide"])
+    common = ["tiles", "lines.geojson", "-o", "locked.pmtiles", "--style", style, "--max-zoom", "15"]
+    child = subprocess.Popen([TOOL, *common, "-q"], env=ENVIRONMENT)
+    while not os.path.exists("locked.pmtiles.camber-units") and child.poll() is None:
+        time.sleep(0.01)
+    time.sleep(0.15)
+    line = camber(*common, status=74).stderr
+    expect("another process" in line, line)
+    child.kill()
+    child.wait()
+    line = camber(*common, "--ratio", "1.5", "--resume", status=65).stderr
+    expect("options" in line and "style" not in line, line)
+    tiles("lines.geojson", "-o", "there.pmtiles", "--style", style, "--max-zoom", 8)
+    with open("list", "w") as file:
+        file.write("8/134/86\n")
+    line = tiles("lines.geojson", "-o", "there.pmtiles", "--tiles", "list", status=65).stderr
+    expect("style" in line, line)
+    tiles("lines.geojson", "-o", "there.pmtiles", "--style", style, "--max-zoom", 8, status=73)
+    tiles("lines.geojson", "-o", "missing.pmtiles", "--style", style, "--tiles", "list", status=66)
+
+
+def test_renew():
+    """Just the tiles of a list are drawn anew; where nothing is left, they go."""
+    style = write_style("wide", STYLES["wide"])
+    before = [(1, [(COLUMN + 1.5, ROW + 1.5), (COLUMN + 3.5, ROW + 1.5)]),
+              (1, [(COLUMN - 3.5, ROW - 1.5), (COLUMN - 2.5, ROW - 1.5)])]
+    after = [(1, [(COLUMN + 1.5, ROW + 1.2), (COLUMN + 3.5, ROW + 1.9)])]
+    write_lines("data.geojson", before)
+    options = ("data.geojson", "--style", style, "--name", "map")
+    tiles(*options, "-o", "map.mbtiles", *RANGE)
+    old = archive("map.mbtiles")
+    write_lines("data.geojson", after)
+    tiles(*options, "-o", "new.mbtiles", *RANGE)
+    new = archive("new.mbtiles")
+    listed = [(ZOOM, COLUMN + 2, ROW + 1), (ZOOM, COLUMN - 3, ROW - 2), (ZOOM, COLUMN + 20, ROW)]
+    with open("list", "w") as file:
+        file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
+    tiles(*options, "-o", "map.mbtiles", "--tiles", "list")
+    made = archive("map.mbtiles")
+    wanted = {**old, **{key: new.get(key) for key in listed}}
+    expect(made == {key: data for key, data in wanted.items() if data}, "renewed tiles, and no others, are new")
+    expect(old[listed[0]] != made[listed[0]] and listed[1] in old and listed[1] not in made, "the data has changed")
+    with open("list", "w") as file:
+        file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in {**old, **new})
+    for name in ("map.mbtiles", "map.mbtiles"):
+        tiles(*options, "-o", name, "--tiles", "list")
+        expect(archive(name) == new, "all tiles renewed are not all tiles drawn")
+    with open("list", "w") as file:
+        file.write("13/1/1\n13/1\n")
+    line = tiles(*options, "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
+    expect("line 2" in line, line)
+
+
+def test_area():
+    """Boxes, regions, lists, empty tiles, dry runs."""
+    make_lines("lines.geojson")
+    write_lines("short.geojson", [(1, [(COLUMN + 2.3, ROW + 2.3), (COLUMN + 2.6, ROW + 2.6)])])
+    style = write_style("thin", [{"paint": {"line-width": 1, "line-color": "#000"}}])
+    one = ("--style", style, "--min-zoom", ZOOM, "--max-zoom", ZOOM)
+    tiles("short.geojson", "-o", "short.mbtiles", *one)
+    expect(set(archive("short.mbtiles")) == {(ZOOM, COLUMN + 2, ROW + 2)}, "a tile exactly outside is drawn")
+    tiles("lines.geojson", "-o", "all.mbtiles", *one)
+    whole = archive("all.mbtiles")
+    west, north = place(COLUMN - 2, ROW - 2)
+    east, south = place(COLUMN + 1, ROW + 1)
+    box = f"{west + 1e-6},{south + 1e-6},{east - 1e-6},{north - 1e-6}"
+    inside = {(ZOOM, COLUMN + i, ROW + k) for i in range(-2, 1) for k in range(-2, 1)}
+    tiles("lines.geojson", "-o", "box.mbtiles", *one, "--bbox", box)
+    expect(archive("box.mbtiles") == {k: d for k, d in whole.items() if k in inside}, "--bbox: other tiles")
+    tiles("lines.geojson", "-o", "kept.mbtiles", *one, "--bbox", box, "--keep-empty")
+    kept = archive("kept.mbtiles")
+    expect(set(kept) == inside, "--keep-empty leaves tiles out")
+    with open("region.geojson", "w") as file:
+        corners = [place(x, y) for x, y in ((COLUMN - 1.5, ROW + 0.2), (COLUMN + 2.5, ROW + 0.5),
+                                            (COLUMN - 1.5, ROW + 0.8), (COLUMN - 1.5, ROW + 0.2))]
+        json.dump({"type": "Feature", "properties": {},
+                   "geometry": {"type": "Polygon", "coordinates": [corners]}}, file)
+    tiles("lines.geojson", "-o", "region.mbtiles", *one, "--region", "region.geojson")
+    wanted = {(ZOOM, COLUMN + i, ROW) for i in range(-2, 3)}
+    expect(archive("region.mbtiles") == {k: d for k, d in whole.items() if k in wanted}, "--region: other tiles")
+    some = sorted(whole)[:2]
+    tiles("lines.geojson", "-o", "some.mbtiles", "--style", style,
+          *(word for z, x, y in some for word in ("--tile", f"{z}/{x}/{y}")))
+    expect(archive("some.mbtiles") == {key: whole[key] for key in some}, "--tile: other tiles")
+    told = json.loads(camber("tiles", "lines.geojson", "-o", "dry.mbtiles", *one, "--dry-run", "--json").stdout)
+    size = sum(len(data) for data in whole.values())
+    expect(not os.path.exists("dry.mbtiles") and len(whole) <= told["tiles"] < 1.2 * len(whole), told)
+    expect(0.5 * size < told["bytes"] < 2 * size and told["points"] > 0 and told["units"] > 0, told)
+    with open("empty.geojson", "w") as file:
+        json.dump({"type": "FeatureCollection", "features": []}, file)
+    done = run("tiles", "empty.geojson", "-o", "empty.pmtiles", "--max-zoom", "3")
+    expect(done.returncode in (0, 65), done.stderr)
+    for name in ("short", "all", "box", "kept", "region", "some"):
+        camber("tiles", "verify", f"{name}.mbtiles")
+
+
+def test_metadata():
+    make_lines("lines.geojson")
+    tiles("lines.geojson", "-o", "told.pmtiles", "--max-zoom", 9, "--name", "Lines", "--description", "made up",
+          "--attribution", "nobody")
+    shown = json.loads(camber("tiles", "show", "told.pmtiles", "--json").stdout)
+    metadata = shown["metadata"]
+    expect((metadata["name"], metadata["description"], metadata["attribution"]) == ("Lines", "made up", "nobody"), shown)
+    longitude, latitude = place(COLUMN, ROW)
+    west, south, east, north = shown["bounds"]
+    expect(west < longitude < east and south < latitude < north and east - west < 2, shown)
+    expect([word.split("=")[0] for word in shown["fingerprint"].split()] ==
+           ["input", "style", "options", "area", "version"], shown)
+
+
+def test_full():
+    """A limit on a file's size stands for a full disk: one line, nothing half-written, and room brings the rest."""
+    make_lines("lines.geojson")
+    common = ("lines.geojson", "-o", "full.pmtiles", "--max-zoom", "13")
+    tiles(*common)
+    whole = read("full.pmtiles")
+    os.unlink("full.pmtiles")
+    for part in (0.0, 0.3, 0.95):
+        def confine():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            limit = int(len(whole) * part)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        camber("tiles", *common, "--resume", status=74, preexec_fn=confine)
+        expect(not os.path.exists("full.pmtiles"), "half an archive is there")
+    tiles(*common, "--resume")
+    expect(read("full.pmtiles") == whole, "other bytes than at once")
+
+
+def test_usage():
+    make_lines("lines.geojson", 3)
+    good = ["lines.geojson", "-o", "x.pmtiles"]
+    bad = [(["lines.geojson"], "-o"), (["-o", "x.pmtiles"], "input"), (["lines.geojson", "-o", "x.png"], "extension"),
+           ([*good, "--min-zoom", "5", "--max-zoom", "4"], "--min-zoom"), ([*good, "--max-zoom", "25"], "--max-zoom"),
+           ([*good, "--tile-size", "128"], "--tile-size"), ([*good, "--ratio", "9"], "--ratio"),
+           ([*good, "--ratio", "0.1"], "--ratio"), ([*good, "--format", "glb"], "glb"),
+           ([*good, "--quality", "50"], "--quality"), ([*good, "--tile", "3/8/0"], "--tile"),
+           ([*good, "--tile", "3/1"], "--tile"), ([*good, "--tile", "3/1/1", "--max-zoom", "4"], "--tile"),
+           ([*good, "--shard", "0/3"], "--shard"), ([*good, "--shard", "4/3"], "--shard"),
+           ([*good, "--shard", "a"], "--shard"), ([*good, "--shards", "3"], "--shards"),
+           ([*good, "--bbox", "1,2,3"], "--bbox"), ([*good, "--tiles", "list", "--resume"], "--tiles"),
+           ([*good, "--center", "1,1"], "--center"), (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]
+    for arguments, word in bad:
+        line = camber("tiles", *arguments, status=2).stderr
+        expect(word in line, f"{arguments}: {line}")
+    camber("tiles", "missing.geojson", "-o", "x.pmtiles", status=66)
+    camber("tiles", "lines.geojson", "-o", "missing/x.pmtiles", status=73)
+    camber("tiles", *good, "--region", "lines.geojson", status=65)
+    expect(not [name for name in os.listdir(".") if name.startswith("x.")], "a run that fails leaves something")
+
+
+def main():
+    tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed, test_stopped, test_other_run,
+             test_renew, test_area, test_metadata, test_full]
+    named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]
+    for test in named or tests:
+        with tempfile.TemporaryDirectory(prefix="camber-tiles-") as folder:
+            os.chdir(folder)
+            start = time.monotonic()
+            test()
+            print(f"{test.__name__}: {time.monotonic() - start:.1f} s", flush=True)
+            os.chdir("/")
+
+
+main()

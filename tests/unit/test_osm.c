@@ -1,0 +1,459 @@
+/* The reader of OpenStreetMap's PBF files against GDAL's: the same features to the last bit, for real files and for
+ * small ones with whatever a file may have; and damaged files. GDAL reads the same file behind /vsisubfile/. */
+#include "file_reading.h"
+
+#include "osm/osm.h"
+
+#include "pbf_file.h"
+
+#include <dirent.h>
+
+static char *roads[] = {"highway", "bridge", "tunnel", "layer", "building", "name", CAMBER_PLAIN_PROPERTY};
+static char *nothing[] = {CAMBER_PLAIN_PROPERTY, "no key, this"};
+
+typedef struct fixture {
+    file_reading on;
+    const char *where;
+    pbf_file file;
+    pbf_block block;
+} fixture;
+
+static void use_style(fixture *it, char **properties, size_t count) {
+    reading_use_style(&it->on, properties, count);
+}
+
+static int set_up(void **state) {
+    fixture *it = calloc(1, sizeof *it);
+    assert_non_null(it);
+    reading_start(&it->on, roads, sizeof roads / sizeof *roads);
+    in_folder(&it->on, "file");
+    *state = it;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    fixture *it = *state;
+    reading_end(&it->on);
+    free(it);
+    return 0;
+}
+
+static camber_features *read_file(fixture *it, camber_source_desc desc, camber_status *status) {
+    camber_features *features;
+    assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
+    it->on.errors = it->on.warnings = 0;
+    it->on.error[0] = 0;
+    *status = camber_features_read(features, &desc);
+    return features;
+}
+
+/* Reads the file both ways. takes: whether this reader reads it, or leaves it to GDAL. */
+static size_t expect_as_gdal(fixture *it, const char *path, bool keep_apart, bool takes) {
+    static const uint32_t threads[] = {1, 2, 7};
+    char behind[1200];
+    camber_status status, other;
+    snprintf(behind, sizeof behind, "/vsisubfile/0_%d,%s", 1 << 30, path);
+    camber_features *gdals =
+        read_file(it, (camber_source_desc){.path = behind, .where = it->where, .keep_apart = keep_apart}, &status);
+    const size_t count = gdals->feature_count, warnings = it->on.warnings;
+    for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
+        const camber_source_desc desc = {
+            .path = path, .where = it->where, .keep_apart = keep_apart, .threads = threads[i]};
+        camber_features *features = read_file(it, desc, &other);
+        if (other != status)
+            fail_msg("%s: %s is not GDAL's %s: %s", path, camber_status_get_name(other), camber_status_get_name(status),
+                     it->on.error);
+        assert_int_equal(it->on.errors, status != CAMBER_OK);
+        assert_int_equal(it->on.warnings, warnings);
+        expect_same(features, gdals);
+        camber_features_destroy(features);
+        bool declined = false;
+        camber_features_create(it->on.context, &it->on.style, &features);
+        assert_true(camber_osm_reads(&desc));
+        (void)camber_osm_read(features, &desc, &declined);
+        assert_int_equal(declined, !takes);
+        camber_features_destroy(features);
+    }
+    camber_features_destroy(gdals);
+    return count;
+}
+
+/* ---- Real files ---- */
+
+static void test_real_files(void **state) {
+    static const char *const names[] = {"porto_portugal.osm.pbf",
+                                        "liechtenstein-latest.osm.pbf",
+                                        "baltimore.osm.pbf",
+                                        "harrisburg.osm.pbf",
+                                        "moorgate.osm.pbf",
+                                        "columbus.osm.pbf",
+                                        "nyc.osm.pbf",
+                                        "Helsinki-1327152.osm.pbf",
+                                        "spo_osm.pbf"};
+    fixture *it = *state;
+    const char *data = getenv("CAMBER_DATA");
+    if (!data) {
+        print_message("CAMBER_DATA is not set: real files are not read\n");
+        skip();
+    }
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s/data/%s", data, names[i]);
+        it->on.style.wants_polygons = i % 2 == 0;
+        it->on.style.directed = i % 3 == 0;
+        const size_t apart = expect_as_gdal(it, path, true, true);
+        print_message("%s: %zu features\n", names[i], apart);
+        it->on.style.wants_polygons = !it->on.style.wants_polygons;
+        assert_true(expect_as_gdal(it, path, false, true) > 500);
+    }
+}
+
+/* ---- Small files ---- */
+
+/* Nodes 10 to 15 in a row; 16 at the north pole; 20 and 21 on both sides of the antimeridian. */
+static const pbf_node nodes[] = {{10, 10000000, 20000000},  {11, 10100000, 20000000}, {12, 10200000, 20100000},
+                                 {13, 10300000, 20200000},  {14, 10400000, 20300000}, {15, 10500000, 20400000},
+                                 {16, 10500000, 900000000}, {20, 1799000000, 5},      {21, -1799000000, 5},
+                                 {22, 1800000000, 7}};
+enum { NODES = sizeof nodes / sizeof *nodes };
+
+static const char *const street[] = {"highway", "residential", "name", "A", NULL};
+static const char *const house[] = {"building", "yes", NULL};
+
+static void begin(fixture *it) {
+    pbf_header(&it->file, "DenseNodes");
+    pbf_dense(&it->block, nodes, NODES);
+    pbf_end_block(&it->file, &it->block);
+}
+
+static void add_way(fixture *it, const char *const *tags, size_t count, const int64_t *ids) {
+    pbf_way(&it->block, tags, ids, count);
+}
+#define WAY(it, tags, ...)                                                                                             \
+    add_way(it, tags, sizeof(int64_t[]){__VA_ARGS__} / sizeof(int64_t), (const int64_t[]){__VA_ARGS__})
+
+static size_t finish(fixture *it, bool takes) {
+    if (it->block.groups.size)
+        pbf_end_block(&it->file, &it->block);
+    write_file(&it->on, "file", it->file.bytes, it->file.size);
+    const size_t count = expect_as_gdal(it, it->on.path, true, takes);
+    (void)expect_as_gdal(it, it->on.path, false, takes);
+    return count;
+}
+
+/* All that ways may be, with each style. */
+static void test_ways(void **state) {
+    static const char *const square[] = {"highway", "pedestrian", "area", "yes", NULL};
+    static const char *const no_house[] = {"building", "No", "barrier", "wall", NULL};
+    static const char *const twice[] = {"name", "A", "name", "B", "highway", "path", NULL};
+    static const char *const strange[] = {"", "", "bridge", "", NULL};
+    fixture *it = *state;
+    for (int style = 0; style < 3; style++) {
+        begin(it);
+        it->on.style.wants_polygons = style == 1;
+        if (style == 2)
+            use_style(it, nothing, 2);
+        WAY(it, street, 10, 11, 12);
+        WAY(it, house, 10, 11, 12, 10);
+        WAY(it, house, 10, 11, 10);          /* two segments are no area */
+        WAY(it, house, 99, 10, 11, 12, 99);  /* closed, but for the node that is missing */
+        WAY(it, house, 10, 98, 11, 12, 10);  /* still closed */
+        WAY(it, square, 12, 13, 14, 12);     /* closed highways are lines */
+        WAY(it, no_house, 12, 13, 14, 12);   /* "no" is no area */
+        WAY(it, twice, 13, 14);              /* the last value counts */
+        WAY(it, strange, 13, 15);            /* empty keys and values */
+        WAY(it, NULL, 10, 15);               /* no tags */
+        WAY(it, street, 10);                 /* one node */
+        WAY(it, street, 97, 10, 96);         /* one node is known */
+        WAY(it, street, 95, 94);             /* none is */
+        WAY(it, street, 14, 14);             /* no length */
+        WAY(it, street, 15, 16);             /* to the pole */
+        WAY(it, street, 20, 21, 20, 22);     /* over the antimeridian and back */
+        WAY(it, street, 22, 21);             /* from the antimeridian */
+        WAY(it, street, 21, 20, 10, 11, 12); /* and on */
+        const size_t count = finish(it, true);
+        assert_int_equal(count, style == 1 ? 14 : 12);
+    }
+}
+
+static void test_nodes(void **state) {
+    static const char *const wall[] = {"barrier", "wall", NULL};
+    fixture *it = *state;
+    /* Nodes by themselves, and nodes and ways in one block. */
+    begin(it);
+    pbf_single(&it->block, (pbf_node){30, 123456789, -98765432});
+    pbf_single(&it->block, (pbf_node){31, 123456780, -98765439});
+    WAY(it, wall, 30, 31, 10);
+    assert_int_equal(finish(it, true), 1);
+    /* In other units, which are rounded to 10^-7 degrees. */
+    pbf_header(&it->file, "DenseNodes");
+    pbf_dense(&it->block, (const pbf_node[]){{1, 10000001, 20000003}, {2, -77777777, 8888888}, {3, 1, -1}}, 3);
+    pbf_number(&it->block.groups, 17, 137);
+    pbf_number(&it->block.groups, 19, 1234567);
+    pbf_number(&it->block.groups, 20, (uint64_t)INT64_C(-7654321));
+    pbf_end_block(&it->file, &it->block);
+    WAY(it, wall, 1, 2, 3);
+    assert_int_equal(finish(it, true), 1);
+    /* Ids out of order, which each node has alone. */
+    pbf_header(&it->file, "DenseNodes");
+    pbf_dense(&it->block, (const pbf_node[]){{70000, 1, 2}, {5, 10, 20}, {123456789012, 7, 7}}, 3);
+    pbf_end_block(&it->file, &it->block);
+    WAY(it, wall, 5, 70000);
+    assert_int_equal(finish(it, true), 1);
+}
+
+/* Files left to GDAL: it has rules of its own for them, or says why it cannot read them. */
+static void test_declined(void **state) {
+    fixture *it = *state;
+    begin(it); /* a node behind a way */
+    WAY(it, street, 10, 11, 30);
+    pbf_end_block(&it->file, &it->block);
+    pbf_dense(&it->block, (const pbf_node[]){{30, 1, 2}}, 1);
+    (void)finish(it, false);
+    begin(it); /* a negative id */
+    pbf_dense(&it->block, (const pbf_node[]){{-5, 1, 2}, {-4, 1, 3}}, 2);
+    pbf_end_block(&it->file, &it->block);
+    WAY(it, street, -5, -4);
+    (void)finish(it, false);
+    pbf_header(&it->file, "HistoricalInformation");
+    pbf_dense(&it->block, nodes, NODES);
+    (void)finish(it, false);
+    /* A packing that few know. */
+    begin(it);
+    pbf_bytes blob = {.size = 0};
+    pbf_number(&blob, 2, 10);
+    pbf_field(&blob, 6, "0123456789", 10);
+    pbf_blob(&it->file, "OSMData", &blob);
+    write_file(&it->on, "file", it->file.bytes, it->file.size);
+    bool declined = false;
+    camber_features *features;
+    assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
+    assert_int_equal(camber_osm_read(features, &(camber_source_desc){.path = it->on.path}, &declined), CAMBER_OK);
+    assert_true(declined);
+    camber_features_destroy(features);
+    /* Another layer, no PBF, a file that is not there. */
+    assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
+    assert_true(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .layer = "lines"}));
+    assert_false(camber_osm_reads(&(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
+    assert_false(camber_osm_reads(&(camber_source_desc){.path = "/tmp"}));
+    write_file(&it->on, "file", "<osm version=\"0.6\"></osm>", 25);
+    assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path}));
+}
+
+/* Filters that this reader knows, and those that it leaves to GDAL, which says what is wrong with the last. */
+static void test_filters(void **state) {
+    static const char *const bridge[] = {"highway", "Primary", "bridge", "yes", "name:en", "Bridge", NULL};
+    static const char *const empty[] = {"highway", "", NULL};
+    static const char *const known[] = {"highway = 'primary'",
+                                        "highway='PRIMARY' AND bridge IS NOT NULL",
+                                        "highway != 'residential' or building IN ('no','Yes')",
+                                        "highway <> 'primary'",
+                                        "\"name:en\" = 'bridge' OR (bridge IS NULL AND name = 'A')",
+                                        "name IS NULL",
+                                        "highway = ''",
+                                        "barrier is null or highway in ('a') and name = 'A'"};
+    static const char *const left[] = {"NOT (highway = 'primary')", "highway LIKE 'p%'",  "osm_id IS NOT NULL",
+                                       "highway = bridge",          "name = 'it''s'",     "HIGHWAY = 'primary'",
+                                       "highway = 'primary' and",   "highway = \"path\"", "lanes > 2"};
+    fixture *it = *state;
+    begin(it);
+    WAY(it, street, 10, 11, 12);
+    WAY(it, bridge, 12, 13);
+    WAY(it, house, 10, 11, 12, 10);
+    WAY(it, empty, 13, 14, 15);
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        it->where = known[i];
+        it->on.style.wants_polygons = i % 2;
+        assert_true(finish(it, true) > 0);
+    }
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++)
+        assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
+                     strcmp(left[i], "HIGHWAY = 'primary'") != 0);
+    /* Keys that differ in case alone, and a filter that nothing passes: GDAL warns of that. */
+    it->where = "HIGHWAY = 'primary'";
+    (void)finish(it, false);
+    it->where = "highway = 'path'";
+    assert_int_equal(finish(it, false), 0);
+    it->where = "hihgway IS NOT NULL";
+    assert_int_equal(finish(it, false), 0);
+    assert_int_equal(it->on.warnings, 1);
+}
+
+static void test_no_lines(void **state) {
+    fixture *it = *state;
+    begin(it);
+    assert_int_equal(finish(it, true), 0);
+    begin(it);
+    WAY(it, house, 10, 11, 12, 10);
+    assert_int_equal(finish(it, true), 0); /* an error both ways: it has areas alone */
+    pbf_header(&it->file, "DenseNodes");
+    assert_int_equal(finish(it, true), 0);
+}
+
+/* ---- Damage ---- */
+
+/* Reads what may be damaged: it reads or it does not, and says so once. */
+static camber_status read_damaged(fixture *it, uint32_t threads) {
+    camber_status status;
+    bool declined;
+    camber_features *features;
+    const camber_source_desc desc = {.path = it->on.path, .threads = threads};
+    assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
+    it->on.errors = 0;
+    if (!camber_osm_reads(&desc)) {
+        camber_features_destroy(features);
+        return CAMBER_ERROR_INPUT;
+    }
+    status = camber_osm_read(features, &desc, &declined);
+    assert_int_equal(it->on.errors, status != CAMBER_OK);
+    assert_true(status == CAMBER_OK || status == CAMBER_ERROR_INPUT);
+    if (status != CAMBER_OK || declined)
+        assert_int_equal(features->polyline_count, 0);
+    camber_features_destroy(features);
+    return status;
+}
+
+static void make_small(fixture *it) {
+    begin(it);
+    for (int i = 0; i < 20; i++) {
+        WAY(it, i % 3 ? street : house, 10, 11, 12, 13, 14, 10);
+        WAY(it, street, 15, 10 + i % 5);
+        if (i % 7 == 0)
+            pbf_end_block(&it->file, &it->block);
+    }
+    pbf_end_block(&it->file, &it->block);
+}
+
+static void test_cut(void **state) {
+    fixture *it = *state;
+    make_small(it);
+    size_t whole = 0;
+    for (size_t size = 0; size <= it->file.size; size++) {
+        write_file(&it->on, "file", it->file.bytes, size);
+        whole += read_damaged(it, 2) == CAMBER_OK;
+    }
+    /* Between two blobs nothing is missing that could be told. */
+    assert_int_equal(whole, 6);
+}
+
+static void test_flipped_bits(void **state) {
+    fixture *it = *state;
+    make_small(it);
+    size_t refused = 0;
+    for (size_t bit = 0; bit < 8 * it->file.size; bit += 7) {
+        it->file.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
+        write_file(&it->on, "file", it->file.bytes, it->file.size);
+        refused += read_damaged(it, 1 + (uint32_t)(bit % 3)) != CAMBER_OK;
+        it->file.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
+    }
+    assert_true(refused > it->file.size / 2);
+}
+
+/* The same within a block, where no checksum tells. */
+static void test_flipped_blocks(void **state) {
+    fixture *it = *state;
+    static uint8_t bytes[sizeof it->file.bytes];
+    begin(it);
+    const size_t head = it->file.size;
+    pbf_bytes content = {.size = 0};
+    WAY(it, street, 10, 11, 12, 13);
+    WAY(it, house, 10, 11, 12, 10);
+    pbf_message(&content, 1, &it->block.strings);
+    pbf_put(&content, it->block.groups.bytes, it->block.groups.size);
+    it->block = (pbf_block){.string_count = 0};
+    memcpy(bytes, it->file.bytes, head);
+    for (size_t bit = 0; bit < 8 * content.size; bit++) {
+        content.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
+        pbf_content(&it->file, "OSMData", &content, 0);
+        write_file(&it->on, "file", it->file.bytes, it->file.size);
+        (void)read_damaged(it, 2);
+        it->file.size = head;
+        content.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
+    }
+}
+
+static void expect_refused(fixture *it, const char *words) {
+    write_file(&it->on, "file", it->file.bytes, it->file.size);
+    assert_int_equal(read_damaged(it, 2), CAMBER_ERROR_INPUT);
+    if (!strstr(it->on.error, words))
+        fail_msg("\"%s\" is not in \"%s\"", words, it->on.error);
+}
+
+static void test_wrong_blobs(void **state) {
+    static uint8_t zeros[200000], packed[1000];
+    fixture *it = *state;
+    uLongf size = sizeof packed;
+    assert_int_equal(compress(packed, &size, zeros, sizeof zeros), Z_OK);
+    begin(it); /* a blob that unpacks to 200 times its size */
+    pbf_bytes blob = {.size = 0};
+    pbf_number(&blob, 2, sizeof zeros);
+    pbf_field(&blob, 3, packed, size);
+    pbf_blob(&it->file, "OSMData", &blob);
+    expect_refused(it, "far more than it is");
+    begin(it); /* one that says too little */
+    blob.size = 0;
+    pbf_number(&blob, 2, 1000);
+    pbf_field(&blob, 3, packed, size);
+    pbf_blob(&it->file, "OSMData", &blob);
+    expect_refused(it, "does not unpack");
+    begin(it);
+    pbf_blob(&it->file, "OSMThing", &blob);
+    expect_refused(it, "a blob's header that is none");
+    begin(it); /* a header of 2 GB */
+    pbf_append(&it->file, "\x7f\xff\xff\xff and so on, and on", 22);
+    expect_refused(it, "a blob's header that is none");
+    begin(it); /* a node beyond the pole */
+    pbf_dense(&it->block, (const pbf_node[]){{1, 0, 900000001}}, 1);
+    pbf_end_block(&it->file, &it->block);
+    expect_refused(it, "nowhere on Earth");
+}
+
+/* Little memory ends it with a line about memory, whatever thread wanted it. */
+static void test_memory(void **state) {
+    fixture *it = *state;
+    make_small(it);
+    write_file(&it->on, "file", it->file.bytes, it->file.size);
+    size_t failed = 0;
+    for (uint64_t bytes = 4096; bytes < 600000; bytes += bytes / 8) {
+        camber_budget *budget;
+        camber_context *context;
+        camber_features *features = NULL;
+        camber_status status;
+        bool declined = false;
+        assert_int_equal(camber_budget_create(&(camber_budget_desc){.memory_bytes = bytes}, &budget), CAMBER_OK);
+        const camber_context_desc desc = {.log = reading_log, .log_user = &it->on, .budget = budget};
+        if (camber_context_create(&desc, &context) != CAMBER_OK) {
+            camber_budget_destroy(budget);
+            continue;
+        }
+        it->on.errors = 0;
+        status = camber_features_create(context, &it->on.style, &features);
+        if (status == CAMBER_OK)
+            status = camber_osm_read(features, &(camber_source_desc){.path = it->on.path, .threads = 3}, &declined);
+        assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
+        assert_int_equal(it->on.errors, status != CAMBER_OK);
+        failed += status != CAMBER_OK;
+        camber_features_destroy(features);
+        camber_context_destroy(context);
+        assert_int_equal(camber_budget_get_held_bytes(budget), 0);
+        camber_budget_destroy(budget);
+    }
+    assert_true(failed > 5);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_real_files, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_ways, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_nodes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_declined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_filters, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_no_lines, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_cut, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_flipped_bits, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_flipped_blocks, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_wrong_blobs, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_memory, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

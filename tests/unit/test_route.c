@@ -1,0 +1,199 @@
+/* Routes: each path that exists, each bound of its numbers, and that nothing else is a path. */
+#include "core.h"
+
+#include "serve/route.h"
+
+#include <string.h>
+
+static const camber_route_limits LIMITS = {4, 2048};
+
+static int parse(const char *path, camber_route_request *request) {
+    memset(request, 0xa5, sizeof *request);
+    return camber_route_parse(&LIMITS, "GET", path, request);
+}
+
+static void finds_each_route(void **state) {
+    static const struct {
+        const char *path;
+        camber_route route;
+    } rows[] = {{"/", CAMBER_ROUTE_PAGE},
+                {"/?x=1#y", CAMBER_ROUTE_PAGE},
+                {"/page/page.js", CAMBER_ROUTE_PAGE},
+                {"/tiles.json", CAMBER_ROUTE_TILEJSON},
+                {"/dark/tiles.json", CAMBER_ROUTE_TILEJSON},
+                {"/0/0/0.png", CAMBER_ROUTE_TILE},
+                {"/dark/24/16777215/16777215@4x.webp", CAMBER_ROUTE_TILE},
+                {"/static/0,0,0/1x1.png", CAMBER_ROUTE_STATIC},
+                {"/dark/static/0,0,0/1x1.png", CAMBER_ROUTE_STATIC},
+                {"/health", CAMBER_ROUTE_HEALTH},
+                {"/events", CAMBER_ROUTE_EVENTS},
+                {"/metrics", CAMBER_ROUTE_METRICS}};
+    camber_route_request request;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(parse(rows[i].path, &request), 200);
+        assert_int_equal(request.route, rows[i].route);
+        assert_int_equal(request.dark, strncmp(rows[i].path, "/dark", 5) == 0);
+        assert_int_equal(camber_route_parse(&LIMITS, "HEAD", rows[i].path, &request), 200);
+    }
+}
+
+static void reads_a_tile(void **state) {
+    camber_route_request request;
+    (void)state;
+    assert_int_equal(parse("/dark/14/7800/6133@2x.webp?v=3", &request), 200);
+    assert_true(request.dark);
+    assert_int_equal(request.zoom, 14);
+    assert_int_equal(request.column, 7800);
+    assert_int_equal(request.row, 6133);
+    assert_int_equal(request.ratio, 2);
+    assert_int_equal(request.type, CAMBER_ROUTE_WEBP);
+    assert_int_equal(parse("/14/7800/6133.mvt", &request), 200);
+    assert_int_equal(request.type, CAMBER_ROUTE_MVT);
+    assert_int_equal(request.ratio, 1);
+}
+
+static void reads_a_picture(void **state) {
+    camber_route_request request;
+    (void)state;
+    assert_int_equal(parse("/static/-8.625,41.25,13.5@-30.5,60/512x256@4x.png", &request), 200);
+    assert_true(request.longitude == -8.625 && request.latitude == 41.25 && request.map_zoom == 13.5);
+    assert_true(request.bearing_deg == -30.5 && request.pitch_deg == 60);
+    assert_int_equal(request.width, 512);
+    assert_int_equal(request.height, 256);
+    assert_int_equal(request.ratio, 4);
+    assert_int_equal(parse("/static/180,-90,24@360/2048x2048.webp", &request), 200);
+    assert_true(request.bearing_deg == 360 && request.pitch_deg == 0);
+}
+
+static void reads_a_name(void **state) {
+    camber_route_request request;
+    (void)state;
+    assert_int_equal(parse("/page/leaflet-LICENSE.txt?1", &request), 200);
+    assert_int_equal(request.name_length, strlen("leaflet-LICENSE.txt"));
+    assert_memory_equal(request.name, "leaflet-LICENSE.txt", request.name_length);
+    assert_int_equal(parse("/", &request), 200);
+    assert_int_equal(request.name_length, 0);
+}
+
+/* Each differs from a path that exists by one thing. */
+static void knows_no_other_path(void **state) {
+    static const char *const paths[] = {"",
+                                        "?",
+                                        "//",
+                                        "x",
+                                        "0/0/0.png",
+                                        "/0/0/0",
+                                        "/0/0/0.",
+                                        "/0/0/0.gif",
+                                        "/0/0/0.PNG",
+                                        "/0/0/0.png/",
+                                        "/0/0/0.pngx",
+                                        "/0/0/0.png%00",
+                                        "/0/0/0.webpwebp",
+                                        "/0/0/1.png",
+                                        "/0/1/0.png",
+                                        "/1/2/0.png",
+                                        "/24/16777216/0.png",
+                                        "/25/0/0.png",
+                                        "/99999999/0/0.png",
+                                        "/4294967296/0/0.png",
+                                        "/18446744073709551616/0/0.png",
+                                        "/1/00/0.png",
+                                        "/01/0/0.png",
+                                        "/1/0/0@0x.png",
+                                        "/1/0/0@5x.png",
+                                        "/1/0/0@x.png",
+                                        "/1/0/0@1.5x.png",
+                                        "/1/0/0@2.png",
+                                        "/1/0/-0.png",
+                                        "/1/0/+0.png",
+                                        "/1/0/ 0.png",
+                                        "/1/0/0x1.png",
+                                        "/1/0/0 .png",
+                                        "/../1/0/0.png",
+                                        "/1/0/../0/0.png",
+                                        "/%31/0/0.png",
+                                        "/%2e%2e/etc/passwd",
+                                        "/../../etc/passwd",
+                                        "/page/",
+                                        "/page/../route.c",
+                                        "/page/..",
+                                        "/page/.hidden",
+                                        "/page/a/b",
+                                        "/page/a%2fb",
+                                        "/page/a\\b",
+                                        "/page/a\n",
+                                        "/dark",
+                                        "/dark/",
+                                        "/dark/dark/0/0/0.png",
+                                        "/dark/health",
+                                        "/dark/metrics",
+                                        "/light/0/0/0.png",
+                                        "/tiles.json/",
+                                        "/tiles.jsonp",
+                                        "/healthz",
+                                        "/static/0,0,0/0x1.png",
+                                        "/static/0,0,0/1x0.png",
+                                        "/static/0,0,0/2049x1.png",
+                                        "/static/0,0,0/1025x1@2x.png",
+                                        "/static/0,0,0/99999999x1@4x.png",
+                                        "/static/0,0,0/1x1.pbf",
+                                        "/static/0,0,0/1X1.png",
+                                        "/static/0,0/1x1.png",
+                                        "/static/180.1,0,0/1x1.png",
+                                        "/static/0,90.1,0/1x1.png",
+                                        "/static/0,0,24.5/1x1.png",
+                                        "/static/0,0,-1/1x1.png",
+                                        "/static/0,0,1e1/1x1.png",
+                                        "/static/nan,0,0/1x1.png",
+                                        "/static/inf,0,0/1x1.png",
+                                        "/static/0x1,0,0/1x1.png",
+                                        "/static/0.,0,0/1x1.png",
+                                        "/static/.5,0,0/1x1.png",
+                                        "/static/--1,0,0/1x1.png",
+                                        "/static/0.1234567890123456,0,0/1x1.png",
+                                        "/static/0,0,0@361/1x1.png",
+                                        "/static/0,0,0@0,86/1x1.png",
+                                        "/static/0,0,0@0,-1/1x1.png",
+                                        "/static/0,0,0@/1x1.png",
+                                        "/static/0,0,0@0,/1x1.png",
+                                        "/static/0,0,0@0,0,0/1x1.png"};
+    camber_route_request request;
+    (void)state;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        if (parse(paths[i], &request) != 404 || request.route != CAMBER_ROUTE_NONE)
+            fail_msg("\"%s\" is a path", paths[i]);
+    }
+    assert_int_equal(parse("/static/0.123456789012345,0,0/1x1.png", &request), 200);
+}
+
+static void takes_two_methods(void **state) {
+    static const char *const methods[] = {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "get", "GETS", ""};
+    camber_route_request request;
+    (void)state;
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+        assert_int_equal(camber_route_parse(&LIMITS, methods[i], "/0/0/0.png", &request), 405);
+}
+
+static void names_types(void **state) {
+    camber_route_type type;
+    (void)state;
+    for (int i = 0; i < CAMBER_ROUTE_TYPES; i++) {
+        assert_true(camber_route_find_type(camber_route_get_ending((camber_route_type)i), &type));
+        assert_int_equal(type, i);
+        assert_non_null(strchr(camber_route_get_media_type(type), '/'));
+    }
+    assert_true(camber_route_find_type("jpeg", &type));
+    assert_int_equal(type, CAMBER_ROUTE_JPEG);
+    assert_false(camber_route_find_type("bin", &type));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_each_route), cmocka_unit_test(reads_a_tile),        cmocka_unit_test(reads_a_picture),
+        cmocka_unit_test(reads_a_name),     cmocka_unit_test(knows_no_other_path), cmocka_unit_test(takes_two_methods),
+        cmocka_unit_test(names_types),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

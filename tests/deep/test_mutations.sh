@@ -131,7 +131,8 @@ if ! cmake -S "$tmp/sources" -B "$tmp/build" -G Ninja "${options[@]}" >"$tmp/bui
     exit 1
 fi
 cp -a "$tmp/build" "$tmp/whole" || exit 1
-validate
+# One share looks at all methods; the others only want to know that they can tell.
+if [ "${share%/*}" = 1 ]; then validate; else validate --method strip; fi
 case $? in
 0) echo "passes: the sources as they are, $(sed -n 's/^1\.\.//p' "$tmp/tap") checks" ;;
 69) echo "skipped: $(cat "$tmp/stderr")"; exit 77 ;;

@@ -347,8 +347,9 @@ refused("an ordinary shapefile", lambda: shapefile("in", GRID.replace(',EXTENSIO
 
 # ---- Memory ----
 
+# Packed as small as it gets, two megabytes: what a reader may take follows the file's size.
 def bomb(head=b"", name="in.geojson.gz"):
-    with gzip.open(name, "wb", 1) as file:
+    with gzip.open(name, "wb", 9) as file:
         file.write(head)
         for _ in range(2048):
             file.write(b" " * 2**20)

@@ -284,7 +284,9 @@ mutant strip kernels/setup.cl "a direction that is not that of the segment befor
 mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
 mutant kite kernels/setup.cl "lines that go on to the next" 'r.strips ? STARTS : CAMBER_POINT_FIRST' \
     'r.strips ? STARTS : 0u'
-mutant strip kernels/bin_count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
+mutant strip kernels/bin_count.cl "large boxes with a tile too few" 'x <= last[j]' 'x < last[j]'
+mutant strip kernels/bin.h "bits of another row" '/ CAMBER_TILE_BITS_COLUMNS * columns' '/ CAMBER_TILE_BITS_ROWS * columns'
+mutant strip kernels/segment.h "a row's last tile without a bit" '(two << (last & 7u))' '(one << (last & 7u))'
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
     'lists[starts[tile + 1] - 1u - own[tile]++]'

@@ -157,7 +157,7 @@ static bool measure_city(bench *b, const char *key, const char *name, json_t *re
 /* ---- Shards ---- */
 
 typedef struct shard_times {
-    double single_ms, single_cpu_ms, slowest_ms, sum_ms, sum_cpu_ms, merge_ms, cat_ms, points;
+    double single_ms, single_cpu_ms, schedule_cpu_ms, slowest_ms, sum_ms, sum_cpu_ms, merge_ms, cat_ms, points;
 } shard_times;
 
 static bool draw_shards(const bench *b, const bench_pyramid *p, shard_times *t) {
@@ -169,10 +169,17 @@ static bool draw_shards(const bench *b, const bench_pyramid *p, shard_times *t) 
     t->single_cpu_ms = bench_number(said, "cpu_ms");
     t->points = bench_number(said, "points_in");
     json_decref(said);
+    char schedule[128];
+    snprintf(schedule, sizeof schedule, "%s/country.schedule", p->folder);
+    const char *const looking[] = {"--threads", "1", "--dry-run", "--schedule", schedule, NULL};
+    if (!(said = bench_pyramid_draw(b, p, "country.pmtiles", looking)))
+        return false;
+    t->schedule_cpu_ms = bench_number(said, "cpu_ms");
+    json_decref(said);
     for (int k = 1; k <= SHARDS; k++) {
         char shard[32];
         snprintf(shard, sizeof shard, "%d/%d", k, SHARDS);
-        const char *const options[] = {"--threads", "1", "--shard", shard, NULL};
+        const char *const options[] = {"--threads", "1", "--schedule", schedule, "--shard", shard, NULL};
         if (!(said = bench_pyramid_draw(b, p, "country.pmtiles", options)))
             return false;
         const double ms = bench_number(said, "wall_ms");
@@ -218,12 +225,13 @@ static bool measure_country(bench *b, json_t *result) {
                       draw_shards(b, &p, &t) && merge_shards(b, &p, &t);
     if (done) {
         bench_result_add_row(
-            result, json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:o, s:o, s:f, s:f, s:o, s:o}", "key", "country", "name",
-                              "a made-up country", "min_zoom", p.min_zoom, "max_zoom", p.max_zoom, "shards",
+            result, json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:o, s:o, s:f, s:f, s:f, s:o, s:o}", "key", "country",
+                              "name", "a made-up country", "min_zoom", p.min_zoom, "max_zoom", p.max_zoom, "shards",
                               (double)SHARDS, "points", t.points, "single_ms", bench_ms(t.single_ms), "single_cpu_ms",
                               bench_ms(t.single_cpu_ms), "slowest_over_mean", t.slowest_ms * SHARDS / t.sum_ms,
-                              "cpu_over_single", t.sum_cpu_ms / t.single_cpu_ms, "merge_ms", bench_ms(t.merge_ms),
-                              "cat_ms", bench_ms(t.cat_ms)));
+                              "cpu_over_single", t.sum_cpu_ms / t.single_cpu_ms, "schedule_over_single",
+                              t.schedule_cpu_ms / t.single_cpu_ms, "merge_ms", bench_ms(t.merge_ms), "cat_ms",
+                              bench_ms(t.cat_ms)));
         const bench_figure slowest = {"country", "slowest of 16 shards", "mean", t.slowest_ms * SHARDS / t.sum_ms,
                                       true},
                            cpu = {"country", "time of 16 shards", "single run", t.sum_cpu_ms / t.single_cpu_ms, true},
@@ -283,12 +291,15 @@ static void print(const json_t *result, FILE *to) {
             print_city(row, to);
             continue;
         }
-        fprintf(to,
-                "%s of %.1f M points, zooms %.0f to %.0f, in %.0f shards: the slowest takes %.2f times the mean, all "
-                "together %.2f times a single run's time; their merge %.0f ms, cat %.0f ms\n",
-                bench_text(row, "name"), bench_number(row, "points") / 1e6, bench_number(row, "min_zoom"),
-                bench_number(row, "max_zoom"), bench_number(row, "shards"), bench_number(row, "slowest_over_mean"),
-                bench_number(row, "cpu_over_single"), bench_number(row, "merge_ms"), bench_number(row, "cat_ms"));
+        fprintf(
+            to,
+            "%s of %.1f M points, zooms %.0f to %.0f, in %.0f shards: the slowest takes %.2f times the mean, all "
+            "together %.2f times a single run's time, and the schedule that they read %.2f; their merge %.0f ms, cat "
+            "%.0f ms\n",
+            bench_text(row, "name"), bench_number(row, "points") / 1e6, bench_number(row, "min_zoom"),
+            bench_number(row, "max_zoom"), bench_number(row, "shards"), bench_number(row, "slowest_over_mean"),
+            bench_number(row, "cpu_over_single"), bench_number(row, "schedule_over_single"),
+            bench_number(row, "merge_ms"), bench_number(row, "cat_ms"));
     }
 }
 

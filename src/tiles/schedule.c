@@ -14,14 +14,16 @@
 
 #include <stdlib.h>
 
-/* The time that a picture and a tile take besides its points, in points; 2026-11-23, two cores of an AMD EPYC. */
-static const double PICTURE_COST = 16e3, TILE_COST = 0.85e3;
+/* The time that a picture and a tile take besides its points, in points; 2026-11-25, two cores of an AMD EPYC. */
+static const double PICTURE_COST = 12e3, TILE_COST = 1.6e3;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
-/* The time to take a point from the file of features, in points that are drawn. */
-static const double READ_COST = 0.15;
-/* A zoom is wide if one metatile has more of its points than this share. */
-static const double WIDE_SHARE = 0.125;
+/* The time to take a point from the file of features, in points that are drawn; and to look whether deep tiles have it,
+ * for a part that goes on from wide zooms to deep ones, and so holds all points. */
+static const double READ_COST = 0.15, LOOK_COST = 0.2;
+/* A zoom is wide if one metatile has more of its points than this share. There a point takes so many times as long:
+ * thousands lie in one pixel, and the network has all lines (2026-11-25, a country of 10 million points). */
+static const double WIDE_SHARE = 0.125, WIDE_COST = 1.5;
 enum { CUT_STEPS = 60 };
 
 static unsigned count_tiles(uint64_t tiles) {
@@ -199,7 +201,7 @@ typedef struct walk {
     size_t *order; /* of the tasks: wide ones, then deep ones */
     size_t wide;   /* so many are wide */
     int deepest;   /* zoom */
-    double read_all;
+    double read_all, look_all;
 } walk;
 
 static int compare_deep(const void *left, const void *right) {
@@ -220,6 +222,7 @@ static void measure(walk *w) {
             w->wide = end;
         w->deepest = s->tasks[first].zoom;
         w->read_all = READ_COST * (double)all;
+        w->look_all = LOOK_COST * (double)all;
     }
 }
 
@@ -256,8 +259,10 @@ static uint64_t fill(const walk *w, double most, uint32_t *parts) {
     bool empty = true;
     for (size_t i = 0; i < w->schedule->count; i++) {
         const camber_tile_task *task = w->schedule->tasks + w->order[i];
-        const double reads = i >= w->wide && task->zoom == w->deepest ? READ_COST * (double)task->points : 0.0;
-        const double cost = camber_task_cost(task) + reads;
+        const double more = i < w->wide ? WIDE_COST - 1.0 : task->zoom == w->deepest ? READ_COST : 0.0;
+        const double cost = camber_task_cost(task) + more * (double)task->points;
+        if (i == w->wide && !empty)
+            sum += w->look_all;
         if (sum + cost > most && !empty) {
             part++;
             sum = i < w->wide ? w->read_all : 0.0;
@@ -272,9 +277,9 @@ static uint64_t fill(const walk *w, double most, uint32_t *parts) {
 
 /* Finds the least time that the longest part takes. */
 static double find_most(const walk *w, uint32_t shards) {
-    double low = 0.0, high = w->read_all;
+    double low = 0.0, high = w->read_all + w->look_all;
     for (size_t i = 0; i < w->schedule->count; i++)
-        high += (1.0 + READ_COST) * camber_task_cost(w->schedule->tasks + i);
+        high += (WIDE_COST + READ_COST) * camber_task_cost(w->schedule->tasks + i);
     for (int i = 0; i < CUT_STEPS; i++) {
         const double middle = 0.5 * (low + high);
         if (fill(w, middle, NULL) <= shards)

@@ -200,6 +200,11 @@ def archive(rows, data, leaves=(), metadata=b'{"name":"x"}', **changes):
     return HEADER.pack(*(fields[name] for name in FIELDS)) + root + about + leaf + data
 
 
+def patched(file, at, value):
+    """The file with another offset in its header."""
+    return file[:at] + struct.pack("<Q", value) + file[at + 8:]
+
+
 def broken_pmtiles():
     """(what must be said, the file)"""
     tile = png(0)
@@ -208,7 +213,15 @@ def broken_pmtiles():
     two = tile + tile
     bad = tile[:-20] + b"x" + tile[-19:]
     yield None, archive(good, tile)
-    yield "begins at 0", archive(good, tile, leaves_size=0) [:40] + bytes(8) + archive(good, tile)[48:]
+    yield "section of leaf directories begins at 0", patched(archive(good, tile), 40, 0)
+    yield "section of tiles begins at 0", archive(good, tile, tiles=0)
+    yield "a directory: its compression", archive(good, tile, root=0)
+    yield "its metadata: its compression", patched(archive(good, tile), 24, 0)
+    yield "its metadata: it lies past", patched(archive(good, tile), 24, 10 ** 6)
+    yield "section of tiles ends behind the file", archive(good, tile, tiles_size=10 ** 6)
+    yield "and the section of leaf directories overlap", patched(archive(good, tile, leaves_size=10), 40, 130)
+    yield "behind the first 16384 bytes", archive(good, tile, root=20000).ljust(20000, b"x") + directory(good)
+    yield "clustered is 2", archive(good, tile, clustered=2)
     yield "its sections make", archive(good, tile) + b"x"
     yield "ends behind the section of tiles", archive([(0, 1, n, 0), (1, 4, n, 7)], tile)
     yield "order of a clustered archive", archive([(0, 1, n, n), (1, 4, n, 0)], two)
@@ -219,7 +232,10 @@ def broken_pmtiles():
     yield "lowest zoom is said", archive(good[1:], tile, addressed=4, entries=1)
     yield "highest zoom is said", archive(good, tile, high=2)
     yield "centre's zoom", archive(good, tile, zoom=2)
+    yield "centre's zoom", archive(good[1:], tile, addressed=4, entries=1, low=1)
     yield "have no area", archive(good, tile, east=-1800000000)
+    yield "have no area", archive(good, tile, north=-850000000)
+    yield "centre 20,0 lies outside the bounds", archive(good, tile, east=100000000, longitude=200000000)
     yield "leave the world", archive(good, tile, east=1900000000)
     yield "outside the bounds", archive(good, tile, west=10000000, south=10000000, longitude=20000000,
                                         latitude=20000000)
@@ -244,6 +260,7 @@ def broken_pmtiles():
     yield "are in none", archive(pointer, tile, [leaf, b"rest"], addressed=5, entries=2, contents=1)
     yield "begins behind it", archive([(0, 1, n, 0), (2, 0, len(leaf), 0)], tile, [leaf], addressed=5, entries=2,
                                       contents=1)
+    yield "outside the section of leaves", archive([(0, 1, n, 0), (1, 0, len(leaf), 50)], tile, [leaf])
     yield "lies past the end", archive([(0, 0, 99, 10 ** 6)], tile)
     inner = directory([(1, 0, len(leaf), 0)])
     yield "lead to others", archive([(0, 1, n, 0), (1, 0, len(inner), len(leaf))], tile, [leaf, inner], addressed=5,

@@ -22,7 +22,7 @@ HEAD_LINES = 100  # a longer file starts with a comment
 SIZES_KB = {"README.md": 8, "ARCHITECTURE.md": 12, "CHANGELOG.md": 3, "CONTRIBUTING.md": 3}
 DOCS_KB = 10  # each document of docs/
 
-CODE = ("src", "kernels", "shaders", "tests", "bench")
+CODE = ("src", "kernels", "shaders", "tests", "bench", "python")
 TYPED = ("src/", "kernels/", "tests/fixtures/", "bench/")  # where the name of a type is unique
 SKIPPED = {"corpus", "regressions", "data", "golden", "results", "__pycache__"}  # folders of data
 C_LIKE = (".c", ".h", ".cl")

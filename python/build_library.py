@@ -98,7 +98,7 @@ def locate():
     if build:
         with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:
             tree = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", file.read(), re.M).group(1)
-        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), True
+        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), False
     libraries = pkg_config("--variable=libdir")
     return pkg_config("--variable=includedir"), libraries, not libraries.startswith("/usr/lib")
 

@@ -22,7 +22,7 @@ HEAD_LINES = 100  # a longer file starts with a comment
 SIZES_KB = {"README.md": 8, "ARCHITECTURE.md": 12, "CHANGELOG.md": 3, "CONTRIBUTING.md": 3}
 DOCS_KB = 10  # each document of docs/
 
-CODE = ("src", "kernels", "shaders", "tests", "bench")
+CODE = ("src", "kernels", "shaders", "tests", "bench", "python")
 TYPED = ("src/", "kernels/", "tests/fixtures/", "bench/")  # where the name of a type is unique
 SKIPPED = {"corpus", "regressions", "data", "golden", "results", "__pycache__"}  # folders of data
 C_LIKE = (".c", ".h", ".cl")
@@ -456,8 +456,9 @@ def list_documents(root):
         for name in sorted(names):
             if name.endswith(".md"):
                 yield os.path.relpath(os.path.join(folder, name), root), DOCS_KB
-    if os.path.isfile(os.path.join(root, "src/cli/camber.1")):
-        yield "src/cli/camber.1", None
+    for page in ("src/cli/camber.1", "src/camber.3"):
+        if os.path.isfile(os.path.join(root, page)):
+            yield page, None
 
 
 def is_breakable(line):
@@ -479,7 +480,53 @@ def check_documents(tree):
                               "break the line")
 
 
-RULES = (check_types, check_guards, check_layers, check_includes, check_links, check_kernels, check_words,
+# ---- Packages ----
+
+# Each thing that CMake looks for -> the package that has it: Debian's, RPM's, Homebrew's. None: it needs none of its own.
+LIBRARIES = {
+    "PNG": ("libpng-dev", "pkgconfig(libpng)", "libpng"), "ZLIB": ("zlib1g-dev", "pkgconfig(zlib)", "zlib"),
+    "OpenCL": ("ocl-icd-opencl-dev", "pkgconfig(OpenCL)", "opencl-icd-loader"), "Threads": None, "PkgConfig": None,
+    "jansson": ("libjansson-dev", "pkgconfig(jansson)", "jansson"), "GDAL": ("libgdal-dev", "pkgconfig(gdal)", "gdal"),
+    "SQLite3": ("libsqlite3-dev", "pkgconfig(sqlite3)", "sqlite"), "cmocka": None,
+    "libprotobuf-c": ("libprotobuf-c-dev", "pkgconfig(libprotobuf-c)", "protobuf-c"),
+    "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
+    "libwebp": ("libwebp-dev", "pkgconfig(libwebp)", "webp"),
+    "libmicrohttpd": ("libmicrohttpd-dev", "pkgconfig(libmicrohttpd)", "libmicrohttpd"),
+}
+# Where a release's version stands besides CMakeLists.txt, and the file's place in LIBRARIES.
+PACKAGINGS = (
+    ("packaging/debian/control", None, 0), ("packaging/camber.spec", r"^Version: *(\S+)", 1),
+    ("packaging/camber.rb", r"camber-([\d.]+)\.tar", 2), ("packaging/debian/changelog", r"\Acamber \(([\d.]+)-", None),
+    ("pyproject.toml", r'^version = "(.*)"', None), ("src/camber.3", r'^\.TH .* "camber (\S+)"', None),
+    ("src/cli/camber.1", r'^\.TH .* "camber (\S+)"', None))
+
+
+def check_packages(tree):
+    """Packages have the version and the libraries that CMakeLists.txt has."""
+    if not tree.has("packaging/debian/control"):
+        return
+    cmake = next(file.text for file in tree.files if file.path == "CMakeLists.txt")
+    version = re.search(r"^project\(camber VERSION (\S+)", cmake, re.M).group(1)
+    used = set(re.findall(r"\bfind_package\((\w+)", cmake))
+    used |= set(re.findall(r"\bpkg_check_modules\(\w+ .*IMPORTED_TARGET ([a-z][\w-]*)", cmake))
+    used |= set(re.findall(r"^camber_encoder_library\(\w+ (\S+)", cmake, re.M))
+    for name in sorted(used - set(LIBRARIES)):
+        yield Finding("CMakeLists.txt", 1, "%s is new to the packages" % name,
+                      "say in LIBRARIES of tests/lint/lint_tree.py which packages have it, and add them")
+    for path, pattern, place in PACKAGINGS:
+        with open(os.path.join(tree.root, path), encoding="utf-8") as file:
+            text = file.read()
+        found = re.search(pattern, text, re.M) if pattern else None
+        if pattern and (not found or found.group(1) != version):
+            yield Finding(path, 1, "the version is %s" % (found.group(1) if found else "not told"),
+                          "make it CMake's, %s" % version)
+        for name in sorted(used & set(LIBRARIES)) if place is not None else ():
+            package = LIBRARIES[name] and LIBRARIES[name][place]
+            if package and not re.search(r"(?<![\w-])%s(?![\w-])" % re.escape(package), text):
+                yield Finding(path, 1, "it does without %s, where CMake wants %s" % (package, name), "add it")
+
+
+RULES = (check_packages, check_types, check_guards, check_layers, check_includes, check_links, check_kernels, check_words,
          check_comments, check_documents)
 
 

@@ -2,6 +2,8 @@
 # The documents' recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
 #
 #   recipes.sh [DEBIAN...]      bookworm and trixie where none is named; RECIPES="build ci" chooses from build, core, ci, demo
+#   RECIPES=packages recipes.sh the packages that ./dev package makes here, in a fresh system of this Debian: installed,
+#                               the documents' first examples run, all removed
 #
 # A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions,
 # whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with
@@ -108,8 +110,45 @@ ROADS
         echo 'test -s build/santa_cruz.png && test -s build/santa_cruz_downtown.png'
         echo 'cmake --install build && ldconfig && camber --version'
         ;;
+    packages)
+        echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb pocl-opencl-icd gcc libc6-dev pkg-config curl'
+        echo 'export POCL_CACHE_DIR=/root/here/pocl'
+        echo 'ls /usr/lib/*/camber-kernels/*.bin >/root/here/kernels && test ! -e /root/.cache'
+        # The tool, C, Python, the server.
+        block build | grep '^camber ' | sed 's|tests/data|/checkout/tests/data|'
+        echo 'od -An -c -N4 city.png | grep -q "P   N   G"'
+        echo 'gcc /checkout/examples/hello.c -o hello $(pkg-config --cflags --libs camber) -lm && ./hello'
+        echo 'gcc /checkout/examples/map.c -o map $(pkg-config --cflags --libs camber-map) -lm && ./map /checkout/tests/data/santa_cruz/osm.mbtiles'
+        echo "python3 - <<'PYTHON'"
+        block python
+        echo 'PYTHON'
+        echo 'od -An -c -N4 walk.png | grep -q "P   N   G"'
+        echo 'port=$((20000 + RANDOM % 20000))'
+        echo 'camber serve /checkout/tests/data/santa_cruz/osm.mbtiles --listen 127.0.0.1:$port & server=$!'
+        echo 'curl -fsS --retry 100 --retry-delay 1 --retry-all-errors http://127.0.0.1:$port/health && kill -0 $server'
+        echo 'curl -fsS http://127.0.0.1:$port/12/659/1593.png | od -An -c -N4 | grep -q "P   N   G"'
+        echo 'kill $server && wait $server'
+        echo 'ls /usr/share/man/man1/camber.1.gz /usr/share/man/man1/camber-tiles.1.gz /usr/share/man/man1/camber-serve.1.gz /usr/share/man/man3/camber.3.gz'
+        echo 'rm -rf /root/here/*'
+        echo "apt-get purge -y \$(dpkg-query -W -f '\${Package}\\n' '*camber*')"
+        # Nothing is left that was camber's, wherever it may be.
+        echo 'find / -xdev -path /checkout -prune -o -path /proc -prune -o -path /var/cache/apt -prune -o -name "*camber*" -print >/left'
+        echo 'cat /left && test ! -s /left && test -z "$(ls /tmp)"'
+        ;;
     *) echo "no recipe $1" >&2; exit 2 ;;
     esac
+}
+
+# Makes the packages here, and looks at what programs will be linked with; they lie in the checkout then.
+build_packages() {
+    local package=${CAMBER_BUILD:-$source/build}/package libraries
+    mkdir "$run/checkout/debs"
+    [ -z "${CAMBER_DEBS:-}" ] || { cp "$CAMBER_DEBS"/*.deb "$run/checkout/debs"; return; } # made before
+    (cd "$source" && ./dev package) || return 1
+    libraries=$(echo "$package"/camber-*/obj-*/src)
+    bash "$source/packaging/abi.sh" soname "$libraries" || return 1
+    bash "$source/packaging/abi.sh" check "$libraries" "$source/src" || [ $? = 77 ] || return 1
+    cp "$package"/*.deb "$run/checkout/debs"
 }
 
 [ "$(id -u)" = 0 ] || skip "the documents' recipes: not root"
@@ -129,6 +168,13 @@ git -C "$run/checkout" add -A
 git -C "$run/checkout" -c user.name=camber -c user.email=camber@example.org commit -qm "as it is now"
 chown -R root: "$run/checkout"
 
+if [ "${RECIPES:-}" = packages ]; then
+    debian=$(. /etc/os-release && [ "$ID" = debian ] && echo "$VERSION_CODENAME") || skip "the packages: this is no Debian"
+    command -v dpkg-buildpackage >/dev/null && command -v dh_python3 >/dev/null ||
+        skip "the packages: no dpkg-buildpackage or dh_python3 (Debian: dpkg-dev, debhelper, dh-python)"
+    build_packages || { echo "FAILED: the packages do not build"; exit 1; }
+    set -- "$debian"
+fi
 [ $# -gt 0 ] || set -- bookworm trixie
 failures=0
 for debian; do
@@ -142,7 +188,7 @@ for debian; do
     for recipe in ${RECIPES:-build core ci demo}; do
         begun=$SECONDS
         script_of "$recipe" >"$run/$recipe"
-        if [ "$(block "$recipe" | wc -l)" != 0 ] && inside in_root "$debian" "$run/$debian.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
+        if { [ "$recipe" = packages ] || [ "$(block "$recipe" | wc -l)" != 0 ]; } && inside in_root "$debian" "$run/$debian.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
             echo "$debian: $recipe: works, $((SECONDS - begun)) s"
         else
             failures=$((failures + 1))

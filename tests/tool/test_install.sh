@@ -16,6 +16,17 @@ cp -a "$folder/usr" "$folder/installed"
 for file in LICENSE README.md CHANGELOG.md docs/glossary.md; do
     cmp "$source/$file" "$folder/usr/share/doc/camber/$file"
 done
+# Man pages: a verb's own has all options that camber.1 has in the verb's section, and a page of the library its headers.
+for verb in tiles serve; do
+    page=$folder/usr/share/man/man1/camber-$verb.1
+    [ "$map" = ON ] && [ -e "$page" ] || continue
+    grep -q "^\.B camber $verb\$" "$page" && [ "$(grep -c '^\.BR \\-\\-' "$page")" -gt 5 ]
+    diff <(sed -n "/^\.SS $(case $verb in tiles) echo Tiles ;; *) echo Serving ;; esac)\$/,/^\.S[SH]/p" "$source/src/cli/camber.1" | grep '^\.BR \\-') \
+        <(sed -n '/^\.SH OPTIONS/,/^\.PP$/p' "$page" | grep '^\.BR \\-')
+done
+for header in "$source"/src/camber*.h; do
+    grep -q "^\.B $(basename "$header")\$" "$folder/usr/share/man/man3/camber.3"
+done
 # Completion, where the shells look for it.
 bash -n "$folder/usr/share/bash-completion/completions/camber"
 grep -qx '#compdef camber' "$folder/usr/share/zsh/site-functions/_camber"

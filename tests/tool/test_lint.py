@@ -239,6 +239,44 @@ class Lint(unittest.TestCase):
         self.append("docs/glossary.md", "- word\n" * 1500)
         self.finds("docs/glossary.md:1", "10 are allowed")
 
+    # ---- Packages ----
+
+    def write_packages(self):
+        self.write("CMakeLists.txt", "project(camber VERSION 1.2.3 LANGUAGES C)\nfind_package(GDAL REQUIRED)\n"
+                                     "pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)\n")
+        for path, text in {
+                "packaging/debian/control": "Build-Depends: libgdal-dev, libjansson-dev\n",
+                "packaging/debian/changelog": "camber (1.2.3-1) unstable\n",
+                "packaging/camber.spec": "Version: 1.2.3\nBuildRequires: pkgconfig(gdal) pkgconfig(jansson)\n",
+                "packaging/camber.rb": 'url "camber-1.2.3.tar.gz"\ndepends_on "gdal"\ndepends_on "jansson"\n',
+                "pyproject.toml": 'version = "1.2.3"\n', "src/camber.3": '.TH CAMBER 3 "x" "camber 1.2.3"\n',
+                "src/cli/camber.1": '.TH CAMBER 1 "x" "camber 1.2.3"\n'}.items():
+            self.write(path, text)
+
+    def test_versions_of_packages(self):
+        self.write_packages()
+        self.assertEqual(list(lint_tree.check_packages(lint_tree.Tree(self.root))), [])
+        for path in ("packaging/debian/changelog", "packaging/camber.spec", "packaging/camber.rb", "pyproject.toml",
+                     "src/camber.3", "src/cli/camber.1"):
+            self.write_packages()
+            with open(os.path.join(self.root, path), encoding="utf-8") as file:
+                self.write(path, file.read().replace("1.2.3", "1.2.4"))
+            self.finds(path + ":1", "the version is 1.2.4")
+
+    def test_libraries_of_packages(self):
+        for path, name in (("packaging/debian/control", "libgdal-dev"), ("packaging/camber.spec", "pkgconfig(jansson)"),
+                           ("packaging/camber.rb", "gdal")):
+            self.write_packages()
+            with open(os.path.join(self.root, path), encoding="utf-8") as file:
+                self.write(path, file.read().replace(name, "x" + name))
+            self.finds(path + ":1", "it does without " + name)
+
+    def test_a_new_library(self):
+        self.write_packages()
+        with open(os.path.join(self.root, "CMakeLists.txt"), encoding="utf-8") as file:
+            self.write("CMakeLists.txt", file.read() + "find_package(Zebra REQUIRED)\n")
+        self.finds("CMakeLists.txt:1", "Zebra is new")
+
     # ---- The program ----
 
     def test_program(self):

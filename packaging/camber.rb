@@ -1,0 +1,43 @@
+# Homebrew's formula of camber, for Linux. tests/lint/lint_tree.py holds version and libraries to CMake's.
+class Camber < Formula
+  desc "Line renderer for maps: OpenCL tessellates, exact pixels"
+  homepage "https://camber.example.org/"
+  url "https://camber.example.org/camber-0.1.0.tar.gz"
+  sha256 "0000000000000000000000000000000000000000000000000000000000000000" # of the release's archive
+  license "MIT"
+
+  depends_on "cmake" => :build
+  depends_on "ninja" => :build
+  depends_on "opencl-headers" => :build
+  depends_on "pkgconf" => :build
+  depends_on "gdal"
+  depends_on "jansson"
+  depends_on "libdeflate"
+  depends_on "libmicrohttpd"
+  depends_on "libpng"
+  depends_on :linux
+  depends_on "mesa"
+  depends_on "opencl-icd-loader"
+  depends_on "pocl"
+  depends_on "protobuf-c"
+  depends_on "sqlite"
+  depends_on "webp"
+  depends_on "zlib"
+
+  def install
+    system "cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCAMBER_TESTS=OFF", "-DCAMBER_WARM=OFF",
+           "-DCAMBER_LIBDEFLATE=ON", "-DCAMBER_WEBP=ON", "-DCAMBER_SERVE=ON", *std_cmake_args
+    system "cmake", "--build", "build"
+    system "cmake", "--install", "build"
+  end
+
+  def post_install
+    system bin/"camber", "info", "--warm"
+  end
+
+  test do
+    (testpath/"line.geojson").write '{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}'
+    system bin/"camber", "render", "line.geojson", "-o", "line.png", "--size", "64x64"
+    assert_path_exists testpath/"line.png"
+  end
+end

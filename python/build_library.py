@@ -1,0 +1,119 @@
+"""The extension camber._library: cffi reads the public headers, and the compiler checks what it has read.
+
+No declaration is copied, so a header that changes is followed, or does not build. The headers and the libraries are
+those that pkg-config finds, or those of a build folder that CAMBER_BUILD names, and of the tree that it was built from.
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+from cffi import FFI
+
+HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_map.h", "camber_tiles.h")
+
+# Rows of a picture go to an array without Python, and so without its lock.
+HELPERS = """
+typedef struct camber_python_picture {
+    uint8_t *rgba;
+    size_t stride_bytes;
+    uint32_t width;
+    bool straight; /* alpha is not in the colours */
+} camber_python_picture;
+bool camber_python_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
+void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count);
+"""
+
+SOURCE = """
+#include <string.h>
+""" + "".join("#include <%s>\n" % name for name in HEADERS) + HELPERS + """
+bool camber_python_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const camber_python_picture *picture = user;
+    for (uint32_t y = 0; y < row_count; y++) {
+        const uint8_t *from = rgba + 4 * (size_t)picture->width * y;
+        uint8_t *to = picture->rgba + picture->stride_bytes * (first_row + y);
+        memcpy(to, from, 4 * (size_t)picture->width);
+        for (uint32_t x = 0; picture->straight && x < picture->width; x++, from += 4, to += 4)
+            for (int c = 0; c < 3 && from[3] != 255 && from[3] != 0; c++) {
+                const unsigned straight = (from[c] * 255u + from[3] / 2) / from[3];
+                to[c] = (uint8_t)(straight < 255 ? straight : 255);
+            }
+    }
+    return true;
+}
+
+void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count) {
+    for (size_t i = 0; i < count; i++, from += 4, to += 4) {
+        for (int c = 0; c < 3; c++)
+            to[c] = (uint8_t)((from[c] * from[3] + 127) / 255);
+        to[3] = from[3];
+    }
+}
+"""
+
+# The C data interface of Arrow, as its specification has it.
+ARROW = """
+struct ArrowSchema {
+    const char *format, *name, *metadata;
+    int64_t flags, n_children;
+    struct ArrowSchema **children, *dictionary;
+    void (*release)(struct ArrowSchema *);
+    void *private_data;
+};
+struct ArrowArray {
+    int64_t length, null_count, offset, n_buffers, n_children;
+    const void **buffers;
+    struct ArrowArray **children, *dictionary;
+    void (*release)(struct ArrowArray *);
+    void *private_data;
+};
+"""
+
+CALLBACKS = 'extern "Python" void camber_python_log(void *user, camber_log_level level, const char *message);'
+
+
+def declarations(text):
+    """A header as cffi reads it: without comments, directives and constants that are no whole numbers."""
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+    text = re.sub(r"^#ifdef __cplusplus.*?^#endif", "", text, flags=re.M | re.S)
+    text = re.sub(r"^(#define \w+ \w+?)u$", r"\1", text, flags=re.M)
+    text = re.sub(r"^#(?!define \w+ (?:\d+|0x[0-9a-f]+)$).*\n", "", text, flags=re.M)
+    return text.replace("CAMBER_API ", "")
+
+
+def pkg_config(*arguments):
+    command = [os.environ.get("PKG_CONFIG", "pkg-config"), *arguments, "camber-map"]
+    try:
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit("camber: %s failed: install the C library with its headers first (Debian: libcamber-dev), or name a "
+                 "build folder by CAMBER_BUILD\n%s" % (shlex.join(command), getattr(error, "stderr", "")))
+
+
+def locate():
+    """(folder of the headers, folder of the libraries, whether the linker needs to be told where that is)"""
+    build = os.environ.get("CAMBER_BUILD")
+    if build:
+        with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:
+            tree = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", file.read(), re.M).group(1)
+        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), False
+    libraries = pkg_config("--variable=libdir")
+    return pkg_config("--variable=includedir"), libraries, not libraries.startswith("/usr/lib")
+
+
+def make_builder():
+    include, libraries, is_elsewhere = locate()
+    made = FFI()
+    for name in HEADERS:
+        with open(os.path.join(include, name), encoding="utf-8") as file:
+            made.cdef(declarations(file.read()))
+    made.cdef(re.sub(r"/\*.*?\*/", "", HELPERS) + ARROW + CALLBACKS)
+    made.set_source("camber._library", ARROW + SOURCE, include_dirs=[include], library_dirs=[libraries],
+                    libraries=["camber-map", "camber"], runtime_library_dirs=[libraries] if is_elsewhere else [],
+                    extra_compile_args=["-std=c11"])
+    return made
+
+
+builder = make_builder()

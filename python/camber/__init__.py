@@ -1,0 +1,15 @@
+"""camber: lines of maps, drawn by OpenCL kernels into arrays. docs/python.md is the manual."""
+
+from ._core import (ArgumentError, Context, DeviceError, Error, FileError, InputError, LimitError, NotFoundError,
+                    OutOfMemoryError, devices, lib as _lib, version as _version)
+from ._draw import Mesh, Network, draw, encode, tessellate
+from ._map import Map, render, styles, tiles
+
+__version__ = _version()
+__all__ = ["ArgumentError", "Context", "DeviceError", "Error", "FileError", "InputError", "LimitError", "Map", "Mesh",
+           "Network", "NotFoundError", "OutOfMemoryError", "devices", "draw", "encode", "render", "styles",
+           "tessellate", "tiles"]
+
+if __version__.split(".")[:2] != [str(_lib.CAMBER_VERSION_MAJOR), str(_lib.CAMBER_VERSION_MINOR)]:
+    raise ImportError("camber was built for version %d.%d of its library, and finds %s; build it again"
+                      % (_lib.CAMBER_VERSION_MAJOR, _lib.CAMBER_VERSION_MINOR, __version__))

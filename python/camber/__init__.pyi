@@ -1,0 +1,100 @@
+import os
+from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy
+import numpy.typing
+
+_Array = numpy.typing.NDArray[Any]
+_Picture = numpy.typing.NDArray[numpy.uint8]
+_Path = Union[str, bytes, "os.PathLike[str]"]
+# An array of n x 2, a list of such arrays, GeoArrow, geometries of Shapely, a GeoSeries or a GeoDataFrame.
+_Lines = Any
+_Color = Union[str, Sequence[float]]
+_Colors = Union[_Color, Sequence[_Color], _Array]
+_Widths = Union[float, Sequence[float], _Array]
+_Size = Tuple[int, int]
+
+__version__: str
+
+class Error(Exception): ...
+class ArgumentError(Error, ValueError): ...
+class InputError(Error, ValueError): ...
+class NotFoundError(Error, FileNotFoundError): ...
+class DeviceError(Error, RuntimeError): ...
+class FileError(Error, OSError): ...
+class LimitError(Error, OverflowError): ...
+class OutOfMemoryError(Error, MemoryError): ...
+
+class Context:
+    def __init__(self, device: Optional[str] = None, *, draw: str = "auto", memory: int = 0,
+                 cache_dir: Optional[_Path] = None, root: Optional[_Path] = None, allow_remote: bool = False,
+                 allow_vrt: bool = False) -> None: ...
+    @property
+    def device(self) -> dict[str, Any]: ...
+
+def devices() -> list[dict[str, Any]]: ...
+
+def draw(points: _Lines, offsets: Optional[Any] = None, *, width: _Widths = 8, color: _Colors = "#336",
+         size: _Size = (1024, 1024), rows: Optional[Any] = None, background: Optional[_Color] = None,
+         overlap: str = "flatten", opacity: float = 1, pitch: float = 0, keep_open: bool = False,
+         premultiplied: bool = False, out: Optional[_Picture] = None, context: Optional[Context] = None,
+         join: str = ..., cap: str = ..., miter_limit: float = ..., offset: float = ..., gap: float = ...,
+         blur: float = ..., dash: Optional[Sequence[float]] = ...) -> _Picture: ...
+
+class Mesh(NamedTuple):
+    method: str
+    strips: bool
+    records: _Array
+    vertices: _Array
+    indices: _Array
+
+def tessellate(points: _Lines, offsets: Optional[Any] = None, *, width: _Widths = 8, rows: Optional[Any] = None,
+               method: str = "strip", fan_tolerance: float = 0, keep_open: bool = False,
+               context: Optional[Context] = None, join: str = ..., cap: str = ..., miter_limit: float = ...,
+               offset: float = ..., gap: float = ..., blur: float = ...,
+               dash: Optional[Sequence[float]] = ...) -> Mesh: ...
+
+class Network:
+    bounds: Tuple[float, float, float, float]
+    def __init__(self, points: _Lines, offsets: Optional[Any] = None, *, rows: Optional[Any] = None,
+                 importance: Optional[_Array] = None, keep_open: bool = False, dashed: bool = False,
+                 context: Optional[Context] = None) -> None: ...
+    def draw(self, *, center: Optional[Sequence[float]] = None, scale: Optional[float] = None, bearing: float = 0,
+             pitch: float = 0, simplify: float = 0, width: _Widths = 8, color: _Colors = "#336",
+             size: _Size = (1024, 1024), background: Optional[_Color] = None, overlap: str = "flatten",
+             opacity: float = 1, premultiplied: bool = False, out: Optional[_Picture] = None, join: str = ...,
+             cap: str = ..., miter_limit: float = ..., offset: float = ..., gap: float = ..., blur: float = ...,
+             dash: Optional[Sequence[float]] = ...) -> _Picture: ...
+
+def encode(picture: _Picture, format: str = "png", *, quality: Optional[int] = None, premultiplied: bool = False,
+           context: Optional[Context] = None) -> bytes: ...
+
+def styles() -> list[str]: ...
+
+class Map:
+    def __init__(self, *inputs: _Path, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
+                 layer: Optional[str] = None, where: Optional[str] = None,
+                 context: Optional[Context] = None) -> None: ...
+    def draw(self, *, center: Optional[Sequence[float]] = None, zoom: Optional[float] = None,
+             bbox: Optional[Sequence[float]] = None, bearing: Optional[float] = None, pitch: Optional[float] = None,
+             size: _Size = (1024, 1024), ratio: float = 1, simplify: float = 0.1, method: str = "strip",
+             premultiplied: bool = False, out: Optional[_Picture] = None) -> _Picture: ...
+    def lines(self, *, center: Optional[Sequence[float]] = None, zoom: Optional[float] = None,
+              bbox: Optional[Sequence[float]] = None, bearing: Optional[float] = None, size: _Size = (1024, 1024),
+              ratio: float = 1, simplify: float = 0.1) -> Tuple[_Array, _Array]: ...
+    @property
+    def attribution(self) -> Optional[str]: ...
+    @property
+    def bounds(self) -> Optional[Tuple[float, float, float, float]]: ...
+    def tiles(self, output: _Path, *, min_zoom: int = 0, max_zoom: int = 14, bbox: Optional[Sequence[float]] = None,
+              tile_size: int = 256, ratio: float = 1, format: str = "png", quality: Optional[int] = None,
+              simplify: float = 0.1, threads: int = 0, keep_empty: bool = False, force: bool = False,
+              resume: bool = False, dry_run: bool = False, name: Optional[str] = None,
+              description: Optional[str] = None, attribution: Optional[str] = None) -> dict[str, Any]: ...
+
+def render(*inputs: _Path, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
+           layer: Optional[str] = None, where: Optional[str] = None, context: Optional[Context] = None,
+           **view: Any) -> _Picture: ...
+def tiles(*inputs: _Path, output: _Path, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
+          layer: Optional[str] = None, where: Optional[str] = None, context: Optional[Context] = None,
+          **pyramid: Any) -> dict[str, Any]: ...

@@ -1,0 +1,285 @@
+"""Contexts: a device, a lock, and the log. Every call of the library goes through here.
+
+A context serves one thread at a time, so each has a lock, which a call holds while Python's own lock is free. Objects
+that Python drops while another thread is in a call wait in a queue until that call ends.
+"""
+
+import atexit
+import collections
+import functools
+import logging
+import os
+import threading
+
+from ._library import ffi, lib
+
+logger = logging.getLogger("camber")
+
+
+class Error(Exception):
+    """A call of the library failed. The text is the library's message: what failed, where, and the cure."""
+
+
+class ArgumentError(Error, ValueError):
+    """A value is out of range or does not parse."""
+
+
+class InputError(Error, ValueError):
+    """Input is not what it claims to be, or is cut off."""
+
+
+class NotFoundError(Error, FileNotFoundError):
+    """There is no such file."""
+
+
+class DeviceError(Error, RuntimeError):
+    """No usable device, or a kernel that does not build."""
+
+
+class FileError(Error, OSError):
+    """Reading or writing failed."""
+
+
+class LimitError(Error, OverflowError):
+    """More than a buffer, a picture or a budget can hold."""
+
+
+class OutOfMemoryError(Error, MemoryError):
+    """An allocation failed, or a budget refused it."""
+
+
+ERRORS = {
+    lib.CAMBER_ERROR_MEMORY: OutOfMemoryError,
+    lib.CAMBER_ERROR_ARGUMENT: ArgumentError,
+    lib.CAMBER_ERROR_INPUT: InputError,
+    lib.CAMBER_ERROR_NOT_FOUND: NotFoundError,
+    lib.CAMBER_ERROR_DEVICE: DeviceError,
+    lib.CAMBER_ERROR_IO: FileError,
+    lib.CAMBER_ERROR_LIMIT: LimitError,
+}
+LEVELS = {lib.CAMBER_LOG_ERROR: logging.DEBUG, lib.CAMBER_LOG_WARNING: logging.WARNING,
+          lib.CAMBER_LOG_INFO: logging.INFO}
+
+
+def text_of(pointer):
+    """The text of a C string; None of NULL."""
+    return None if pointer == ffi.NULL else ffi.string(pointer).decode("utf-8", "replace")
+
+
+def version():
+    return text_of(lib.camber_version())
+
+
+def _is_object(value):
+    """Whether this is a pointer to an object of the library, which no header describes."""
+    kind = ffi.typeof(value) if isinstance(value, ffi.CData) else None
+    return bool(kind and kind.kind == "pointer" and kind.item.kind == "struct" and kind.item.fields is None)
+
+
+class _Log:
+    """The last message of a failure, which the exception will say. It is told to the log too, at the level DEBUG."""
+
+    message = None
+
+
+@ffi.def_extern()
+def camber_python_log(user, level, message):
+    text = text_of(message)
+    if level == lib.CAMBER_LOG_ERROR:
+        ffi.from_handle(user).message = text
+    logger.log(LEVELS.get(level, logging.DEBUG), "%s", text)
+
+
+class Keeper:
+    """Frees the objects of a context: one at a time, and none before those that were made from it.
+
+    Python drops them in any order where it collects a circle. So each that is dropped waits until its children are freed.
+    """
+
+    def __init__(self):
+        self.lock = threading.Lock()
+        self.process = os.getpid()
+        self._held = {}  # address -> [pointer, destroy, addresses of parents, number of children, whether it is dropped]
+        self._dropped = collections.deque()
+
+    def own(self, pointer, destroy, parents=()):
+        """The pointer, which destroy frees after Python has dropped it."""
+        address = int(ffi.cast("uintptr_t", pointer))
+        parents = [int(ffi.cast("uintptr_t", parent)) for parent in parents]
+        self._held[address] = [pointer, destroy, parents, 0, False]
+        for parent in parents:
+            self._held[parent][3] += 1
+        return ffi.gc(pointer, functools.partial(self._drop, address))
+
+    def _drop(self, address, _):
+        self._dropped.append(address)
+        self.free_dropped()
+
+    def free_dropped(self):
+        """Frees what waits, unless a call is going on: then its end does."""
+        while self._dropped and self.process == os.getpid() and self.lock.acquire(blocking=False):
+            try:
+                while self._dropped:
+                    address = self._dropped.popleft()
+                    self._held[address][4] = True
+                    self._free(address)
+            finally:
+                self.lock.release()
+
+    def _free(self, address):
+        pointer, destroy, parents, children, is_dropped = self._held[address]
+        if is_dropped and children == 0:
+            destroy(pointer)
+            del self._held[address]
+            for parent in parents:
+                self._held[parent][3] -= 1
+                self._free(parent)
+
+
+class Core:
+    """A C context with its lock: `with core:` around calls, core.check(status) for each that can fail."""
+
+    opened_in = None  # the process that opened the first one
+
+    def __init__(self, access, cache_dir):
+        self._refuse_fork(Core.opened_in)
+        Core.opened_in = os.getpid()
+        self._keeper = Keeper()
+        self._owner = None
+        self.surface = ffi.NULL
+        self._log = _Log()
+        handle = ffi.new_handle(self._log)
+        desc = ffi.new("camber_context_desc *", {"log": lib.camber_python_log, "log_user": handle})
+        texts = [ffi.NULL if path is None else ffi.new("char[]", os.fsencode(path))
+                 for path in (cache_dir, access["root"])]
+        desc.cache_dir, desc.access.root = texts
+        desc.access.remote, desc.access.vrt = access["remote"], access["vrt"]
+        made = ffi.new("camber_context **")
+        self.check(lib.camber_context_create(desc, made))
+
+        def destroy(pointer, handle=handle):  # the log's handle lives as long as the context
+            lib.camber_context_destroy(pointer)
+
+        self.pointer = self._keeper.own(made[0], destroy)
+
+    @staticmethod
+    def _refuse_fork(process):
+        if process not in (None, os.getpid()):
+            raise RuntimeError("camber was used before this process was forked, and drivers do not live through that; "
+                               "use multiprocessing's method spawn or forkserver")
+
+    def __enter__(self):
+        self._refuse_fork(self._keeper.process)
+        if self._owner == threading.get_ident():
+            raise RuntimeError("camber: this context is in a call already; a log handler needs a context of its own")
+        self._keeper.lock.acquire()
+        self._owner = threading.get_ident()
+        self._log.message = None
+        return self
+
+    def __exit__(self, *_):
+        if self.surface != ffi.NULL:
+            lib.camber_surface_release(self.surface)
+        self._owner = None
+        self._keeper.lock.release()
+        self._keeper.free_dropped()
+
+    def check(self, status):
+        if status != lib.CAMBER_OK:
+            message = self._log.message or text_of(lib.camber_status_get_name(status))
+            raise ERRORS.get(status, Error)(message)
+
+    def own(self, pointer, destroy, parents=()):
+        return self._keeper.own(pointer, destroy, [self.pointer, *parents])
+
+    def make(self, function, *arguments):
+        """Calls X_create, whose last parameter takes the object; X_destroy follows when Python drops it."""
+        made = ffi.new(ffi.typeof(function).args[-1])
+        self.check(function(*arguments, made))
+        name = function.__name__
+        destroy = getattr(lib, name[:name.rindex("_")] + "_destroy", None) or DESTROYERS[name]
+        return self.own(made[0], destroy, [each for each in arguments if _is_object(each) and each != self.pointer])
+
+
+DESTROYERS = {"camber_style_create_builtin": lib.camber_style_destroy}
+
+RASTERIZERS = {"auto": lib.CAMBER_RASTERIZER_AUTO, "gl": lib.CAMBER_RASTERIZER_GL, "cl": lib.CAMBER_RASTERIZER_OPENCL}
+
+
+def pick(table, what, name):
+    """The value that a name has in a table, or an error that lists the names."""
+    try:
+        return table[name]
+    except (KeyError, TypeError):
+        raise ArgumentError("%s is %r; choose one of: %s" % (what, name, ", ".join(table))) from None
+
+
+class Context:
+    """A device to draw with, and all that is kept for it. Threads that draw at once need one each."""
+
+    def __init__(self, device=None, *, draw="auto", memory=0, cache_dir=None, root=None, allow_remote=False,
+                 allow_vrt=False):
+        rasterizer = pick(RASTERIZERS, "draw", draw)
+        self._core = Core({"root": root, "remote": allow_remote, "vrt": allow_vrt}, cache_dir)
+        self._desc = ffi.new("camber_device_desc *", {"memory_bytes": memory})
+        self._match = ffi.new("char[]", os.fsencode(device)) if device else ffi.NULL
+        self._desc.match = self._match
+        self._rasterizer = rasterizer
+        self._opened = None
+
+    def _open(self, core):
+        """(device, renderer, a mesh for pictures of which nothing stays): opened by the first call that needs them."""
+        if self._opened:
+            return self._opened
+        surface = ffi.NULL
+        if self._rasterizer == lib.CAMBER_RASTERIZER_GL or (
+                self._rasterizer == lib.CAMBER_RASTERIZER_AUTO and lib.camber_surface_may_be_hardware(ffi.NULL)):
+            surface = core.make(lib.camber_surface_create, core.pointer, ffi.NULL)
+            core.surface = ffi.cast("camber_surface *", surface)
+            self._desc.gl = lib.camber_surface_get_handles(surface)
+        device = core.make(lib.camber_device_create, core.pointer, self._desc)
+        desc = ffi.new("camber_renderer_desc *", {"rasterizer": self._rasterizer})
+        renderer = core.make(lib.camber_renderer_create, device, surface, desc)
+        mesh = core.make(lib.camber_mesh_create, device, renderer)
+        self._opened = (device, renderer, mesh)
+        self._surface = surface
+        return self._opened
+
+    @property
+    def device(self):
+        """What draws, as a dictionary."""
+        with self._core as core:
+            info = lib.camber_device_get_info(self._open(core)[0])
+            return _describe(info)
+
+
+def _describe(info):
+    return {"name": text_of(info.name), "platform": text_of(info.platform), "version": text_of(info.version),
+            "driver": text_of(info.driver), "type": ("other", "cpu", "gpu")[info.type],
+            "compute_units": info.compute_units, "memory_bytes": info.memory_bytes}
+
+
+def devices():
+    """The OpenCL devices that are here, each as a dictionary."""
+    found, info = [], ffi.new("camber_device_info **")
+    with default()._core as core:
+        while True:
+            core.check(lib.camber_device_list(core.pointer, len(found), info))
+            if info[0] == ffi.NULL:
+                return found
+            found.append(_describe(info[0]))
+
+
+_defaults = threading.local()
+
+
+def default(context=None):
+    """The context that was given, or this thread's own."""
+    if context is not None:
+        return context
+    if not hasattr(_defaults, "context"):
+        _defaults.context = Context()
+    return _defaults.context
+
+
+atexit.register(_defaults.__dict__.clear)  # before drivers are taken down

@@ -1,0 +1,324 @@
+"""Pictures and meshes of lines in pixels, and of networks under a camera."""
+
+import collections
+import operator
+
+import numpy
+
+from ._core import ArgumentError, default, lib, ffi, pick
+from ._lines import as_lines, as_whole
+
+JOINS = {"round": lib.CAMBER_JOIN_ROUND, "miter": lib.CAMBER_JOIN_MITER, "bevel": lib.CAMBER_JOIN_BEVEL}
+CAPS = {"butt": lib.CAMBER_CAP_BUTT, "round": lib.CAMBER_CAP_ROUND, "square": lib.CAMBER_CAP_SQUARE}
+OVERLAPS = {"flatten": lib.CAMBER_OVERLAP_FLATTEN, "accumulate": lib.CAMBER_OVERLAP_ACCUMULATE,
+            "unite": lib.CAMBER_OVERLAP_UNITE}
+METHODS = {"strip": lib.CAMBER_METHOD_STRIP, "kite": lib.CAMBER_METHOD_KITE, "fan": lib.CAMBER_METHOD_FAN}
+ENCODINGS = {"png": lib.CAMBER_ENCODING_PNG, "png8": lib.CAMBER_ENCODING_PNG8, "webp": lib.CAMBER_ENCODING_WEBP}
+KINDS = {"float": "f4", "double": "f8", "int16_t": "i2", "uint16_t": "u2", "int32_t": "i4", "uint32_t": "u4",
+         "uint8_t": "u1", "size_t": "u8"}
+
+
+def dtype_of(name):
+    """numpy's type of a C struct: its fields of numbers, where the compiler has put them."""
+    names, formats, offsets = [], [], []
+    for field, about in ffi.typeof(name).fields:
+        kind = KINDS.get(about.type.cname) or ("u4" if about.type.kind == "enum" else None)
+        if about.type.kind == "struct":
+            kind = dtype_of(about.type.cname)
+        if kind:
+            names.append(field)
+            formats.append(kind)
+            offsets.append(about.offset)
+    return numpy.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": ffi.sizeof(name)})
+
+
+TAKE_ROWS = ffi.addressof(lib, "camber_python_take_rows")
+STROKE, PAINT, RECORD, VERTEX = (dtype_of("camber_" + name) for name in ("stroke", "paint", "record", "vertex"))
+
+
+def view(pointer, name, count, owner):
+    """A structured array over the library's memory, which owner frees. It is not copied."""
+    if pointer == ffi.NULL or count == 0:
+        return numpy.zeros(0, name if isinstance(name, numpy.dtype) else numpy.dtype(name))
+    dtype = numpy.dtype(name)
+    kept = ffi.gc(ffi.cast("char *", pointer), lambda _, owner=owner: None)
+    return numpy.frombuffer(ffi.buffer(kept, count * dtype.itemsize), dtype)
+
+
+# ---- Colours and styles ----
+
+
+def parse_color(color):
+    """Four floats, 0 to 1, of "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", or of three or four numbers from 0 to 1."""
+    if isinstance(color, str):
+        digits = color[1:]
+        if len(digits) in (3, 4):
+            digits = "".join(digit * 2 for digit in digits)
+        try:
+            if color[:1] == "#" and len(digits) in (6, 8) and digits.isalnum():
+                return tuple(byte / 255 for byte in bytes.fromhex(digits)) + (1.0,) * (len(digits) == 6)
+        except ValueError:
+            pass
+    else:
+        try:
+            values = tuple(float(value) for value in color)
+        except (TypeError, ValueError):
+            values = ()
+        if len(values) in (3, 4) and all(0 <= value <= 1 for value in values):
+            return values + (1.0,) * (len(values) == 3)
+    raise ArgumentError("%r is no colour; give \"#rgb\", \"#rrggbb\", either with alpha behind it, or three or four "
+                        "numbers from 0 to 1" % (color,))
+
+
+def as_colors(color):
+    """n x 4 floats, and whether there are several: an array, or a list of what parse_color takes."""
+    if isinstance(color, str) or (numpy.ndim(color) == 1 and len(color) and not isinstance(color[0], str)):
+        return numpy.array([parse_color(color)], numpy.float32), False
+    array = numpy.asarray(color)
+    if array.size == 0:
+        return numpy.zeros((0, 4), numpy.float32), True
+    if array.dtype == numpy.uint8:
+        array = array / numpy.float32(255)
+    if array.dtype.kind != "f":
+        return numpy.array([parse_color(each) for each in color], numpy.float32).reshape(-1, 4), True
+    if array.ndim != 2 or array.shape[1] not in (3, 4) or not ((array >= 0) & (array <= 1)).all():
+        raise ArgumentError("colours have the shape %s; give n x 3 or n x 4, numbers from 0 to 1 or bytes"
+                            % (array.shape,))
+    colors = numpy.ones((len(array), 4), numpy.float32)
+    colors[:, :array.shape[1]] = array
+    return colors, True
+
+
+class Table:
+    """Strokes and paints by row, and the row of each line, as the library wants them."""
+
+    def __init__(self, width, color, rows, line_count, origins, origin_count, *, join="round", cap="butt",
+                 miter_limit=0, offset=0, gap=0, blur=0, dash=None):
+        if not (0 <= gap < float("inf") and 0 <= blur < float("inf")):
+            raise ArgumentError("gap is %r and blur %r; give 0 or more pixels" % (gap, blur))
+        colors, has_colors = as_colors(color)
+        widths = numpy.asarray(width)
+        if widths.dtype.kind not in "fiu" or widths.ndim > 1:
+            raise TypeError("width has the type %s and the shape %s; give a number, or one for each line"
+                            % (widths.dtype, widths.shape))
+        counts = {len(colors)} if has_colors else set()
+        counts |= {len(widths)} if widths.ndim else set()
+        wanted = None if rows is not None else origin_count
+        if len(counts) > 1 or (wanted is not None and counts and counts != {wanted}):
+            raise ArgumentError("there are %s widths and colours, and %s"
+                                % (" and ".join(map(str, sorted(counts))),
+                                   "%d lines; give one for each, or rows" % wanted if wanted is not None
+                                   else "both go by rows: give as many"))
+        self.count = counts.pop() if counts else 1
+        self.rows = None
+        if rows is not None:
+            self.rows = as_whole(rows, numpy.uint32, "rows")
+            if len(self.rows) != line_count:
+                raise ArgumentError("there are %d rows and %d lines; give one for each" % (len(self.rows), line_count))
+            if line_count and int(self.rows.max()) >= self.count:
+                raise ArgumentError("row %d has no width and colour: there are %d" % (self.rows.max(), self.count))
+        elif self.count > 1:
+            self.rows = numpy.arange(line_count, dtype=numpy.uint32) if origins is None else origins.astype(numpy.uint32)
+        if self.count == 0:  # no lines: a row that none has
+            colors, widths = numpy.zeros((1, 4)), numpy.zeros(())
+        self.strokes = numpy.zeros(max(self.count, 1), STROKE)
+        self.strokes["width_px"] = 2 * widths + gap if gap else widths
+        self.strokes["join"], self.strokes["cap"] = pick(JOINS, "join", join), pick(CAPS, "cap", cap)
+        self.strokes["miter_limit"], self.strokes["offset_px"] = miter_limit, offset
+        self.paints = numpy.zeros(max(self.count, 1), PAINT)
+        self.paints["width_px"], self.paints["gap_px"], self.paints["blur_px"] = widths, gap, blur
+        for i, channel in enumerate("rgba"):
+            self.paints["color"][channel] = colors[:, i]
+        self.pointers = [ffi.from_buffer("camber_stroke[]", self.strokes),
+                         ffi.from_buffer("camber_paint[]", self.paints)]
+        self.dash = None
+        if dash is not None:
+            lengths = ffi.new("float[]", [float(length) for length in dash])
+            self.dash = ffi.new("camber_dash *", {"lengths": lengths, "count": len(lengths)})
+            self.pointers.append(lengths)
+            for paint in self.pointers[1]:
+                paint.dash = self.dash
+
+    def tessellation(self, method="strip", fan_tolerance=0):
+        return ffi.new("camber_tessellation_desc *", {
+            "strokes": self.pointers[0], "stroke_count": len(self.strokes), "method": pick(METHODS, "method", method),
+            "fan_tolerance_px": fan_tolerance, "has_arc_length": self.dash is not None})
+
+
+# ---- Pictures ----
+
+
+def as_size(size):
+    try:
+        width, height = (operator.index(side) for side in size)
+    except (TypeError, ValueError):
+        raise ArgumentError("size is %r; give width and height as whole numbers of pixels" % (size,)) from None
+    if not (1 <= width <= 65535 and 1 <= height <= 65535):
+        raise ArgumentError("size is %d x %d; give 1 to 65535 pixels each" % (width, height))
+    return width, height
+
+
+def as_output(out, width, height):
+    """The array that a picture goes to: rows may lie apart, and the bytes of a row may not."""
+    if out is None:
+        return numpy.empty((height, width, 4), numpy.uint8)
+    if not isinstance(out, numpy.ndarray) or out.dtype != numpy.uint8 or out.shape != (height, width, 4):
+        raise ArgumentError("out is no uint8 array of %d x %d x 4" % (height, width))
+    if not out.flags.writeable:
+        raise ArgumentError("out is read-only")
+    if out.strides[1:] != (4, 1) or out.strides[0] < 4 * width:
+        raise ArgumentError("out has the strides %s; its rows must be contiguous and follow each other"
+                            % (out.strides,))
+    return out
+
+
+def render_frame(core, renderer, frame, out, premultiplied):
+    """Draws a frame into an array; Python's lock is free all the while."""
+    out = as_output(out, frame.width, frame.height)
+    picture = ffi.new("camber_python_picture *", {
+        "rgba": ffi.cast("uint8_t *", out.ctypes.data), "stride_bytes": out.strides[0], "width": frame.width,
+        "straight": not premultiplied and frame.background.a < 1})  # what is opaque is both
+    core.check(lib.camber_renderer_render(renderer, frame, TAKE_ROWS, picture, ffi.NULL))
+    return out
+
+
+def frame_of(table, mesh, size, background, overlap, opacity, pitch=0):
+    if not 0 < opacity <= 1:
+        raise ArgumentError("opacity is %r; give more than 0, 1 at most" % (opacity,))
+    width, height = size
+    pass_ = ffi.new("camber_pass *", {
+        "mesh": mesh, "paints": table.pointers[1], "paint_count": len(table.paints),
+        "overlap": pick(OVERLAPS, "overlap", overlap), "opacity": 0 if opacity == 1 else opacity})
+    frame = ffi.new("camber_frame *", {"width": width, "height": height, "passes": pass_, "pass_count": 1,
+                                       "pitch_deg": pitch})
+    if background is not None:
+        frame.background = parse_color(background)
+    return frame, pass_
+
+
+def make_polylines(core, lines, rows, keep_open):
+    desc = ffi.new("camber_polylines_desc *", {
+        "points": ffi.from_buffer("float[]", lines.points), "point_count": len(lines.points),
+        "offsets": ffi.from_buffer("uint32_t[]", lines.offsets), "polyline_count": len(lines),
+        "rows": ffi.NULL if rows is None else ffi.from_buffer("uint32_t[]", rows), "keep_open": keep_open})
+    return core.make(lib.camber_polylines_create, core.pointer, desc)
+
+
+def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows=None, background=None,
+         overlap="flatten", opacity=1, pitch=0, keep_open=False, premultiplied=False, out=None, context=None, **style):
+    """Draws lines in pixels; returns a uint8 array of height x width x 4."""
+    context = default(context)
+    lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
+    table = Table(width, color, rows, len(lines), lines.origins, lines.origin_count, **style)
+    size = as_size(size)
+    with context._core as core:
+        _, renderer, mesh = context._open(core)
+        polylines = make_polylines(core, lines, table.rows, keep_open)
+        core.check(lib.camber_mesh_tessellate(mesh, polylines, table.tessellation()))
+        frame, _ = frame_of(table, mesh, size, background, overlap, opacity, pitch)
+        return render_frame(core, renderer, frame, out, premultiplied)
+
+
+Mesh = collections.namedtuple("Mesh", "method strips records vertices indices")
+
+
+def tessellate(points, offsets=None, *, width=8, rows=None, method="strip", fan_tolerance=0, keep_open=False,
+               context=None, **style):
+    """The mesh of lines in pixels, as arrays over the library's memory."""
+    context = default(context)
+    lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
+    table = Table(width, "#000", rows, len(lines), lines.origins, lines.origin_count, **style)
+    with context._core as core:
+        device = context._open(core)[0]
+        polylines = make_polylines(core, lines, table.rows, keep_open)
+        mesh = core.make(lib.camber_mesh_create, device, ffi.NULL)
+        core.check(lib.camber_mesh_tessellate(mesh, polylines, table.tessellation(method, fan_tolerance)))
+        data = ffi.new("camber_mesh_data *")
+        core.check(lib.camber_mesh_read(mesh, data))
+        owner = core.own(data, lib.camber_mesh_data_destroy)
+    info = data.info
+    return Mesh(method, bool(info.strips), view(data.records, RECORD, info.record_count, owner),
+                view(data.vertices, VERTEX, info.vertex_count, owner),
+                view(data.indices, "u4", info.index_count, owner))
+
+
+class Network:
+    """Lines in world units, which stay on the device while a camera moves over them. y points down."""
+
+    def __init__(self, points, offsets=None, *, rows=None, importance=None, keep_open=False, dashed=False,
+                 context=None):
+        self._context = default(context)
+        lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
+        self._count = len(lines)
+        self._rows = None if rows is None else as_whole(rows, numpy.uint32, "rows")
+        if self._rows is not None and len(self._rows) != len(lines):
+            raise ArgumentError("there are %d rows and %d lines; give one for each" % (len(self._rows), len(lines)))
+        entries = numpy.zeros(len(lines), dtype_of("camber_network_entry"))
+        entries["polyline"] = numpy.arange(len(lines))
+        entries["row"] = 0 if rows is None else self._rows
+        desc = ffi.new("camber_network_desc *", {
+            "points": ffi.from_buffer("double[]", lines.points),
+            "offsets": ffi.cast("size_t *", ffi.from_buffer("uint64_t[]", lines.offsets)),
+            "polyline_count": len(lines), "entries": ffi.from_buffer("camber_network_entry[]", entries),
+            "entry_count": len(entries), "keep_open": keep_open, "has_arc_length": dashed})
+        self._dashed = dashed
+        if importance is not None:
+            importance = numpy.ascontiguousarray(importance, numpy.float32)
+            if importance.shape != (len(lines.points),):
+                raise ArgumentError("importance has the shape %s; give one number for each of the %d points"
+                                    % (importance.shape, len(lines.points)))
+            desc.importance = ffi.from_buffer("float[]", importance)
+        finite = lines.points[numpy.isfinite(lines.points).all(axis=1)]
+        self.bounds = tuple(finite.min(axis=0)) + tuple(finite.max(axis=0)) if len(finite) else (0.0, 0.0, 1.0, 1.0)
+        with self._context._core as core:
+            device, renderer, _ = self._context._open(core)
+            self._network = core.make(lib.camber_network_create, core.pointer, desc)
+            self._mesh = core.make(lib.camber_mesh_create, device, renderer)
+
+    def _camera(self, center, scale, size):
+        west, north, east, south = self.bounds
+        if center is None:
+            center = ((west + east) / 2, (north + south) / 2)
+        if scale is None:  # all of it, with a margin of 2 %
+            sides = [side / length for side, length in zip(size, (east - west, south - north)) if length > 0]
+            scale = 0.96 * min(sides, default=1.0)
+        return float(center[0]), float(center[1]), float(scale)
+
+    def draw(self, *, center=None, scale=None, bearing=0, pitch=0, simplify=0, width=8, color="#336",
+             size=(1024, 1024), background=None, overlap="flatten", opacity=1, premultiplied=False, out=None, **style):
+        """Draws what a camera sees. scale is pixels a world unit; without center and scale all is seen."""
+        size = as_size(size)
+        table = Table(width, color, numpy.zeros(self._count, numpy.uint32) if self._rows is None else self._rows,
+                      self._count, None, self._count, **style)
+        if table.dash is not None and not self._dashed:
+            raise ArgumentError("dashes want a network that is made with dashed=True")
+        x, y, scale = self._camera(center, scale, size)
+        camera = ffi.new("camber_camera *", {
+            "x": x, "y": y, "scale_px": scale, "bearing_deg": bearing, "width": size[0], "height": size[1],
+            "simplify_px": simplify, "pitch_deg": pitch})
+        with self._context._core as core:
+            renderer = self._context._open(core)[1]
+            core.check(lib.camber_mesh_tessellate_network(self._mesh, self._network, camera, table.tessellation()))
+            frame, _ = frame_of(table, self._mesh, size, background, overlap, opacity)
+            return render_frame(core, renderer, frame, out, premultiplied)
+
+
+def encode(picture, format="png", *, quality=None, premultiplied=False, context=None):
+    """The bytes of a PNG or WebP of a picture."""
+    picture = numpy.asarray(picture)
+    if picture.dtype != numpy.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or not picture.size:
+        raise ArgumentError("the picture has the type %s and the shape %s; give uint8, height x width x 4"
+                            % (picture.dtype, picture.shape))
+    picture = numpy.ascontiguousarray(picture)
+    height, width = picture.shape[:2]
+    pixels = ffi.from_buffer("uint8_t[]", picture)
+    desc = ffi.new("camber_encoder_desc *", {"encoding": pick(ENCODINGS, "format", format), "quality": quality or 0})
+    with default(context)._core as core:
+        encoder = core.make(lib.camber_encoder_create, core.pointer, desc)
+        if not premultiplied:
+            straight, pixels = pixels, ffi.from_buffer("uint8_t[]", numpy.empty_like(picture))
+            lib.camber_python_premultiply(straight, pixels, width * height)
+        image = ffi.new("camber_pixels *", {"rgba": pixels, "width": width, "height": height})
+        made, size = ffi.new("uint8_t **"), ffi.new("size_t *")
+        core.check(lib.camber_encoder_encode(encoder, image, made, size))
+        return bytes(ffi.buffer(made[0], size[0]))

@@ -1,0 +1,208 @@
+"""Lines as they come: arrays, lists of arrays, GeoArrow, Shapely, GeoPandas. All become points and offsets."""
+
+import ctypes
+
+import numpy
+
+from ._library import ffi
+
+
+class Lines:
+    """points (n x 2), offsets (lines + 1), and for each line the number of what it came from. None: its own."""
+
+    def __init__(self, points, offsets, origins=None):
+        self.points, self.offsets, self.origins = points, offsets, origins
+
+    def __len__(self):
+        return len(self.offsets) - 1
+
+    @property
+    def origin_count(self):
+        return len(self) if self.origins is None else int(self.origins.max(initial=-1)) + 1
+
+
+def as_points(points, dtype):
+    """An array of pairs, of the type and C-contiguous: the caller's own where it is so already."""
+    array = numpy.asarray(points)
+    if array.dtype.kind not in "fiu":
+        raise TypeError("points have the type %s; give floats or whole numbers" % array.dtype)
+    if array.size == 0 and array.ndim < 2:
+        array = array.reshape(0, 2)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError("points have the shape %s; give n x 2: x and y of each" % (array.shape,))
+    with numpy.errstate(over="ignore"):  # what becomes infinite is left out and counted, as NaN is
+        return numpy.ascontiguousarray(array, dtype)
+
+
+def as_whole(values, dtype, what):
+    """An array of whole numbers that the type can hold."""
+    array = numpy.asarray(values)
+    if array.size == 0:
+        array = array.astype(dtype)
+    if array.dtype.kind not in "iu":
+        raise TypeError("%s have the type %s; give whole numbers" % (what, array.dtype))
+    if array.ndim != 1:
+        raise ValueError("%s have the shape %s; give one dimension" % (what, array.shape))
+    if array.size and (int(array.min()) < 0 or int(array.max()) > numpy.iinfo(dtype).max):
+        raise ValueError("%s go from %d to %d; give 0 to %d" % (what, array.min(), array.max(),
+                                                                numpy.iinfo(dtype).max))
+    return numpy.ascontiguousarray(array, dtype)
+
+
+def as_lines(points, offsets, dtype, offset_dtype):
+    """Whatever was given as Lines, of these types."""
+    if isinstance(points, Lines):
+        lines = points
+    elif offsets is not None:
+        lines = Lines(points, offsets)
+    elif hasattr(points, "__arrow_c_array__"):
+        lines = from_arrow(points)
+    elif hasattr(points, "geom_type") or hasattr(points, "geometry"):
+        lines = from_geometries(points)
+    elif isinstance(points, (list, tuple)) or getattr(points, "dtype", None) == object:
+        lines = from_list(points)
+    else:  # one line
+        points = numpy.asarray(points)
+        lines = Lines(points, [0, len(points) if points.ndim else 0])
+    points, offsets = as_points(lines.points, dtype), as_whole(lines.offsets, offset_dtype, "offsets")
+    if not len(offsets):
+        raise ValueError("offsets are empty; give one more than there are lines: [0] for none")
+    if int(offsets[-1]) != len(points) or offsets[0] != 0 or (len(offsets) > 1 and (offsets[1:] < offsets[:-1]).any()):
+        raise ValueError("offsets go from %d to %d, and must ascend from 0 to %d, the number of points"
+                         % (offsets[0], offsets[-1], len(points)))
+    return Lines(points, offsets, lines.origins)
+
+
+def join(arrays, origins):
+    """Lines of an array of points each."""
+    offsets = numpy.zeros(len(arrays) + 1, numpy.uint64)
+    numpy.cumsum([len(array) for array in arrays], out=offsets[1:])
+    points = numpy.concatenate(arrays) if arrays else numpy.empty((0, 2))
+    return Lines(points, offsets, origins)
+
+
+def from_list(items):
+    """Arrays of points, or geometries; a list of pairs of numbers is one line."""
+    if len(items) and (hasattr(items[0], "geom_type") or items[0] is None):
+        return from_geometries(items)
+    if len(items) and all(numpy.ndim(item) == 1 and len(item) == 2 for item in items):
+        return Lines(numpy.asarray(items), [0, len(items)])
+    return join([as_points(item, numpy.float64) for item in items], None)
+
+
+# ---- Shapely and GeoPandas ----
+
+
+def parts_of(geometry):
+    """The lines of a geometry, as arrays of points: parts of several, and the rings of polygons."""
+    kind = None if geometry is None else geometry.geom_type
+    if kind in ("LineString", "LinearRing"):
+        points = numpy.asarray(geometry.coords, dtype=numpy.float64)
+        yield points[:, :2] if len(points) else points.reshape(0, 2)
+    elif kind == "Polygon":
+        for ring in [geometry.exterior, *geometry.interiors] if not geometry.is_empty else []:
+            yield from parts_of(ring)
+    elif hasattr(geometry, "geoms"):
+        for part in geometry.geoms:
+            yield from parts_of(part)
+
+
+def from_geometries(geometries):
+    """One geometry of Shapely or many, a GeoSeries, or the geometries of a GeoDataFrame."""
+    if hasattr(geometries, "geom_type") and isinstance(geometries.geom_type, str):
+        geometries = [geometries]
+    else:
+        geometries = getattr(geometries, "geometry", geometries)
+    arrays, origins = [], []
+    for number, geometry in enumerate(geometries):
+        for part in parts_of(geometry):
+            arrays.append(part)
+            origins.append(number)
+    return join(arrays, numpy.asarray(origins, numpy.int64))
+
+
+# ---- GeoArrow, by Arrow's C data interface ----
+
+_capsule_pointer = ctypes.pythonapi.PyCapsule_GetPointer
+_capsule_pointer.restype = ctypes.c_void_p
+_capsule_pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
+
+WANTED = "give GeoArrow's linestring or multilinestring (GeoPandas: to_arrow(geometry_encoding=\"geoarrow\"))"
+
+
+def _format(schema):
+    return ffi.string(schema.format).decode()
+
+
+class _Arrow:
+    """The memory of an Arrow array, which its capsules own."""
+
+    def __init__(self, capsules):
+        self.capsules = capsules
+
+    def bytes(self, pointer, first, count):
+        kept = ffi.gc(ffi.cast("char *", pointer) + first, lambda _, capsules=self.capsules: None)
+        return numpy.frombuffer(ffi.buffer(kept, count), numpy.uint8)
+
+    def buffer(self, array, number, dtype, first, count):
+        """Elements of a buffer, without a copy; they are valid as long as the capsule is."""
+        if count == 0 or array.buffers[number] == ffi.NULL:
+            return numpy.zeros(count, dtype)
+        size = numpy.dtype(dtype).itemsize
+        return self.bytes(array.buffers[number], first * size, count * size).view(dtype)
+
+    def list(self, schema, array, first, count, what):
+        """Offsets of a list's elements."""
+        kind = {"+l": numpy.int32, "+L": numpy.int64}.get(_format(schema))
+        if kind is None or array.n_buffers != 2 or array.n_children != 1:
+            raise TypeError("Arrow's format %r is no list of %s; %s" % (_format(schema), what, WANTED))
+        offsets = self.buffer(array, 1, kind, array.offset + first, count + 1)
+        if count and (offsets[0] < 0 or (offsets[1:] < offsets[:-1]).any() or offsets[-1] > array.children[0].length):
+            raise ValueError("offsets of an Arrow list do not ascend within its %s" % what)
+        return offsets
+
+    def points(self, schema, array, first, count):
+        """Points as pairs: as they lie where x and y alternate, else put together."""
+        kind = _format(schema)
+        if kind.startswith("+w:") and kind[3:].isdigit() and _format(schema.children[0]) == "g":
+            side = int(kind[3:])
+            values = self.buffer(array.children[0], 1, numpy.float64,
+                             array.children[0].offset + (array.offset + first) * side, count * side)
+            return values.reshape(count, side)[:, :2]
+        if kind == "+s" and array.n_children >= 2 and all(_format(schema.children[i]) == "g" for i in (0, 1)):
+            return numpy.stack([self.buffer(array.children[i], 1, numpy.float64,
+                                        array.children[i].offset + array.offset + first, count) for i in (0, 1)], axis=1)
+        raise TypeError("Arrow's format %r is no point; %s" % (kind, WANTED))
+
+    def is_valid(self, array, count):
+        """Which elements are there: None where all are."""
+        if array.null_count == 0 or array.n_buffers == 0 or array.buffers[0] == ffi.NULL:
+            return None
+        first, last = array.offset, array.offset + count
+        bits = self.bytes(array.buffers[0], 0, (last + 7) // 8)
+        return numpy.unpackbits(bits, bitorder="little")[first:last].astype(bool)
+
+
+def from_arrow(value):
+    """Linestrings and multilinestrings, from whatever gives them by __arrow_c_array__."""
+    capsules = value.__arrow_c_array__()
+    arrow = _Arrow(capsules)
+    schema = ffi.cast("struct ArrowSchema *", _capsule_pointer(capsules[0], b"arrow_schema"))
+    array = ffi.cast("struct ArrowArray *", _capsule_pointer(capsules[1], b"arrow_array"))
+    count, origins = array.length, None
+    offsets = arrow.list(schema, array, 0, count, "points")
+    is_valid = arrow.is_valid(array, count)
+    inner_schema, inner = schema.children[0], array.children[0]
+    if _format(inner_schema) in ("+l", "+L"):
+        origins = numpy.repeat(numpy.arange(count), numpy.diff(offsets))
+        is_valid = None if is_valid is None else numpy.repeat(is_valid, numpy.diff(offsets))
+        first, count = int(offsets[0]) if count else 0, len(origins)
+        offsets = arrow.list(inner_schema, inner, first, count, "points")
+        inner_schema, inner = inner_schema.children[0], inner.children[0]
+    first = int(offsets[0]) if count else 0
+    points = arrow.points(inner_schema, inner, first, int(offsets[-1]) - first if count else 0)
+    offsets = offsets[:count + 1] - first if first else offsets[:count + 1]
+    if is_valid is not None and not is_valid.all():  # a line that is not there has no points
+        points = points[numpy.repeat(is_valid, numpy.diff(offsets))]
+        offsets = numpy.concatenate([[0], numpy.cumsum(numpy.diff(offsets) * is_valid)])
+    return Lines(points, offsets if count else numpy.zeros(1, numpy.int64), origins)

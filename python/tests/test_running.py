@@ -1,0 +1,166 @@
+"""Threads, processes, the log, and thousands of calls after which nothing has grown."""
+
+import gc
+import logging
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import numpy
+import pytest
+
+import camber
+
+POINTS = numpy.random.default_rng(1).uniform(0, 64, (200, 2)).astype(numpy.float32)
+OFFSETS = numpy.arange(0, 201, 10)
+
+
+def test_two_threads_with_two_contexts_draw_at_once():
+    wanted, wrong, done = camber.draw(POINTS, OFFSETS, size=(64, 64)), [], []
+
+    def draw(context):
+        for _ in range(50):
+            if not (camber.draw(POINTS, OFFSETS, size=(64, 64), context=context) == wanted).all():
+                wrong.append(context)
+        done.append(context)
+
+    for contexts in (None, None), (camber.Context(), camber.Context()), (camber.Context(),) * 2:
+        threads = [threading.Thread(target=draw, args=(context,)) for context in contexts]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert len(done) == 6 and not wrong
+
+
+def test_python_goes_on_while_it_draws():
+    context = camber.Context()
+    big = numpy.random.default_rng(2).uniform(0, 2000, (400000, 2)).astype(numpy.float32)
+    counts, stop = [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counts[0] += 1
+            time.sleep(0.0005)
+
+    thread = threading.Thread(target=count)
+    camber.draw(big[:100], size=(2000, 2000), context=context)
+    thread.start()
+    before, begun = counts[0], time.monotonic()
+    camber.draw(big, numpy.arange(0, 400001, 4), size=(2000, 2000), context=context)
+    took, passed = time.monotonic() - begun, counts[0] - before
+    stop.set()
+    thread.join()
+    assert passed > 10, "%d steps of another thread in %.3f s" % (passed, took)
+
+
+def test_objects_go_in_any_order(city):
+    context = camber.Context()
+    network, shown = camber.Network(POINTS, OFFSETS, context=context), camber.Map(city, context=context)
+    mesh = camber.tessellate(POINTS, OFFSETS, context=context)
+    network.draw(size=(9, 9)), shown.draw(size=(9, 9))
+    records, kept = mesh.records, mesh.records.copy()
+    del context, mesh
+    gc.collect()
+    assert network.draw(size=(64, 64)).any() and shown.draw(size=(64, 64)).any()
+    del network
+    thread = threading.Thread(target=lambda: shown.draw(size=(9, 9)))
+    thread.start()
+    thread.join()
+    del shown
+    gc.collect()
+    assert (records == kept).all()
+
+
+def test_the_log(caplog, tmp_path):
+    (tmp_path / "bad.geojson").write_text('{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}')
+    style = {"version": 8, "sources": {}, "layers": [{"id": "a", "type": "fill"}]}
+    with caplog.at_level(logging.DEBUG, "camber"):
+        camber.render(tmp_path / "bad.geojson", style=style, size=(9, 9))
+        with pytest.raises(FileNotFoundError) as told:
+            camber.render("/nowhere")
+    assert any(record.levelno == logging.WARNING and "fill" in record.message for record in caplog.records)
+    assert any(record.levelno == logging.DEBUG and record.message == str(told.value) for record in caplog.records)
+
+
+def test_a_log_handler_that_draws_is_told(city, tmp_path):
+    context, told = camber.Context(), []
+
+    class Handler(logging.Handler):
+        def emit(self, record):
+            try:
+                camber.draw(POINTS, context=context)
+            except RuntimeError as error:
+                told.append(str(error))
+
+    handler = Handler()
+    logging.getLogger("camber").addHandler(handler)
+    try:
+        with pytest.raises(FileNotFoundError):
+            camber.render("/nowhere", context=context)
+    except ValueError:
+        pass
+    logging.getLogger("camber").removeHandler(handler)
+    assert not told or "in a call already" in told[0]
+
+
+def test_a_forked_process_is_told():
+    camber.draw(POINTS, size=(9, 9))
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            camber.draw(POINTS, size=(9, 9))
+        except RuntimeError as error:
+            os.write(write, str(error).encode())
+        finally:
+            os._exit(0)
+    os.close(write)
+    with os.fdopen(read) as file:
+        assert "forked" in file.read()
+    os.waitpid(child, 0)
+
+
+def test_a_program_ends_well():
+    program = ("import numpy, camber, threading\n"
+               "keep = camber.Network(numpy.eye(2)), camber.Map(), camber.tessellate(numpy.eye(2))\n"
+               "t = threading.Thread(target=lambda: camber.draw(numpy.eye(2), size=(9, 9))); t.start(); t.join()\n"
+               "print(keep[0].draw(size=(9, 9)).shape)")
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "(9, 9, 4)\n", "")
+
+
+def resident_bytes():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+CALLS = int(os.environ.get("CAMBER_CALLS", "2000"))  # tests/tool/test_python.sh asks for more under a sanitizer
+
+
+def test_thousands_of_calls():
+    network = camber.Network(POINTS, OFFSETS)
+    context = camber.Context()
+    held = None
+    for call in range(CALLS):
+        kind = call % 5
+        if kind == 0:
+            camber.draw(POINTS, OFFSETS, size=(32, 32), width=numpy.full(20, 2.0), color=["#123"] * 20)
+        elif kind == 1:
+            network.draw(size=(32, 32), bearing=call, dash=None)
+        elif kind == 2:
+            camber.tessellate(POINTS, OFFSETS, context=context).records.sum
+        elif kind == 3:
+            with pytest.raises(ValueError):
+                camber.draw(POINTS, OFFSETS, size=(32, 32), width=-1)
+        else:
+            camber.encode(camber.draw(POINTS, OFFSETS, size=(32, 32), dash=[3, 2], context=context), context=context)
+        if call == CALLS * 2 // 5:
+            gc.collect()
+            held = resident_bytes(), len(os.listdir("/proc/self/fd")), threading.active_count()
+    gc.collect()
+    assert (len(os.listdir("/proc/self/fd")), threading.active_count()) == held[1:]
+    grown = resident_bytes() - held[0]
+    assert grown < 4 << 20, "%d bytes more after %d calls" % (grown, CALLS * 3 // 5)

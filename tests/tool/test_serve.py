@@ -726,6 +726,7 @@ def test_renderd():
         got = ask_renderd("socket", renderd_message(version, RENDER, ZOOM, COLUMN + 1, ROW + 5),
                           renderd_message(version, RENDER, 1, 1, 0))
         expect(got == [DONE, DONE], f"version {version}: {got}")
+        expect(server.metric("draw_seconds_count") == 2, "a metatile takes more than one drawing")
         check_metatile(server, "tiles", ZOOM, COLUMN, ROW)
         check_metatile(server, "tiles", 1, 0, 0)
     bad = [renderd_message(3, RENDER, 21, 0, 0), renderd_message(3, RENDER, 3, 8, 0), renderd_message(3, RENDER, 3, -1, 0),

@@ -6,6 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const struct {
+    const char *when, *name, *name_behind;
+} news[] = {{"first", "the first tiles", "the first tiles by mod_tile"}, {"all", "all tiles", "all tiles by mod_tile"}};
+
 static json_t *load(bench *b, const bench_pyramid *p, const char *what) {
     static const char program[] = CAMBER_BENCH_PEERS "/serve_load.py", *const seconds[] = {"15", "3", "1"};
     char xml[128], start[1024] = "";
@@ -33,10 +37,13 @@ static void add_row(json_t *result, json_t *row) {
     const json_t *memory = json_object_get(row, "memory");
     json_object_set_new(row, "key", json_string("porto"));
     json_object_set_new(row, "name", json_string("Porto"));
-    add_figure(result, "new tiles", "mod_tile and renderd",
-               number_of(row, "camber", "new", "a_second") / number_of(row, "renderd", "new", "a_second"), false);
-    add_figure(result, "new tiles by mod_tile", "renderd",
-               number_of(row, "behind", "new", "a_second") / number_of(row, "renderd", "new", "a_second"), false);
+    for (size_t i = 0; i < sizeof news / sizeof *news; i++) {
+        const double renderd = number_of(row, "renderd", news[i].when, "a_second");
+        add_figure(result, news[i].name, "mod_tile and renderd",
+                   number_of(row, "camber", news[i].when, "a_second") / renderd, false);
+        add_figure(result, news[i].name_behind, "renderd", number_of(row, "behind", news[i].when, "a_second") / renderd,
+                   false);
+    }
     add_figure(result, "tiles from memory", "mod_tile",
                number_of(row, "camber", "cached", "a_second") / number_of(row, "renderd", "cached", "a_second"), false);
     add_figure(result, "memory after 10^6 requests", "10^4",
@@ -72,9 +79,15 @@ static void print(const json_t *result, FILE *to) {
         return;
     const json_t *memory = json_object_get(row, "memory"), *start = json_object_get(row, "start");
     fprintf(to, "\nTiles of Porto over HTTP, by wrk -t2 -c16 on the same processors\n");
-    print_load(row, "camber", "new", "camber, new tiles", to);
-    print_load(row, "behind", "new", "mod_tile and camber, new tiles", to);
-    print_load(row, "renderd", "new", "mod_tile and renderd, new tiles", to);
+    for (size_t i = 0; i < sizeof news / sizeof *news; i++) {
+        char names[3][64];
+        snprintf(names[0], sizeof names[0], "camber, %s", news[i].name);
+        snprintf(names[1], sizeof names[1], "mod_tile and camber, %s", news[i].name);
+        snprintf(names[2], sizeof names[2], "mod_tile and renderd, %s", news[i].name);
+        print_load(row, "camber", news[i].when, names[0], to);
+        print_load(row, "behind", news[i].when, names[1], to);
+        print_load(row, "renderd", news[i].when, names[2], to);
+    }
     print_load(row, "camber", "cached", "camber, from memory", to);
     print_load(row, "renderd", "cached", "mod_tile, from its folder", to);
     print_load(row, "camber", "known", "camber, not modified", to);

@@ -4,7 +4,8 @@
     serve_load.py FOLDER TOOL CITY STYLE XML SECONDS START WHAT,...
 
 TOOL is camber; it draws CITY in STYLE, as renderd draws XML. FOLDER takes all files. Tiles are of 256 px at zooms 12 to
-16, at random places of the city's box; each is asked for once while a server is new. START is a larger file whose first
+16, at random places of the city's box; each is asked for once while a server is new: the first thousand, of which few
+are beside each other, and all that there are. START is a larger file whose first
 tile is waited for. WHAT is camber, behind (camber behind mod_tile), renderd (the same), memory, start. Prints a line of
 JSON, without what needs a program that is not here: apache2 with mod_tile, renderd. Exit status 77: no wrk.
 """
@@ -27,6 +28,7 @@ SECONDS, START, WANTED = int(sys.argv[6]), sys.argv[7], sys.argv[8].split(",")
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODULES = "/usr/lib/apache2/modules"
 ZOOMS = range(12, 17)
+FIRST_TILES = 1000
 CACHED_TILES = 500
 FEW, MANY = 10**4, 10**6  # requests before memory is looked at
 KEPT_TILES, NEW_SHARE = 300, 0.02
@@ -123,7 +125,10 @@ def start_camber(*options, city=CITY, ready="/health"):
 
 def measure_camber(paths):
     port, server = start_camber("--style", STYLE)
-    made = {"new": load(port, write_paths("new.txt", paths), SECONDS, "once")}
+    made = {"first": load(port, write_paths("new.txt", paths[:FIRST_TILES]), SECONDS, "once")}
+    server.stop()
+    port, server = start_camber("--style", STYLE)
+    made["all"] = load(port, write_paths("new.txt", paths), SECONDS, "once")
     some = paths[:CACHED_TILES]
     for path in some:
         ask(port, path)
@@ -184,25 +189,38 @@ MAXZOOM=20
     return Process(lambda: os.path.exists(FOLDER + "/renderd.sock"), "renderd", "-f", "-c", FOLDER + "/renderd.conf")
 
 
+class ModTile:
+    """Apache with mod_tile before renderd or camber; nothing is kept of what was before."""
+
+    def __init__(self, by_camber):
+        self.metatiles = os.path.join(FOLDER, "metatiles")
+        os.mkdir(self.metatiles)
+        if by_camber:
+            options = ("--renderd", FOLDER + "/renderd.sock", "--cache-dir", self.metatiles)
+            self.behind = start_camber("--style", STYLE, *options)[1]
+        else:
+            self.behind = start_renderd(self.metatiles)
+        self.port, self.apache = start_apache(self.metatiles)
+
+    def stop(self):
+        self.apache.stop()
+        self.behind.stop()
+        shutil.rmtree(self.metatiles)
+        if os.path.exists(FOLDER + "/renderd.sock"):
+            os.unlink(FOLDER + "/renderd.sock")
+
+
 def measure_mod_tile(paths, by_camber):
-    """The same paths, in the same order, by mod_tile; both sides keep nothing of what was before."""
-    metatiles = os.path.join(FOLDER, "metatiles")
-    shutil.rmtree(metatiles, ignore_errors=True)
-    os.mkdir(metatiles)
-    if by_camber:
-        _, behind = start_camber("--style", STYLE, "--renderd", FOLDER + "/renderd.sock", "--cache-dir", metatiles)
-    else:
-        behind = start_renderd(metatiles)
-    port, apache = start_apache(metatiles)
-    made = {"new": load(port, write_paths("new.txt", paths, "/t"), SECONDS, "once")}
-    some = [path for path in paths[:CACHED_TILES] if ask(port, "/t" + path)[0].status == 200] if not by_camber else []
-    if some:
-        made["cached"] = load(port, write_paths("cached.txt", some, "/t"), SECONDS)
-    apache.stop()
-    behind.stop()
-    shutil.rmtree(metatiles)
-    if os.path.exists(FOLDER + "/renderd.sock"):
-        os.unlink(FOLDER + "/renderd.sock")
+    """The same paths, in the same order, by mod_tile."""
+    server = ModTile(by_camber)
+    made = {"first": load(server.port, write_paths("new.txt", paths[:FIRST_TILES], "/t"), SECONDS, "once")}
+    server.stop()
+    server = ModTile(by_camber)
+    made["all"] = load(server.port, write_paths("new.txt", paths, "/t"), SECONDS, "once")
+    some = [path for path in paths[:CACHED_TILES] if ask(server.port, "/t" + path)[0].status == 200]
+    if not by_camber and some:
+        made["cached"] = load(server.port, write_paths("cached.txt", some, "/t"), SECONDS)
+    server.stop()
     return made
 
 

@@ -54,8 +54,7 @@ struct camber_renderd {
     pthread_t thread;
     bool started;
     atomic_bool stopping;
-    pthread_mutex_t mutex;   /* of clients' sockets */
-    pthread_mutex_t drawing; /* one metatile at a time */
+    pthread_mutex_t mutex; /* of clients' sockets */
     renderd_client clients[MOST_CLIENTS];
 };
 
@@ -165,10 +164,7 @@ static bool draw(camber_renderd *renderd, const protocol_message *message) {
                         (message->command >= COMMAND_RENDER_PRIO && message->command <= COMMAND_RENDER_LOW);
     if (!wanted || renderd->stopping || !renderd->desc.is_ready(renderd->desc.user) || !take_message(message, &first))
         return false;
-    pthread_mutex_lock(&renderd->drawing);
-    const bool drawn = write_metatile(renderd, message->name, &first);
-    pthread_mutex_unlock(&renderd->drawing);
-    return drawn;
+    return write_metatile(renderd, message->name, &first);
 }
 
 static bool receive(int from, void *bytes, size_t size) {
@@ -305,7 +301,6 @@ int camber_renderd_create(const camber_renderd_desc *desc, camber_renderd **rend
     for (size_t i = 0; i < MOST_CLIENTS; i++)
         made->clients[i] = (renderd_client){.renderd = made, .socket = -1};
     pthread_mutex_init(&made->mutex, NULL);
-    pthread_mutex_init(&made->drawing, NULL);
     int cause = listen_at(desc->socket, &made->socket);
     if (!cause && (cause = pthread_create(&made->thread, NULL, accept_clients, made)) == 0)
         made->started = true;
@@ -334,7 +329,6 @@ void camber_renderd_destroy(camber_renderd *renderd) {
             (void)shutdown(renderd->clients[i].socket, SHUT_RD); /* its answer is sent still */
             close_client(renderd, renderd->clients + i);
         }
-    pthread_mutex_destroy(&renderd->drawing);
     pthread_mutex_destroy(&renderd->mutex);
     free(renderd);
 }

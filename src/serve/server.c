@@ -8,6 +8,7 @@
 
 #include "serve/answer.h"
 #include "serve/gzip.h"
+#include "serve/metatile_file.h"
 #include "serve/page.h"
 #include "serve/tilejson.h"
 
@@ -24,11 +25,13 @@ enum {
     DEFAULT_PX = 2048,
     DEFAULT_RATIO = 4,
     DEFAULT_SIDE = 1,
+    RENDERD_SIDE = CAMBER_METATILE_FILE_SIDE, /* all tiles of a file are wanted at once: one drawing has them */
     MOST_CONNECTIONS = 12000,
     SPARE_DESCRIPTORS = 128, /* for files and drivers */
     CONNECTION_BYTES = 16 << 10,
     MOST_QUEUED = 128,
-    MOST_PICTURES = 24,
+    MOST_PICTURES = 24, /* of a tile each; of a metatile fewer */
+    LEAST_PICTURES = 3, /* one is drawn, others are encoded */
     LONGEST_END_S = 20,
 };
 
@@ -131,7 +134,7 @@ static camber_server_desc fill_in(const camber_server_desc *desc) {
     made.cache_bytes = desc->cache_bytes ? desc->cache_bytes : DEFAULT_CACHE_BYTES;
     made.most_px = desc->most_px ? desc->most_px : DEFAULT_PX;
     made.most_ratio = desc->most_ratio ? desc->most_ratio : DEFAULT_RATIO;
-    made.side = desc->side ? desc->side : DEFAULT_SIDE;
+    made.side = desc->side ? desc->side : desc->renderd ? RENDERD_SIDE : DEFAULT_SIDE;
     made.threads = desc->threads ? desc->threads : cores > 1 ? (uint32_t)cores : 1;
     return made;
 }
@@ -165,6 +168,7 @@ static int start_all(camber_server *server, const char **failed) {
     if (cause)
         return cause;
     *failed = NULL;
+    const uint32_t pictures = MOST_PICTURES / (desc->side * desc->side);
     const camber_draw_queue_desc drawing = {.cache = server->cache,
                                             .metrics = &server->metrics,
                                             .draw = camber_painter_draw,
@@ -173,7 +177,7 @@ static int start_all(camber_server *server, const char **failed) {
                                             .side = desc->side,
                                             .threads = desc->threads,
                                             .most_queued = MOST_QUEUED,
-                                            .most_pictures = MOST_PICTURES,
+                                            .most_pictures = pictures > LEAST_PICTURES ? pictures : LEAST_PICTURES,
                                             .log = desc->log,
                                             .log_user = desc->user};
     if (!(server->drawing = camber_draw_queue_create(&drawing)))

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
-"""The files of examples/serve, run: camber serve behind nginx and behind Caddy, and systemd's own check of the unit.
+"""The files of examples/serve, run: camber serve behind nginx, behind Caddy and behind Apache's mod_tile, and systemd's
+own check of the unit.
 
     test_proxies.py TOOL EXAMPLES
 
 TOOL is camber, EXAMPLES the folder. Names, ports, paths and certificates are the test's; all else is as the files have
-it. Needs nginx, caddy, systemd-analyze, openssl; what is not there is left out, and told. Exit status 1: the first
+it. Needs nginx, caddy, systemd-analyze, openssl, apache2-bin and libapache2-mod-tile; what is not there is left out, and
+told. Exit status 1: the first
 failure, on standard error; 77: nothing is there.
 """
 
 import atexit
+import glob
 import json
 import os
 import re
@@ -138,9 +141,72 @@ def check_unit():
     print(f"the unit: exposed by {found.group(1)} of 10")
 
 
+MODULES = "/usr/lib/apache2/modules"
+METATILE = 8  # tiles a side
+
+
+def find_metatiles():
+    """Path and time of each."""
+    return {path: os.stat(path).st_mtime_ns for path in glob.glob("metatiles/default/**/*.meta", recursive=True)}
+
+
+def write_apache(port):
+    here = os.getcwd()
+    text = replace(read_example("mod_tile.conf"),
+                   ("<VirtualHost *:80>", f"Listen 127.0.0.1:{port}\n<VirtualHost *:{port}>"),
+                   ("/var/cache/renderd/tiles", here + "/metatiles"), ("/run/renderd/renderd.sock", here + "/socket"))
+    modules = "".join(f"LoadModule {name}_module {MODULES}/mod_{name}.so\n"
+                      for name in ("mpm_event", "authz_core", "tile"))
+    with open("apache.conf", "w", encoding="utf-8") as file:
+        file.write(f"ServerRoot {here}\nServerName tiles.example.org\nPidFile {here}/apache.pid\n"
+                   f"ErrorLog {here}/apache.log\nDefaultRuntimeDir {here}\n{modules}{text}\n")
+
+
+def check_mod_tile(_):
+    """A tile by Apache, which asks camber at its socket; then render_list and render_expired, of the same folder."""
+    if not os.path.exists(f"{MODULES}/mod_tile.so"):
+        print("no mod_tile: left out")
+        return
+    port = find_port()
+    os.mkdir("metatiles")
+    server = Server("map.json", "--renderd", "socket", "--cache-dir", "metatiles")
+    write_apache(port)
+    url = f"http://127.0.0.1:{port}/map"
+    process = start(url + "/0/0/0.png", "apache2", "-X", "-f", os.getcwd() + "/apache.conf")
+    for path in (TILE, f"/{ZOOM - 1}/{COLUMN // 2}/{ROW // 2}.png", "/2/1/1.png"):
+        status, headers, body = get(url + path)
+        expect(status == 200 and headers["Content-Type"] == "image/png", f"{path}: {status}")
+        expect(body == server.get(path)[2], f"{path}: another tile")
+        expect(get(url + path, **{"If-None-Match": headers["ETag"]})[0] == 304, "mod_tile knows its own tile")
+    expect(len(find_metatiles()) == 4, f"metatiles: {find_metatiles()}")
+    expect(b"Tile submitted for rendering" in get(url + TILE + "/dirty")[2], "a tile is not asked for again")
+    # Both wait where the machine's load is larger than they are told.
+    options = ["-s", "socket", "-m", "default", "-t", os.path.abspath("metatiles"), "-l", "1000"]
+    column, row = COLUMN - COLUMN % METATILE, ROW - ROW % METATILE
+    done = subprocess.run(["render_list", *options, "-a", "-z", str(ZOOM), "-Z", str(ZOOM), "-x", str(column), "-X",
+                           str(column + METATILE), "-y", str(row), "-Y", str(row + METATILE - 1), "-f"],
+                          capture_output=True, text=True, timeout=60)
+    expect(done.returncode == 0 and "Rendered 2 tiles" in done.stdout + done.stderr, done.stdout + done.stderr)
+    before = find_metatiles()
+    # The tile itself and the one above it, which are there, and no other.
+    done = subprocess.run(["render_expired", *options, "-z", str(ZOOM - 1), "-Z", str(ZOOM)],
+                          input=f"{ZOOM}/{COLUMN}/{ROW}\n", capture_output=True, text=True, timeout=60)
+    expect(done.returncode == 0, done.stdout + done.stderr)
+    after = find_metatiles()
+    changed = {path for path in after if after[path] != before.get(path)}
+    expect({path.split("/")[2] for path in changed} == {str(ZOOM - 1), str(ZOOM)} and len(changed) == 2,
+           f"expired: {changed}: {done.stdout}{done.stderr}")
+    status, _, body = get(url + TILE)
+    expect(status == 200 and body == server.get(TILE)[2], f"a tile after it has expired: {status}")
+    process.terminate()
+    expect(process.wait(timeout=30) == 0, "Apache does not end")
+    server.stop()
+
+
 def main():
     os.environ["PATH"] += ":/usr/sbin"
-    checks = [("systemd-analyze", check_unit), ("nginx", check_nginx), ("caddy", check_caddy)]
+    checks = [("systemd-analyze", check_unit), ("nginx", check_nginx), ("caddy", check_caddy),
+              ("apache2", check_mod_tile)]
     there = [(name, check) for name, check in checks if shutil.which(name)]
     for name in {name for name, _ in checks} - {name for name, _ in there}:
         print(f"no {name}: left out")

@@ -310,10 +310,11 @@ async function checkPhone(browser, url) {
 async function checkForeignText(browser) {
     const server = await startServer(input, ...DRAWN, '--name', '<img src=x onerror=alert(1)>', '--attribution',
         '&copy; <a href="https://example.org/a?b&amp;c">Roads</a><a href="javascript:alert(2)"> and</a>' +
-        '<script>alert(3)</script><img src=x onerror=alert(4)> more');
+        '<script>alert(3)</script><img src=x onerror=alert(4)> (c) more');
     const page = await openPage(browser, server.url + hashAt(CENTER));
     check(await page.locator('h1').textContent() === '<img src=x onerror=alert(1)>', 'a name is text');
-    check((await page.locator('#attribution').textContent()).startsWith('© Roads and'), 'an attribution is text');
+    const credit = await page.locator('#attribution').textContent();
+    check(credit.startsWith('© Roads and') && credit.endsWith('© more'), 'an attribution is text', credit);
     const parts = await page.evaluate(() => [...document.querySelectorAll('#attribution *')].map(part =>
         part.outerHTML));
     check(parts.join() ===

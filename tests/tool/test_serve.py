@@ -91,6 +91,39 @@ def test_routes():
     server.stop()
 
 
+def test_start():
+    """Before the input is read there is the page alone; what must be drawn is 503."""
+    write_map("map.json", count=20000)
+    server = Server("map.json", wait=False)
+    before = {path: server.get(path) for path in ("/health", f"/{ZOOM}/{COLUMN}/{ROW}.png", "/tiles.json", "/")}
+    expect([before[path][0] for path in before] == [503, 503, 503, 200], f"{[(path, before[path][0]) for path in before]}")
+    expect(all(headers.get("retry-after") == "1" for status, headers, _ in before.values() if status == 503), before)
+    expect(server.metric("ready") == 0, "it is ready before it has read")
+    server.wait()
+    expect(server.metric("ready") == 1 and server.get(f"/{ZOOM}/{COLUMN}/{ROW}.png")[0] == 200, "it is not ready")
+    server.stop()
+
+
+def test_log():
+    """With -v a line of JSON for each request; what a path has of its own does not break it."""
+    write_map("map.json")
+    server = Server("map.json", "-v")
+    tile = f"/{ZOOM}/{COLUMN}/{ROW}.png"
+    body = server.get(tile)[2]
+    server.request(tile, "HEAD")
+    server.send(b'GET /"\\\x01\xff HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n')
+    server.request(tile, "POST")
+    server.stop()
+    lines = [json.loads(line) for line in server.errors if line.startswith("{")]
+    lines = [line for line in lines if line["path"] != "/health"]
+    expect([(line["method"], line["path"], line["route"], line["status"], line["bytes"]) for line in lines[:2]] ==
+           [("GET", tile, "tile", 200, len(body)), ("HEAD", tile, "tile", 200, 0)], lines)
+    expect(lines[2]["status"] == 404 and lines[2]["path"].startswith('/"\\'), lines[2])
+    expect((lines[3]["method"], lines[3]["status"]) == ("POST", 405) and len(lines) == 4, lines)
+    for line in lines:
+        expect(re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", line["time"]) and line["ms"] >= 0, line)
+
+
 def test_usage():
     write_map("map.json")
     for arguments, status in (((), 2), (("-",), 2), (("map.json", "--style", "-"), 2), (("none.json",), 66),
@@ -473,6 +506,31 @@ def test_reach():
         expect("secret" not in file.read(), "it has looked for what a path named")
 
 
+# Every file system that may be written to becomes one that may not, but an own one for the compiler of kernels. Its last
+# words are the command, as a user without rights.
+READ_ONLY = """for place in $(cut -d' ' -f2 /proc/self/mounts | sort -r); do mount -o remount,bind,ro $place; done 2>/dev/null
+mount -t tmpfs -o mode=777 none cache && ! touch here 2>/dev/null && XDG_CACHE_HOME=$PWD/cache \
+exec setpriv --reuid=65534 --regid=65534 --clear-groups --no-new-privs --bounding-set=-all "$@" """
+
+
+def test_unprivileged():
+    """It serves as a user without rights, and needs no file that it may write but the folder of compiled kernels."""
+    write_map("map.json")
+    os.mkdir("cache")
+    os.chmod(".", 0o755)
+    wrapper = ("unshare", "--mount", "sh", "-c", READ_ONLY, "sh")
+    if os.geteuid() != 0 or subprocess.run([*wrapper, TOOL, "--version"], capture_output=True, check=False).returncode != 0:
+        print("test_unprivileged: no root, no mounts, or the tool lies where others cannot go: skipped")
+        return
+    server = Server("map.json", wrapper=wrapper)
+    with open(f"/proc/{server.process.pid}/status", encoding="ascii") as file:
+        about = file.read()
+    expect(re.search(r"^Uid:(\t65534){4}$", about, re.M) and re.search("^CapEff:\t0+$", about, re.M), about)
+    for path in (f"/{ZOOM}/{COLUMN}/{ROW}.png", f"/{ZOOM}/{COLUMN}/{ROW}@2x.webp", "/static/9.14,55.2,11/300x200.png", "/"):
+        expect(server.get(path)[0] == 200, path)
+    server.stop()
+
+
 STYLE = {"version": 8, "sources": {}, "layers": [
     {"id": "back", "type": "background", "paint": {"background-color": "#ffffff"}},
     {"id": "roads", "type": "line", "paint": {"line-color": "#000000", "line-width": 3}}]}
@@ -646,6 +704,27 @@ def test_archives():
     server.stop()
 
 
+def test_cut_archive():
+    """An archive that is cut or overwritten while it is served: errors, and no end of the server."""
+    write_map("map.json")
+    for name, ending in (("a.pmtiles", "pmtiles"), ("a.mbtiles", "mbtiles")):
+        subprocess.run([TOOL, "tiles", "map.json", "-o", name, "-q", "--max-zoom", "13", "-f"], check=True, timeout=120)
+        server = Server(name)
+        path = f"/{ZOOM}/{COLUMN}/{ROW}.png"
+        expect(server.get(path)[0] == 200, f"a tile of {ending}")
+        size = os.path.getsize(name)
+        with open(name, "r+b") as file:
+            file.truncate(size // 2)
+        statuses = {server.get(f"/{ZOOM}/{COLUMN + x}/{ROW + y}.png")[0] for x in range(-3, 4) for y in range(-3, 4)}
+        expect(statuses <= {200, 204, 500}, f"{name}, cut: {statuses}")
+        with open(name, "wb") as file:
+            file.write(b"\xff" * size)
+        statuses = {server.get(f"/12/{COLUMN // 2 + x}/{ROW // 2 + y}.png")[0] for x in range(-2, 3) for y in range(-2, 3)}
+        expect(statuses <= {200, 204, 500}, f"{name}, overwritten: {statuses}")
+        expect(server.get("/health")[0] == 200 and server.get("/")[0] == 200, f"{name}: it does not answer any more")
+        server.stop()
+
+
 def test_vector_tiles():
     """An archive of vector tiles is drawn, as any map is."""
     server = Server(os.path.join(TESTS, "data", "santa_cruz", "osm.mbtiles"))
@@ -726,6 +805,7 @@ def test_renderd():
         got = ask_renderd("socket", renderd_message(version, RENDER, ZOOM, COLUMN + 1, ROW + 5),
                           renderd_message(version, RENDER, 1, 1, 0))
         expect(got == [DONE, DONE], f"version {version}: {got}")
+        expect(server.metric("draw_seconds_count") == 2, "a metatile takes more than one drawing")
         check_metatile(server, "tiles", ZOOM, COLUMN, ROW)
         check_metatile(server, "tiles", 1, 0, 0)
     bad = [renderd_message(3, RENDER, 21, 0, 0), renderd_message(3, RENDER, 3, 8, 0), renderd_message(3, RENDER, 3, -1, 0),
@@ -742,8 +822,8 @@ def test_renderd():
     expect(all(re.fullmatch(r"\d+\.meta", name) for name in found), f"left behind: {found}")
     expect(os.listdir("tiles") == ["default"], f"folders: {os.listdir('tiles')}")
     if shutil.which("render_list"):
-        done = subprocess.run(["render_list", "-s", "socket", "-m", "default", "-t", os.path.abspath("tiles"), "-z", "12",
-                               "-Z", "12", "-x", str(COLUMN // 2 - 8), "-X", str(COLUMN // 2 + 7), "-y", str(ROW // 2 - 8),
+        done = subprocess.run(["render_list", "-s", "socket", "-m", "default", "-t", os.path.abspath("tiles"), "-l", "1000", "-z",
+                               "12", "-Z", "12", "-x", str(COLUMN // 2 - 8), "-X", str(COLUMN // 2 + 7), "-y", str(ROW // 2 - 8),
                                "-Y", str(ROW // 2 + 7), "-a", "-n", "4", "-f"], capture_output=True, text=True, timeout=60)
         expect(done.returncode == 0 and "Rendered 4 tiles" in done.stdout + done.stderr, done.stdout + done.stderr)
         check_metatile(server, "tiles", 12, COLUMN // 2 - 8, ROW // 2 - 4 & ~7)

@@ -77,7 +77,7 @@ function showAttribution(text) {
         if (end) {
             place = line;
         } else if (words) {
-            place.append(readEntities(words));
+            place.append(readEntities(words).replace(/\(c\)/gi, '©'));
         } else if (/^https?:\/\//i.test(target)) {
             place = document.createElement('a');
             place.href = target;

@@ -808,6 +808,20 @@ def test_renderd():
         expect(server.metric("draw_seconds_count") == 2, "a metatile takes more than one drawing")
         check_metatile(server, "tiles", ZOOM, COLUMN, ROW)
         check_metatile(server, "tiles", 1, 0, 0)
+    places = [(ZOOM, COLUMN + 8 * x, ROW + 8 * y) for x in (-1, 0, 1) for y in (-1, 0, 1)] * 2  # each by two clients
+    told = [None] * len(places)
+
+    def ask(i):
+        told[i] = ask_renderd("socket", renderd_message(3, RENDER, *places[i]))
+
+    threads = [threading.Thread(target=ask, args=(i,)) for i in range(len(places))]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    expect(told == [[DONE]] * len(places), f"at once: {told}")
+    for place in places[:9]:
+        check_metatile(server, "tiles", *place)
     bad = [renderd_message(3, RENDER, 21, 0, 0), renderd_message(3, RENDER, 3, 8, 0), renderd_message(3, RENDER, 3, -1, 0),
            renderd_message(3, RENDER, -1, 0, 0), renderd_message(3, 0, 3, 0, 0), renderd_message(3, 99, 3, 0, 0),
            renderd_message(3, RENDER, 3, 0, 0, name=b".."), renderd_message(3, RENDER, 3, 0, 0, name=b"a/b"),

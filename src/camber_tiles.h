@@ -193,10 +193,11 @@ CAMBER_API camber_status camber_tiles_schedule_read(camber_context *context, con
                                                     camber_tiles_schedule **schedule);
 CAMBER_API void camber_tiles_schedule_destroy(camber_tiles_schedule *schedule);
 /* Tells a set which part of the run it is for: files are then read for its tiles alone. Call it before
- * camber_features_read, with the desc of the engine to be. shards 0: for all. Returns CAMBER_ERROR_MEMORY. */
-CAMBER_API camber_status camber_tiles_schedule_read_for(const camber_tiles_schedule *schedule,
-                                                        camber_features *features, const camber_tiles_engine_desc *desc,
-                                                        uint32_t shard, uint32_t shards);
+ * camber_features_read, with the desc of the engine to be; camber_tiles_schedule_load then goes by it, too. shards 0:
+ * for all. Returns CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_tiles_schedule_read_for(camber_tiles_schedule *schedule, camber_features *features,
+                                                        const camber_tiles_engine_desc *desc, uint32_t shard,
+                                                        uint32_t shards);
 
 /* Fills an empty set for which camber_tiles_schedule_read_for was called, from the file that the dry run has written
  * beside the schedule. *loaded: it is there; else read the inputs. Returns CAMBER_ERROR_INPUT (damaged, or of another

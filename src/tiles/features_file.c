@@ -282,6 +282,8 @@ static camber_status get_json(stream *from, uint64_t size_bytes, camber_features
 typedef struct loading {
     stream *from;
     camber_features *features;
+    const camber_region *boxes;
+    size_t box_count;
     uint32_t *polyline_feature, *feature_counts;
     uint64_t *offsets;
     float *progress;
@@ -302,12 +304,23 @@ static bool makes_sense(const loading *l, const header *head) {
     return good;
 }
 
+/* The region has all boxes: most lines that lie in none do not touch it. */
+static bool is_wanted(const loading *l, const double *points, size_t count) {
+    const camber_features *f = l->features;
+    if (f->has_region && !camber_region_touches(&f->region, points, count))
+        return false;
+    for (size_t i = 0; i < l->box_count && l->box_count > 1; i++)
+        if (camber_region_touches(l->boxes + i, points, count))
+            return true;
+    return l->box_count < 2;
+}
+
 /* Takes a polyline of the block that begins with a point. */
 static bool take_polyline(loading *l, size_t polyline, uint64_t begin) {
     camber_features *f = l->features;
     const size_t first = (size_t)(l->offsets[polyline] - begin);
     const size_t count = (size_t)(l->offsets[polyline + 1] - l->offsets[polyline]), n = f->polyline_count;
-    if (f->has_region && !camber_region_touches(&f->region, l->points + 2 * first, count))
+    if (!is_wanted(l, l->points + 2 * first, count))
         return true;
     if (!camber_grow(f->context, &f->points, &f->point_capacity, f->point_count + count, 2 * sizeof *f->points) ||
         !camber_grow(f->context, &f->importance, &f->importance_capacity, f->point_count + count,
@@ -390,11 +403,12 @@ static camber_status load(loading *l, const header *head) {
     return status;
 }
 
-camber_status camber_features_load(camber_features *features, uint64_t input, const char *path) {
+camber_status camber_features_load(camber_features *features, const camber_region *boxes, size_t box_count,
+                                   uint64_t input, const char *path) {
     camber_context *context = features->context;
     stream from = {.context = context, .path = path};
     header head = {0};
-    loading l = {.from = &from, .features = features};
+    loading l = {.from = &from, .features = features, .boxes = boxes, .box_count = box_count};
     camber_status status = camber_file_open(context, path, CAMBER_NAMED_BY_CALLER, &from.file, &from.size_bytes);
     if (status != CAMBER_OK)
         return status;

@@ -21,9 +21,10 @@ static const size_t MOST_KEPT = (size_t)1 << 22;
 /* The time to take a point from the file of features, in points that are drawn; and to look whether deep tiles have it,
  * for a part that goes on from wide zooms to deep ones, and so holds all points. */
 static const double READ_COST = 0.15, LOOK_COST = 0.2;
-/* A zoom is wide if one metatile has more of its points than this share. There a point takes so many times as long:
- * thousands lie in one pixel, and the network has all lines (2026-11-25, a country of 10 million points). */
-static const double WIDE_SHARE = 0.125, WIDE_COST = 1.5;
+/* A zoom is wide if one metatile has more of its points than this share. */
+static const double WIDE_SHARE = 0.125;
+/* A point takes up to so much longer where many lie in a tile; half of that where so many do (2026-11-25). */
+static const double DENSE_COST = 0.6, DENSE_POINTS = 150e3;
 enum { CUT_STEPS = 60 };
 
 static unsigned count_tiles(uint64_t tiles) {
@@ -34,7 +35,11 @@ static unsigned count_tiles(uint64_t tiles) {
 }
 
 double camber_task_cost(const camber_tile_task *task) {
-    return (task->touched ? PICTURE_COST + (double)task->points : 0.0) + TILE_COST * count_tiles(task->touched);
+    if (!task->touched)
+        return 0.0;
+    const double points = (double)task->points, tiles = count_tiles(task->touched), density = points / tiles;
+    const double more = DENSE_COST * density / (density + DENSE_POINTS);
+    return PICTURE_COST + points * (1.0 + more) + TILE_COST * tiles;
 }
 
 static camber_status add_task(camber_schedule *schedule, const camber_tile_task *task) {
@@ -259,8 +264,8 @@ static uint64_t fill(const walk *w, double most, uint32_t *parts) {
     bool empty = true;
     for (size_t i = 0; i < w->schedule->count; i++) {
         const camber_tile_task *task = w->schedule->tasks + w->order[i];
-        const double more = i < w->wide ? WIDE_COST - 1.0 : task->zoom == w->deepest ? READ_COST : 0.0;
-        const double cost = camber_task_cost(task) + more * (double)task->points;
+        const double reads = i >= w->wide && task->zoom == w->deepest ? READ_COST * (double)task->points : 0.0;
+        const double cost = camber_task_cost(task) + reads;
         if (i == w->wide && !empty)
             sum += w->look_all;
         if (sum + cost > most && !empty) {
@@ -279,7 +284,7 @@ static uint64_t fill(const walk *w, double most, uint32_t *parts) {
 static double find_most(const walk *w, uint32_t shards) {
     double low = 0.0, high = w->read_all + w->look_all;
     for (size_t i = 0; i < w->schedule->count; i++)
-        high += (WIDE_COST + READ_COST) * camber_task_cost(w->schedule->tasks + i);
+        high += (1.0 + READ_COST) * camber_task_cost(w->schedule->tasks + i);
     for (int i = 0; i < CUT_STEPS; i++) {
         const double middle = 0.5 * (low + high);
         if (fill(w, middle, NULL) <= shards)

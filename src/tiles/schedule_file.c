@@ -246,12 +246,36 @@ static void add_box(camber_region *box, const camber_region *more) {
     box->y1 = fmax(box->y1, more->y1);
 }
 
-camber_status camber_tiles_schedule_read_for(const camber_tiles_schedule *schedule, camber_features *features,
+static double area_with(camber_region box, const camber_region *more) {
+    add_box(&box, more);
+    return (box.x1 - box.x0) * (box.y1 - box.y0);
+}
+
+/* Adds a box to the few of a part: as one more, or to the one that grows least. */
+static void add_to_boxes(camber_tiles_schedule *schedule, const camber_region *more) {
+    size_t best = 0;
+    double least = INFINITY;
+    for (size_t i = 0; i < schedule->box_count; i++) {
+        const camber_region *box = schedule->boxes + i;
+        const double grows = area_with(*box, more) - area_with(*box, box);
+        if (grows < least) {
+            least = grows;
+            best = i;
+        }
+    }
+    if (schedule->box_count < CAMBER_SCHEDULE_BOXES && least > 0.0)
+        schedule->boxes[schedule->box_count++] = *more;
+    else
+        add_box(schedule->boxes + best, more);
+}
+
+camber_status camber_tiles_schedule_read_for(camber_tiles_schedule *schedule, camber_features *features,
                                              const camber_tiles_engine_desc *desc, uint32_t shard, uint32_t shards) {
     const camber_schedule *whole = &schedule->schedule;
     camber_schedule part = {.context = schedule->context, .count = whole->count, .capacity = whole->count};
     camber_region region = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     features->has_region = false;
+    schedule->box_count = 0;
     if (!(part.tasks = camber_alloc(part.context, whole->count, sizeof *part.tasks)))
         return CAMBER_ERROR_MEMORY;
     memcpy(part.tasks, whole->tasks, whole->count * sizeof *part.tasks);
@@ -261,19 +285,25 @@ camber_status camber_tiles_schedule_read_for(const camber_tiles_schedule *schedu
         const camber_zoom_desc zoom = camber_engine_zoom_desc(desc, task->zoom);
         const camber_view view = camber_zoom_view(&zoom);
         const double margin = camber_view_margin(features->style, &view, desc->simplify_px), level = exp2(task->level);
-        add_box(&region, &(camber_region){task->column / level - margin, task->row / level - margin,
-                                          (task->column + 1.0) / level + margin, (task->row + 1.0) / level + margin});
+        const camber_region box = {task->column / level - margin, task->row / level - margin,
+                                   (task->column + 1.0) / level + margin, (task->row + 1.0) / level + margin};
+        add_box(&region, &box);
+        add_to_boxes(schedule, &box);
     }
     camber_schedule_free(&part);
     const camber_box *data = &schedule->data;
     const bool all = region.x0 <= data->x0 && region.y0 <= data->y0 && region.x1 >= data->x1 && region.y1 >= data->y1;
     features->region = region;
     features->has_region = !all && region.x1 - region.x0 < 0.5; /* false for a part without tiles */
+    if (!features->has_region)
+        schedule->box_count = 0;
     return status;
 }
 
 camber_status camber_tiles_schedule_load(const camber_tiles_schedule *schedule, camber_features *features,
                                          bool *loaded) {
     *loaded = schedule->features[0] && access(schedule->features, F_OK) == 0;
-    return *loaded ? camber_features_load(features, schedule->input, schedule->features) : CAMBER_OK;
+    return *loaded ? camber_features_load(features, schedule->boxes, schedule->box_count, schedule->input,
+                                          schedule->features)
+                   : CAMBER_OK;
 }

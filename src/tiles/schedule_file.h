@@ -2,8 +2,11 @@
 #ifndef CAMBER_TILES_SCHEDULE_FILE_H
 #define CAMBER_TILES_SCHEDULE_FILE_H
 
+#include "source/region.h"
 #include "tiles/fingerprint.h"
 #include "tiles/schedule.h"
+
+enum { CAMBER_SCHEDULE_BOXES = 4 };
 
 struct camber_tiles_schedule {
     camber_context *context;
@@ -13,6 +16,9 @@ struct camber_tiles_schedule {
     camber_box data;                           /* of all points */
     camber_schedule schedule;
     char features[4096]; /* the file that has the features, beside the schedule's */
+    /* These have the tiles of the part that a set was told to be for: a stretch of the curve may have far ends. */
+    camber_region boxes[CAMBER_SCHEDULE_BOXES];
+    size_t box_count;
 };
 
 /* Names the file of the features of a schedule. false: the name is too long. */

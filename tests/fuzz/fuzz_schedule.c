@@ -16,7 +16,7 @@ enum { SHARDS = 3 };
 static const char style_text[] =
     "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"filter\": [\"has\", \"highway\"]}]}";
 
-static void read_for_parts(fuzz_run *run, const camber_tiles_schedule *schedule, camber_features *features) {
+static void read_for_parts(fuzz_run *run, camber_tiles_schedule *schedule, camber_features *features) {
     const camber_tiles_engine_desc desc = {.tile_size = 256, .ratio = 1, .simplify_px = 0.1};
     for (uint32_t shard = 1; shard <= SHARDS; shard++)
         (void)fuzz_done(run, camber_tiles_schedule_read_for(schedule, features, &desc, shard, SHARDS));
@@ -36,7 +36,7 @@ static void use_features(fuzz_run *run, const char *path, camber_features *featu
     uint64_t input = 0;
     if (size >= 2 * sizeof input)
         memcpy(&input, bytes + sizeof input, sizeof input);
-    if (!fuzz_done(run, camber_features_load(features, input, path)))
+    if (!fuzz_done(run, camber_features_load(features, NULL, 0, input, path)))
         return;
     const camber_features_stats stats = camber_features_get_stats(features);
     REQUIRE(stats.points >= stats.polylines);

@@ -1,4 +1,4 @@
-/* What bin_count and bin_scatter share: the tiles of a segment, from its bits, or row by row of its box. */
+/* How bin_count and bin_scatter find the tiles of a segment: from its bits, or row by row of a large box. */
 #ifndef CAMBER_KERNELS_BIN_H
 #define CAMBER_KERNELS_BIN_H
 
@@ -17,11 +17,11 @@ static inline camber_u32 span_rows(global const float *segment, camber_u32 box, 
     const camber_u32 rows = CAMBER_BOX_LAST_Y(box) + 1u - y;
     const camber_words boxes = (camber_words)(box);
     camber_segment s;
-    camber_strip strip;
+    camber_slab slab;
     camber_segment_place(segment, &s);
-    camber_strip_of(&s, &strip);
-    const camber_span span =
-        camber_tile_span(&strip, boxes, camber_touches_all(&s, boxes, of), y + CAMBER_LOAD(0, numbers), of);
+    camber_slab_of(&s, &slab);
+    const camber_tile_range span =
+        camber_tile_span(&slab, boxes, camber_touches_all(&s, boxes, of), y + CAMBER_LOAD(0, numbers), of);
     CAMBER_STORE(span.first, 0, first);
     CAMBER_STORE(span.last, 0, last);
     return rows < CAMBER_LANES ? rows : CAMBER_LANES;

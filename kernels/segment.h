@@ -182,31 +182,32 @@ CAMBER_FN void camber_segment_place(CAMBER_GLOBAL const float *segment, camber_s
     s->reach = CAMBER_REAL(segment[CAMBER_SEGMENT_REACH]);
 }
 
-/* How far a segment with its reach lies to either side of its line, along a row of tiles. */
-typedef struct camber_strip {
+/* All that lies within reach of a segment's endless line, as rows of tiles cut it. */
+typedef struct camber_slab {
     camber_real ax, ay, slope, scale, reach; /* slope: x of the direction; scale: 1 over its y; reach: px */
     camber_mask level;                       /* it runs along the row, and may touch all of it */
-} camber_strip;
+} camber_slab;
 
-CAMBER_FN void camber_strip_of(const camber_segment *s, camber_strip *strip) {
+CAMBER_FN void camber_slab_of(const camber_segment *s, camber_slab *slab) {
     const float to_middle = 0.5f * CAMBER_TILE_PX;
     const camber_real one = CAMBER_REAL(1.0f), slack = 1e-6f * (CAMBER_FABS(s->ax) + CAMBER_FABS(s->ay));
-    strip->ax = s->ax;
-    strip->ay = s->ay;
-    strip->slope = s->ux;
-    strip->level = CAMBER_FABS(s->uy) < 1e-3f;
-    strip->scale = one / (strip->level ? one : s->uy);
-    strip->reach = s->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(s->ux) + CAMBER_FABS(s->uy)) + slack;
+    slab->ax = s->ax;
+    slab->ay = s->ay;
+    slab->slope = s->ux;
+    slab->level = CAMBER_FABS(s->uy) < 1e-3f;
+    slab->scale = one / (slab->level ? one : s->uy);
+    slab->reach = s->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(s->ux) + CAMBER_FABS(s->uy)) + slack;
 }
 
 /* Columns of tiles [first, last]; none where the last lies before the first. */
-typedef struct camber_span {
+typedef struct camber_tile_range {
     camber_words first, last;
-} camber_span;
+} camber_tile_range;
 
-/* The tiles of one row of a box that a strip touches. box: the columns that the box has. middle: y of the row's middle,
+/* The tiles of one row of a box that a slab touches. box: the columns that the box has. middle: y of the row's middle,
  * px; left: where the first column begins, px. */
-CAMBER_FN camber_span camber_row_span(const camber_strip *s, camber_span box, camber_real middle, float left) {
+CAMBER_FN camber_tile_range camber_row_span(const camber_slab *s, camber_tile_range box, camber_real middle,
+                                            float left) {
     const float to_middle = 0.5f * CAMBER_TILE_PX, a_tile = 1.0f / CAMBER_TILE_PX;
     const camber_real across = (middle - s->ay) * s->slope;
     const camber_real before = s->ax + (across - s->reach) * s->scale, behind = s->ax + (across + s->reach) * s->scale;
@@ -219,7 +220,7 @@ CAMBER_FN camber_span camber_row_span(const camber_strip *s, camber_span box, ca
     const camber_real begin = CAMBER_MORE(from, first), end = CAMBER_LESS(to, last);
     const camber_words lowest = CAMBER_TO_WORDS(none ? last : begin), highest = CAMBER_TO_WORDS(none ? first : end);
     const camber_words past = CAMBER_TO_REAL(CAMBER_AS_INTEGERS(lowest)) < from ? lowest + 1u : lowest;
-    camber_span span;
+    camber_tile_range span;
     span.first = s->level ? box.first : none ? box.last + 1u : past;
     span.last = s->level ? box.last : highest;
     return span;
@@ -264,11 +265,11 @@ CAMBER_FN camber_mask camber_touches_all(const camber_segment *s, camber_words b
 }
 
 /* The tiles of row y of a box that a segment touches. whole: camber_touches_all. */
-CAMBER_FN camber_span camber_tile_span(const camber_strip *s, camber_words box, camber_mask whole, camber_words y,
-                                       const camber_tile_grid *of) {
-    const camber_span row = {CAMBER_BOX_FIRST_X(box), CAMBER_BOX_LAST_X(box)};
+CAMBER_FN camber_tile_range camber_tile_span(const camber_slab *s, camber_words box, camber_mask whole, camber_words y,
+                                             const camber_tile_grid *of) {
+    const camber_tile_range row = {CAMBER_BOX_FIRST_X(box), CAMBER_BOX_LAST_X(box)};
     const camber_real middle = of->top + (CAMBER_TO_REAL(CAMBER_AS_INTEGERS(y)) + 0.5f) * CAMBER_TILE_PX;
-    camber_span span = camber_row_span(s, row, middle, of->left);
+    camber_tile_range span = camber_row_span(s, row, middle, of->left);
     span.first = whole ? row.first : span.first;
     span.last = whole ? row.last : span.last;
     return span;
@@ -288,14 +289,14 @@ CAMBER_FN camber_words camber_tile_bits(const camber_segment *s, camber_words bo
     const camber_mask large = drawn & ((across >= CAMBER_TILE_BITS_COLUMNS) | (down >= CAMBER_TILE_BITS_ROWS));
     camber_words bits = drawn ? one : none;
     if (CAMBER_ANY(((across | down) != 0u) | (whole == 0))) {
-        camber_strip strip;
-        camber_strip_of(s, &strip);
+        camber_slab slab;
+        camber_slab_of(s, &slab);
         bits = none;
         for (camber_u32 j = 0; j < CAMBER_TILE_BITS_ROWS; j++) {
             const camber_mask has_row = drawn & (large == 0) & (down >= j);
             if (!CAMBER_ANY(has_row))
                 break;
-            const camber_span span = camber_tile_span(&strip, box, whole, y0 + j, of);
+            const camber_tile_range span = camber_tile_span(&slab, box, whole, y0 + j, of);
             const camber_words first = span.first - x0, last = span.last - x0;
             const camber_words row = ((two << (last & 7u)) - (one << (first & 7u))) << (CAMBER_TILE_BITS_COLUMNS * j);
             bits |= has_row & (span.first <= span.last) ? row : none;

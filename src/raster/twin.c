@@ -139,14 +139,14 @@ static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bo
     const uint32_t box = t->stages->boxes[segment];
     const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
     camber_segment s;
-    camber_strip strip;
+    camber_slab slab;
     camber_segment_place(t->stages->segments + CAMBER_SEGMENT_WORDS * segment, &s);
-    camber_strip_of(&s, &strip);
+    camber_slab_of(&s, &slab);
     const camber_mask whole = camber_touches_all(&s, box, &of);
     if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
         return;
     for (uint32_t y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
-        const camber_span span = camber_tile_span(&strip, box, whole, y, &of);
+        const camber_tile_range span = camber_tile_span(&slab, box, whole, y, &of);
         for (uint32_t x = span.first; x <= span.last; x++) {
             uint32_t *count = counts + y * t->columns + x;
             if (fill)

@@ -191,11 +191,12 @@ static inline size_t put_point(global const float *x, global const float *y, glo
                                global const camber_u32 *joins, size_t i, global camber_u32 *records,
                                global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
-    const camber_u32 before = joins[i - 1];
+    const camber_u32 before = joins[i - 1], end = joins[join & CAMBER_JOIN_BEFORE_LAST ? i + 1 : i - 1];
+    const camber_u32 cap = camber_join_end(end) == CAMBER_ENDS_BUTT ? CAMBER_CAPS_BUTT : CAMBER_CAPS_ROUND;
     /* A record a slot, sentinels too: a ring's are where its seam's neighbours lie. */
     put_record(records, i - 1, x[i], y[i],
                camber_record_join(
-                   join, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
+                   join, cap, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
                point);
     if (kind == CAMBER_KIND_SENTINEL || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
         return 0;

@@ -91,15 +91,11 @@ CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
     return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
 }
 
-/* On the inner side of a tight join an edge goes no farther along its segment than half the shorter one, and than the
- * pad, since what it gives up the other segment may be too short to cover. */
-CAMBER_FN camber_u32 camber_limit_pack(float half_shorter) {
-    const float limit = half_shorter < CAMBER_PAD_PX ? half_shorter : CAMBER_PAD_PX;
-    return (camber_u32)(limit * (127.0f / CAMBER_PAD_PX)) << CAMBER_JOIN_LIMIT_SHIFT;
-}
-
-CAMBER_FN float camber_limit_unpack(camber_u32 join) {
-    return (float)(join >> CAMBER_JOIN_LIMIT_SHIFT & 127u) * (CAMBER_PAD_PX / 127.0f);
+/* The stub of a join word. line_ends: camber_line_ends; cap: of the line, camber_cap. */
+CAMBER_FN camber_u32 camber_stub_pack(camber_u32 line_ends, camber_u32 cap, float half_shorter) {
+    const float longest = 0.5f * CAMBER_STUB_PX, bounded = half_shorter < longest ? half_shorter : longest;
+    const camber_u32 stub = 1u + (camber_u32)(bounded * ((float)(CAMBER_STUB_MOST - 1u) / longest));
+    return line_ends != 0u && cap == CAMBER_CAPS_BUTT ? stub << CAMBER_JOIN_STUB_SHIFT : 0u;
 }
 
 /* camber_end past a cap: round 0, butt 1, square 2. */
@@ -165,9 +161,8 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, const camber_row *row, c
                         : kites;
     }
     const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
-    const camber_u32 limit = kind == CAMBER_KIND_TIGHT ? camber_limit_pack(turn.half_shorter) : 0u;
     return camber_turn_pack(turn) | kind << CAMBER_JOIN_KIND_SHIFT | end << CAMBER_JOIN_END_SHIFT |
-           (method == CAMBER_STRIP ? limit : triangles << CAMBER_JOIN_TRIANGLES_SHIFT);
+           triangles << CAMBER_JOIN_TRIANGLES_SHIFT;
 }
 
 /* The join word of an end of an open polyline, or of a dot. */
@@ -183,21 +178,22 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     const camber_u32 kind = camber_join_kind(join);
     const float q = camber_turn_unpack(join);
     const float cut = -end * side * camber_turn_tan_half(q);
-    const camber_u32 is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT;
+    const camber_u32 is_inner = side * q > 0.0f;
+    if (kind > CAMBER_KIND_CUT && is_inner && method != CAMBER_FAN)
+        return end;
     if (method == CAMBER_STRIP)
-        return is_cut ? cut : end;
-    if (method == CAMBER_KITE && is_cut && side * q > 0.0f)
+        return kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT ? cut : end;
+    if (method == CAMBER_KITE && kind == CAMBER_KIND_CUT && is_inner)
         return cut;
     return kind < CAMBER_KIND_CUT ? end : 0.0f;
 }
 
-/* The bound on that, px: past a butt end the pad, however wide the line; on the inner side of a tight join its limit.
- */
+/* The bound on that, px: past a butt end, and past the inner side of a tight join, the pad, however wide the line. */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == CAMBER_ENDS_BUTT;
     const camber_u32 is_inner = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) > 0.0f;
-    return is_butt ? CAMBER_PAD_PX : is_inner ? camber_limit_unpack(join) : CAMBER_NO_LIMIT_PX;
+    return is_butt || is_inner ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX;
 }
 
 /* How many records a point of a strip has:
@@ -228,10 +224,10 @@ CAMBER_FN camber_u32 camber_edge_is_shared(camber_u32 join, camber_u32 last, flo
     return last & CAMBER_POINT_FIRST ? seam : outer;
 }
 
-/* The join word of kite's and fan's records. */
-CAMBER_FN camber_u32 camber_record_join(camber_u32 join, float half_shorter) {
-    const camber_u32 bare = join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT);
-    return camber_join_kind(join) == CAMBER_KIND_TIGHT ? bare | camber_limit_pack(half_shorter) : bare;
+/* The join word of kite's and fan's records. cap: of the line. */
+CAMBER_FN camber_u32 camber_record_join(camber_u32 join, camber_u32 cap, float half_shorter) {
+    const camber_u32 ends = join & (CAMBER_JOIN_AFTER_FIRST | CAMBER_JOIN_BEFORE_LAST);
+    return (join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT)) | camber_stub_pack(ends, cap, half_shorter);
 }
 
 /* The corner that a body begins with on a side. Cut bodies have it in common with the end before: those of kites the

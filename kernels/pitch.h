@@ -79,12 +79,13 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
     const camber_real x = bends ? sum_x * scale : along_x, y = bends ? sum_y * scale : along_y;
     const camber_mask is_cap = CAMBER_END_CLASS(s->end) == CAMBER_CLASS_CAP;
     const camber_mask wide = CAMBER_EITHER(is_cap, 1.0f - e.fall * s->y < CAMBER_PITCH_LEAST);
-    const camber_mask kept = camber_owner_side(CAMBER_END_IS_LAST(s->end), s->c, s->s, 0.5f * narrowest);
+    const camber_mask no = CAMBER_ALL_LANES(CAMBER_NO), soon = CAMBER_END_IS_LAST(s->end);
+    const camber_mask kept = camber_owner_side(soon, no, s->c, s->s, 0.5f * narrowest);
     cut->x = wide ? none : s->turns * x;
     cut->y = wide ? none : s->turns * y;
     cut->at = wide ? none : s->turns * (x * seen_x + y * seen_y);
     cut->wide = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
-    cut->owner = camber_owner_from(is_cap, CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept));
+    cut->owner = camber_owner_from(is_cap, CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept), no);
 }
 
 /* How far a stroke reaches past an end, px of the plane. */

@@ -46,22 +46,19 @@ static inline __attribute__((always_inline)) void take_edge(const edge_table *fr
     TAKE(side.corner);
     TAKE(side.slope);
     TAKE(side.curve);
+    TAKE(ca);
+    TAKE(cb);
     TAKE(sa);
     TAKE(sb);
     TAKE(round_a);
     TAKE(round_b);
     TAKE(owner_a);
     TAKE(owner_b);
-    TAKE(slope_a);
-    TAKE(slope_b);
-    TAKE(from_a);
-    TAKE(from_b);
     TAKE(flat_a);
     TAKE(flat_b);
 #undef TAKE
     p->thin = ((const int *)&all->thin)[lane];
     p->capped = ((const int *)&all->capped)[lane];
-    p->tight = ((const int *)&all->tight)[lane];
     p->tips = p->sharp = 0; /* those are odd */
 }
 

@@ -73,24 +73,23 @@ typedef struct camber_segment {
 
 CAMBER_FN camber_words camber_end_flags(camber_words end) {
     const camber_words none = (camber_words)(0u), kind = CAMBER_END_KIND(end), ends_as = CAMBER_END_CLASS(end);
-    const camber_mask sharp = (kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_BEVEL) |
-                              (kind > CAMBER_ENDS_SPLIT_ROUND) | (ends_as == CAMBER_CLASS_TIGHT);
-    const camber_mask flat = (kind == CAMBER_ENDS_BUTT) | (kind == CAMBER_ENDS_SQUARE),
+    const camber_mask sharp =
+        (kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_BEVEL) | (kind > CAMBER_ENDS_SPLIT_ROUND);
+    const camber_mask flat = (kind == CAMBER_ENDS_BUTT) | (kind == CAMBER_ENDS_SQUARE) | (CAMBER_END_FLAT(end) != 0u),
                       rounded = (kind == CAMBER_ENDS_ROUND) & (ends_as == CAMBER_CLASS_CAP);
     return (sharp ? (camber_words)(CAMBER_SEGMENT_SHARP) : none) | (flat ? (camber_words)(CAMBER_SEGMENT_FLAT) : none) |
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
 
-/* Sets the flags that follow from the ends alone. */
-CAMBER_FN void camber_segment_judge(camber_segment *s) {
-    const camber_words none = (camber_words)(0u), end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
-    const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
-    const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
-    const camber_mask own_a = camber_owner_side(CAMBER_END_IS_LAST(end_a), ca, sa, s->half_width);
-    const camber_mask own_b = camber_owner_side(CAMBER_END_IS_LAST(end_b), cb, sb, s->half_width);
-    s->flags |= (CAMBER_END_CLASS(end_a) > CAMBER_CLASS_CUT) & own_a ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : none;
-    s->flags |= (CAMBER_END_CLASS(end_b) > CAMBER_CLASS_CUT) & own_b ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : none;
-    s->flags |= camber_end_flags(end_a) | camber_end_flags(end_b);
+/* The bits of an end. soon: whether the line ends with the next segment; length: of the segment itself; c and s: cosine
+ * and sine of half the turn. *own: camber_owner_side. */
+CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber_real length, camber_real c,
+                                     camber_real s, camber_real half_width, camber_mask *own) {
+    const camber_words none = (camber_words)(0u), end = camber_segment_end(join);
+    const camber_mask butt = soon & (CAMBER_JOIN_STUB(join) != 0u);
+    *own = (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & camber_owner_side(soon, butt, c, s, half_width);
+    return end | camber_flat_join(join, butt, *own, length) |
+           (soon ? (camber_words)(1u << CAMBER_END_LAST_SHIFT) : none);
 }
 
 /* How far an end reaches outside the box of A and B, in units of half width + pad. */
@@ -122,9 +121,12 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     camber_real ca, sa, cb, sb;
     camber_half_turn(qa, &ca, &sa);
     camber_half_turn(qb, &cb, &sb);
-    const camber_words end_a = camber_segment_end(join_a), end_b = camber_segment_end(join_b);
+    const camber_mask soon_a = (join_a & CAMBER_JOIN_AFTER_FIRST) != 0u,
+                      soon_b = (join_b & CAMBER_JOIN_BEFORE_LAST) != 0u;
+    camber_mask own_a, own_b;
+    const camber_words end_a = camber_end_of(join_a, soon_a, length, ca, sa, half_width, &own_a);
+    const camber_words end_b = camber_end_of(join_b, soon_b, length, cb, sb, half_width, &own_b);
     const camber_mask cap_a = CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP;
-    const camber_words soon_a = join_a & CAMBER_JOIN_AFTER_FIRST, soon_b = join_b & CAMBER_JOIN_BEFORE_LAST;
     s.nax = cap_a ? s.ux : ix * ca - iy * sa;
     s.nay = cap_a ? s.uy : ix * sa + iy * ca;
     s.nbx = s.ux * cb - s.uy * sb;
@@ -140,10 +142,11 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     camber_profile_of(s.ux, s.uy, CAMBER_ALL_LANES(linear), &side);
     s.slope = side.slope;
     s.curve = side.curve;
-    /* from bits 26 and 27 of the join word to CAMBER_END_LAST_SHIFT */
-    s.flags = end_a | soon_a >> 14 | (end_b | soon_b >> 15) << CAMBER_SEGMENT_END_BITS;
+    const camber_words nothing = (camber_words)(0u);
+    s.flags = end_a | end_b << CAMBER_SEGMENT_END_BITS | camber_end_flags(end_a) | camber_end_flags(end_b);
+    s.flags |= own_a ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : nothing;
+    s.flags |= own_b ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : nothing;
     s.flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
-    camber_segment_judge(&s);
     return s;
 }
 

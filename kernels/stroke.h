@@ -18,7 +18,11 @@
 #define CAMBER_COEF_WORDS camber_u32
 #define CAMBER_COEF_MASK camber_flag
 #define CAMBER_COEF_OF(x) (x)
+#ifdef CAMBER_GLSL
+#define CAMBER_COEF_NUMBER(words) float(words)
+#else
 #define CAMBER_COEF_NUMBER(words) ((float)(words))
+#endif
 #define CAMBER_PROFILE camber_profile
 #define CAMBER_EDGE camber_edge
 #include "stroke_setup.inl"

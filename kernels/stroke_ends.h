@@ -25,19 +25,19 @@
 #define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
 #define CAMBER_LARGEST_TURN 32767.0f /* what tan(turn / 4) = 1 is stored as */
 
-/* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-11 a tight join's limit, 12 the line ends with the next segment.
- */
+/* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-11 where a join is flat (camber_flat_join), 12 the line ends with
+ * the next segment. */
 #define CAMBER_CLASS_CAP 0u
 #define CAMBER_CLASS_CUT 1u
 #define CAMBER_CLASS_TIGHT 2u
 #define CAMBER_CLASS_SPLIT 3u
 #define CAMBER_END_MASK 0x1fffu
 #define CAMBER_END_CLASS_SHIFT 3
-#define CAMBER_END_LIMIT_SHIFT 5
+#define CAMBER_END_FLAT_SHIFT 5
 #define CAMBER_END_LAST_SHIFT 12
 #define CAMBER_END_KIND(end) ((end)&CAMBER_JOIN_END_MASK)
 #define CAMBER_END_CLASS(end) ((end) >> CAMBER_END_CLASS_SHIFT & 3u)
-#define CAMBER_END_LIMIT(end) ((end) >> CAMBER_END_LIMIT_SHIFT & 127u)
+#define CAMBER_END_FLAT(end) ((end) >> CAMBER_END_FLAT_SHIFT & 127u)
 #define CAMBER_END_IS_LAST(end) CAMBER_HAS((end) >> CAMBER_END_LAST_SHIFT, 1u)
 #define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
     (((end) & (CAMBER_JOIN_END_MASK | 3u << CAMBER_END_CLASS_SHIFT)) ==                                                \
@@ -52,10 +52,10 @@
 #define CAMBER_END_OF_A(flags) ((flags)&CAMBER_END_MASK)
 #define CAMBER_END_OF_B(flags) ((flags) >> CAMBER_SEGMENT_END_BITS & CAMBER_END_MASK)
 #define CAMBER_SEGMENT_LINEAR (1u << 26)
-/* Past a split end the segment draws its inner side as well, if it is wide there: camber_owner_side. */
+/* Past a tight or split end the segment draws its inner side as well, if it is wide there: camber_owner_side. */
 #define CAMBER_SEGMENT_OWNER_A (1u << 27)
 #define CAMBER_SEGMENT_OWNER_B (1u << 28)
-/* At least one of its ends is: cut by a second line or tight (SHARP), flat (FLAT), a round cap (ROUNDED). */
+/* At least one of its ends is: cut by a second line (SHARP), flat (FLAT), a round cap (ROUNDED). */
 #define CAMBER_SEGMENT_SHARP (1u << 29)
 #define CAMBER_SEGMENT_FLAT (1u << 30)
 #define CAMBER_SEGMENT_ROUNDED (1u << 31)
@@ -69,8 +69,7 @@ CAMBER_FN camber_words camber_segment_end(camber_words join) {
                                                           : CAMBER_WORD(CAMBER_ENDS_SPLIT_MITER);
     const camber_words drawn = CAMBER_BOTH(kind >= CAMBER_KIND_TIGHT, end < CAMBER_ENDS_SPLIT_ROUND) ? split : end;
     const camber_words ends_as = kind < CAMBER_KIND_CUT ? CAMBER_WORD(0u) : kind - 2u;
-    const camber_words limit = kind == CAMBER_KIND_TIGHT ? join >> CAMBER_JOIN_LIMIT_SHIFT & 127u : CAMBER_WORD(0u);
-    return drawn | ends_as << CAMBER_END_CLASS_SHIFT | limit << CAMBER_END_LIMIT_SHIFT;
+    return drawn | ends_as << CAMBER_END_CLASS_SHIFT;
 }
 
 /* tan(turn / 4) of a join word. */
@@ -85,13 +84,28 @@ CAMBER_FN void camber_half_turn(camber_real q, CAMBER_OUT(camber_real) c, CAMBER
     CAMBER_AT(s) = 2.0f * q * scale;
 }
 
-/* Whether a segment draws more of a split end than its own side of the bisector. What its body has past the bisector on
- * the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their edges would
- * be drawn twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it. c and s:
+/* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
+ * bisector on the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their
+ * edges would be drawn twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it.
+ * Before a butt cap it ends in an edge of its own, which nothing draws twice: there it keeps nearly all. c and s:
  * cosine and sine of half the turn. */
-CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_real c, camber_real s, camber_real half_width) {
-    const camber_real bound = ends_soon ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
+CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_mask butt, camber_real c, camber_real s,
+                                        camber_real half_width) {
+    const camber_real soon = ends_soon ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
+    const camber_real bound = butt ? CAMBER_REAL(0.1f) : soon;
     return half_width * CAMBER_FABS(s) > bound * c;
+}
+
+/* A join that is flat has the length of the stub behind it in units of this, and 1 more. */
+#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 126.0f)
+
+/* The bits of an end that say where a join before a butt cap is flat: camber_end_inside. A segment that is no longer
+ * than the stub does not know the other one's length: it is taken for a long one. butt: the line ends with the next
+ * segment, in a butt cap; own: camber_owner_side; length: of the segment itself. */
+CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, camber_mask own, camber_real length) {
+    const camber_words stub = CAMBER_JOIN_STUB(join), none = CAMBER_WORD(0u), most = CAMBER_WORD(CAMBER_STUB_MOST);
+    const camber_words behind = length > (CAMBER_TO_REAL(stub) + 1.0f) * CAMBER_STUB_UNIT_PX ? stub : most;
+    return CAMBER_BOTH(butt, CAMBER_EITHER(own, behind < most)) ? behind << CAMBER_END_FLAT_SHIFT : none;
 }
 
 /* The tangent of half a turn, as images bend at joins; 0 where the line goes straight on. */

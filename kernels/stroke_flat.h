@@ -97,13 +97,50 @@ CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(ca
     return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
 }
 
-/* The part of an area that flat caps leave: one, or both ends of a short segment. */
+/* How a pixel lies to a flat end: a cap, or a join that the line's butt cap follows closely. There the segment's body
+ * ends in an edge of its own past the bisector, and before it the segment draws what lies inside this edge or the cap,
+ * which is turned. */
+CAMBER_STRUCT(camber_flat_end) {
+    camber_real body, cap; /* how far inside of the two, px */
+    camber_mask behind;    /* past the bisector */
+    float cosine, sine;    /* of the turn from one to the other */
+};
+
+/* Whether the end at B (out_of: 1) or at A (-1) is a flat join. */
+CAMBER_FN camber_flag camber_is_flat_join(CAMBER_IN(camber_edge) p, float out_of) {
+    return out_of > 0.0f ? p->sb != 0.0f && p->flat_b < CAMBER_NEVER_PX : p->sa != 0.0f && p->flat_a < CAMBER_NEVER_PX;
+}
+
+CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of,
+                                    CAMBER_OUT(camber_flat_end) f) {
+    const camber_flag at_b = out_of > 0.0f;
+    const float c = at_b ? p->cb : p->ca, s = at_b ? p->sb : p->sa, from = at_b ? p->flat_b : p->flat_a;
+    const camber_real past = at_b ? at->past_b : at->past_a;
+    f->behind = at_b ? at->fb >= CAMBER_TIE(at) : at->fa < -CAMBER_TIE(at);
+    f->cosine = c * c - s * s;
+    f->sine = 2.0f * s * c;
+    f->body = -past;
+    f->cap = from - past * f->cosine - at->y * f->sine;
+}
+
+/* The share of a pixel inside a flat end. */
+CAMBER_FN camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
+    camber_flat_end f;
+    if (!camber_is_flat_join(p, out_of))
+        return camber_cut_along(p, at, out_of > 0.0f ? p->flat_b - at->past_b : p->flat_a - at->past_a);
+    camber_find_flat_end(p, at, out_of, CAMBER_REF(f));
+    const camber_real body = camber_cut_along(p, at, f.body), cap = camber_cut_along(p, at, f.cap);
+    const camber_real outside = camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
+    return f.behind ? body : 1.0f - outside;
+}
+
+/* The part of an area that flat ends leave: one, or both of a short segment. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     const camber_flag at_a = p->flat_a < CAMBER_NEVER_PX, both = at_a && p->flat_b < CAMBER_NEVER_PX;
-    const camber_real one = camber_cut_along(p, at, at_a ? p->flat_a - at->past_a : p->flat_b - at->past_b);
+    const camber_real one = camber_cut_end(p, at, at_a ? -1.0f : 1.0f);
     if (!both)
         return area * one;
-    const camber_real caps = one + camber_cut_along(p, at, p->flat_b - at->past_b) - 1.0f;
+    const camber_real caps = one + camber_cut_end(p, at, 1.0f) - 1.0f;
     return area * (caps > 0.0f ? caps : CAMBER_REAL(0.0f));
 }
 
@@ -111,26 +148,40 @@ CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
 CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     const camber_mask at_a = CAMBER_BOTH(at->fa<-CAMBER_TIE(at), at->past_a> p->owner_a);
     const camber_mask at_b = CAMBER_BOTH(at->fb >= CAMBER_TIE(at), at->past_b > p->owner_b);
-    camber_mask others = CAMBER_EITHER(at_a, at_b);
-#ifndef CAMBER_GLSL /* there the triangles bound a tight join's inner side */
-    if (p->tight)
-        others |= (at->past_a + p->slope_a * at->y > p->from_a) | (at->past_b + p->slope_b * at->y > p->from_b);
-#endif
-    return others ? CAMBER_REAL(0.0f) : area;
+    return CAMBER_EITHER(at_a, at_b) ? CAMBER_REAL(0.0f) : area;
+}
+
+/* How far inside a flat end a pixel lies, and the end's normal along and across the segment. */
+CAMBER_FN camber_real camber_end_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of,
+                                        CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
+    const camber_real cap = out_of > 0.0f ? p->flat_b - at->past_b : p->flat_a - at->past_a;
+    camber_flat_end f;
+    CAMBER_AT(nx) = CAMBER_REAL(-out_of);
+    CAMBER_AT(ny) = CAMBER_REAL(0.0f);
+    if (!camber_is_flat_join(p, out_of))
+        return cap;
+    camber_find_flat_end(p, at, out_of, CAMBER_REF(f));
+    const camber_mask is_cap = CAMBER_BOTH(!f.behind, f.cap > f.body);
+    CAMBER_AT(nx) = is_cap ? CAMBER_REAL(-out_of * f.cosine) : CAMBER_AT(nx);
+    CAMBER_AT(ny) = is_cap ? CAMBER_REAL(-f.sine) : CAMBER_AT(ny);
+    return is_cap ? f.cap : f.body;
 }
 
 /* The normal of the nearest edge, into the stroke, in the picture. Returns whether it has one. */
 CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                          CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
-    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-3f);
+    const camber_real least = CAMBER_REAL(1e-3f);
     const camber_real off_x = camber_arc(at->past_b, p->round_b) - camber_arc(at->past_a, p->round_a);
     const camber_real length = CAMBER_SQRT(off_x * off_x + at->y * at->y), scale = -1.0f / CAMBER_MORE(length, least);
     camber_real in_x = off_x * scale, in_y = at->y * scale;
     if (p->capped) {
-        const camber_real cap_a = p->flat_a - at->past_a, cap_b = p->flat_b - at->past_b;
-        const camber_mask at_cap = CAMBER_LESS(cap_a, cap_b) < p->half_width - CAMBER_FABS(at->y);
-        in_x = at_cap ? (cap_a < cap_b ? one : -one) : in_x;
-        in_y = at_cap ? none : in_y;
+        camber_real ax, ay, bx, by;
+        const camber_real in_a = camber_end_normal(p, at, -1.0f, CAMBER_REF(ax), CAMBER_REF(ay));
+        const camber_real in_b = camber_end_normal(p, at, 1.0f, CAMBER_REF(bx), CAMBER_REF(by));
+        const camber_mask at_a = in_a < in_b, at_end = CAMBER_LESS(in_a, in_b) < p->half_width - CAMBER_FABS(at->y);
+        const camber_real end_x = at_a ? ax : bx, end_y = at_a ? ay : by;
+        in_x = at_end ? end_x : in_x;
+        in_y = at_end ? end_y : in_y;
     }
     CAMBER_AT(nx) = in_x * p->ux - in_y * p->uy;
     CAMBER_AT(ny) = in_x * p->uy + in_y * p->ux;

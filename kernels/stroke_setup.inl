@@ -75,27 +75,22 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_tip_from(CAMBER_COEF_MASK is_round
     return is_round_cap ? until : CAMBER_COEF_OF(CAMBER_NEVER_PX);
 }
 
-/* How far past its end a segment still draws pixels that lie behind the bisector, px. own: camber_owner_side. */
-CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_owner_from(CAMBER_COEF_MASK is_cap, CAMBER_COEF_MASK own) {
-    const CAMBER_COEF from = own ? CAMBER_COEF_OF(0.0f) : CAMBER_COEF_OF(CAMBER_ALWAYS_PX);
+/* The same of any end: a cap, or a join by camber_flat_join. */
+CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_flat_end_from(CAMBER_COEF_WORDS end, CAMBER_COEF half_width) {
+    const CAMBER_COEF stub = (CAMBER_COEF_NUMBER(CAMBER_END_FLAT(end)) - 1.0f) * CAMBER_STUB_UNIT_PX;
+    return stub < 0.0f ? camber_flat_from(CAMBER_END_KIND(end), half_width) : stub;
+}
+
+/* How far past its end a segment still draws pixels that lie behind the bisector, px. own: camber_owner_side; is_flat:
+ * it ends in an edge there. */
+CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_owner_from(CAMBER_COEF_MASK is_cap, CAMBER_COEF_MASK own,
+                                                         CAMBER_COEF_MASK is_flat) {
+    const CAMBER_COEF past = is_flat ? CAMBER_COEF_OF(CAMBER_PAD_PX) : CAMBER_COEF_OF(0.0f);
+    const CAMBER_COEF from = own ? past : CAMBER_COEF_OF(CAMBER_ALWAYS_PX);
     return is_cap ? CAMBER_COEF_OF(CAMBER_NEVER_PX) : from;
 }
 
 #if !defined(CAMBER_GLSL) && !CAMBER_STROKE_PITCHED
-/* The line that bounds a tight join's inner side. It goes from the inner vertex, limit px before the end, to the outer
- * vertex on the bisector. For other ends it is placed where no pixel lies. */
-CAMBER_FN CAMBER_SAME_NAME void camber_tight_line(CAMBER_COEF_WORDS end, CAMBER_COEF c, CAMBER_COEF s,
-                                                  CAMBER_COEF half_width, CAMBER_COEF *slope, CAMBER_COEF *from) {
-    const CAMBER_COEF reach = half_width + CAMBER_PAD_PX;
-    const CAMBER_COEF limit = CAMBER_COEF_NUMBER(CAMBER_END_LIMIT(end)) * (CAMBER_PAD_PX / 127.0f);
-    const CAMBER_COEF outer = CAMBER_FABS(s) * reach;
-    const CAMBER_COEF_MASK tight = (CAMBER_END_CLASS(end) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
-    const CAMBER_COEF scale = 0.5f / (tight ? reach * c : CAMBER_COEF_OF(1.0f));
-    const CAMBER_COEF more = (outer + limit * c) * scale, less = (outer - limit * c) * scale;
-    *slope = tight ? (s > 0.0f ? more : -more) : CAMBER_COEF_OF(0.0f);
-    *from = tight ? less * reach : CAMBER_COEF_OF(CAMBER_NEVER_PX);
-}
-
 /* ---- Segments ---- */
 
 /* The coefficients. x runs along the segment, y across it, in px. */
@@ -104,13 +99,12 @@ CAMBER_STRUCT(CAMBER_EDGE) {
     CAMBER_COEF length, half_width;
     CAMBER_PROFILE side;          /* of its sides, and of flat caps */
     CAMBER_COEF ca, sa, cb, sb;   /* cosine and sine of half the turn at A and at B */
-    CAMBER_COEF flat_a, flat_b;   /* camber_flat_from */
+    CAMBER_COEF flat_a, flat_b;   /* camber_flat_end_from */
     CAMBER_COEF round_a, round_b; /* camber_round_from */
     CAMBER_COEF tip_a, tip_b;     /* camber_tip_from */
     CAMBER_COEF owner_a, owner_b; /* behind the bisector and this far past the end is the neighbour's, px */
-    CAMBER_COEF slope_a, slope_b, from_a, from_b; /* camber_tight_line */
     CAMBER_COEF_WORDS end_a, end_b;
-    CAMBER_COEF_MASK linear, thin, tips, capped, tight, sharp;
+    CAMBER_COEF_MASK linear, thin, tips, capped, sharp;
 };
 
 /* Works out all that does not stand in the segment's words. It is always inlined, so that the compiler drops what the
@@ -127,22 +121,21 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE void camber_edge_finish(CAMBER_COEF_WOR
     p->sb = p->nby * p->ux - p->nbx * p->uy;
     p->end_a = CAMBER_END_KIND(end_a);
     p->end_b = CAMBER_END_KIND(end_b);
-    p->flat_a = camber_flat_from(p->end_a, h);
-    p->flat_b = camber_flat_from(p->end_b, h);
+    p->flat_a = camber_flat_end_from(end_a, h);
+    p->flat_b = camber_flat_end_from(end_b, h);
     p->round_a = camber_round_from(p->end_a);
     p->round_b = camber_round_from(p->end_b);
     p->tip_a = camber_tip_from(CAMBER_END_IS_ROUND_CAP(end_a), h);
     p->tip_b = camber_tip_from(CAMBER_END_IS_ROUND_CAP(end_b), h);
     p->owner_a =
-        camber_owner_from(CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP, CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_A));
+        camber_owner_from(CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP, CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_A),
+                          CAMBER_END_FLAT(end_a) != 0u);
     p->owner_b =
-        camber_owner_from(CAMBER_END_CLASS(end_b) == CAMBER_CLASS_CAP, CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_B));
+        camber_owner_from(CAMBER_END_CLASS(end_b) == CAMBER_CLASS_CAP, CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_B),
+                          CAMBER_END_FLAT(end_b) != 0u);
     p->thin = h < p->side.extent;
     p->tips = (h < CAMBER_TIPS_PX) & CAMBER_HAS(flags, CAMBER_SEGMENT_ROUNDED);
     p->capped = CAMBER_HAS(flags, CAMBER_SEGMENT_FLAT);
     p->sharp = CAMBER_HAS(flags, CAMBER_SEGMENT_SHARP);
-    p->tight = (CAMBER_END_CLASS(end_a) == CAMBER_CLASS_TIGHT) | (CAMBER_END_CLASS(end_b) == CAMBER_CLASS_TIGHT);
-    camber_tight_line(end_a, p->ca, p->sa, h, &p->slope_a, &p->from_a);
-    camber_tight_line(end_b, p->cb, p->sb, h, &p->slope_b, &p->from_b);
 }
 #endif

@@ -143,8 +143,8 @@ camber_edge edge_here() {
     p.round_b = uintBitsToFloat(v_ends.z);
 #else
     p.end_a = p.end_b = CAMBER_ENDS_ROUND;
-    p.round_a = FLAT_CAPS != 0 && v_shape.z < CAMBER_NEVER_PX ? CAMBER_NEVER_PX : 0.0;
-    p.round_b = FLAT_CAPS != 0 && v_shape.w < CAMBER_NEVER_PX ? CAMBER_NEVER_PX : 0.0;
+    p.round_a = FLAT_CAPS != 0 && v_shape.z < CAMBER_NEVER_PX && v_turns.y == 0.0 ? CAMBER_NEVER_PX : 0.0;
+    p.round_b = FLAT_CAPS != 0 && v_shape.w < CAMBER_NEVER_PX && v_turns.w == 0.0 ? CAMBER_NEVER_PX : 0.0;
 #endif
 #if TIPS
     p.tip_a = v_tips.x;
@@ -202,7 +202,8 @@ camber_pixel pixel_here(camber_edge p) {
 #if PITCHED
     at.tie = 6e-5 * (abs(at.y) + depth);
 #else
-    at.tie = 4e-5 * p.half_width + 4e-5;
+    // Triangles that are cut along the bisector lie on multiples of 1/256 px.
+    at.tie = 4e-5 * p.half_width + (METHOD == 0 ? 4e-5 : 1.0 / 128.0);
 #endif
     at.fa = -(p.ca * at.past_a + p.sa * at.y);
     at.fb = p.cb * at.past_b + p.sb * at.y;

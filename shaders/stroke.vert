@@ -135,14 +135,14 @@ struct Extrusion {
 Extrusion edge_at(uint join, float end, float side) {
     uint kind = kind_of(join);
     float q = turn_of(join), cut = -end * side * tan_half(q);
-    bool is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT, inner = side * q > 0.0;
+    bool inner = side * q > 0.0, ends = kind < CAMBER_KIND_CUT || (METHOD != 2 && kind > CAMBER_KIND_CUT && inner);
+    bool butt = kind < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_BUTT;
 #if METHOD == 0
-    float along = is_cut ? cut : end;
+    float along = ends || kind == CAMBER_KIND_SPLIT ? end : cut;
 #else
-    float along = METHOD == 1 && is_cut && inner ? cut : kind < CAMBER_KIND_CUT ? end : 0.0;
+    float along = METHOD == 1 && kind == CAMBER_KIND_CUT && inner ? cut : ends ? end : 0.0;
 #endif
-    float limit = kind == CAMBER_KIND_TIGHT && inner ? float(join >> CAMBER_JOIN_LIMIT_SHIFT & 127u) * (CAMBER_PAD_PX / 127.0) : CAMBER_NO_LIMIT_PX;
-    return Extrusion(along, kind < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_BUTT ? CAMBER_PAD_PX : limit, side);
+    return Extrusion(along, butt || (kind == CAMBER_KIND_TIGHT && inner) ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX, side);
 }
 
 #if METHOD != 0
@@ -235,10 +235,13 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
 #endif
 
 #if !PITCHED
-// How far past an end a segment still draws pixels behind the bisector. Where triangles are cut along it, all there are.
-float owner_from(uint join, uint soon, vec2 turn, float half_width) {
-    bool own = camber_owner_side((join & soon) != 0u, turn.x, turn.y, half_width);
-    return camber_owner_from(end_of(join) < CAMBER_ENDS_SPLIT_ROUND, own);
+// camber_flat_end_from and camber_owner_from of an end. Where triangles are cut along the bisector, they bound it.
+vec2 flat_and_owner(uint join, uint soon, vec2 turn, float len, float half_width) {
+    bool is_cap = METHOD == 2 || kind_of(join) <= CAMBER_KIND_CUT;
+    bool ends_soon = (join & soon) != 0u, butt = METHOD != 2 && ends_soon && CAMBER_JOIN_STUB(join) != 0u;
+    bool own = !is_cap && camber_owner_side(ends_soon, butt, turn.x, turn.y, half_width);
+    uint stub = camber_flat_join(join, butt, own, len);
+    return vec2(camber_flat_end_from(end_of(join) | stub, half_width), camber_owner_from(is_cap, own, stub != 0u));
 }
 #endif
 
@@ -247,8 +250,8 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
     uint end_a = end_of(join_a), end_b = end_of(join_b);
     camber_half_turn(turn_of(join_a), v_turns.x, v_turns.y);
     camber_half_turn(turn_of(join_b), v_turns.z, v_turns.w);
-    v_shape = vec4(len, half_width, camber_flat_from(end_a, half_width), camber_flat_from(end_b, half_width));
 #if PITCHED
+    v_shape = vec4(len, half_width, camber_flat_from(end_a, half_width), camber_flat_from(end_b, half_width));
     camber_pitch_cut cut_a, cut_b;
     camber_pitch_cut_of(eye(), camber_pitch_end(a.x, a.y, u.x, u.y, half_width, v_turns.x, v_turns.y,
                                                 end_bits(join_a, CAMBER_JOIN_AFTER_FIRST), -1.0), cut_a);
@@ -263,8 +266,10 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
     camber_profile side;
     camber_profile_of(u.x, u.y, LINEAR != 0, side);
     v_segment = vec4(a - u_origin, u);
-    v_rest = vec4(side.slope, side.curve, owner_from(join_a, CAMBER_JOIN_AFTER_FIRST, v_turns.xy, half_width),
-                  owner_from(join_b, CAMBER_JOIN_BEFORE_LAST, v_turns.zw, half_width));
+    vec2 from_a = flat_and_owner(join_a, CAMBER_JOIN_AFTER_FIRST, v_turns.xy, len, half_width);
+    vec2 from_b = flat_and_owner(join_b, CAMBER_JOIN_BEFORE_LAST, v_turns.zw, len, half_width);
+    v_shape = vec4(len, half_width, from_a.x, from_b.x);
+    v_rest = vec4(side.slope, side.curve, from_a.y, from_b.y);
 #endif
 #if TIPS
     v_tips = vec2(camber_tip_from(is_round_cap(join_a), half_width), camber_tip_from(is_round_cap(join_b), half_width));

@@ -92,7 +92,9 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
         return 0;
     if (info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) && !(info & CAMBER_POINT_RING))
         return camber_cap_word(row->cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
-    return camber_join_word(turn, row, t->method) | camber_line_ends(p->info[slot - 1], p->info[slot + 1]);
+    const camber_u32 line_ends = camber_line_ends(p->info[slot - 1], p->info[slot + 1]);
+    const camber_u32 join = camber_join_word(turn, row, t->method) | line_ends;
+    return t->method == CAMBER_STRIP ? join | camber_stub_pack(line_ends, row->cap, turn.half_shorter) : join;
 }
 
 /* ---- strip ---- */
@@ -238,7 +240,8 @@ static void walk_point(twin *t, const visited_point *p, float half_shorter) {
         camber_mesh_info_add_join(&t->data->info, p->join, p->info);
     }
     if (t->method != CAMBER_STRIP) /* a record for each slot, sentinels too */
-        push_point(t, p, camber_record_join(p->join, half_shorter), p->info);
+        push_point(t, p, camber_record_join(p->join, t->rows[p->info >> CAMBER_POINT_ROW_SHIFT].cap, half_shorter),
+                   p->info);
     if (real && drawn && t->method == CAMBER_STRIP)
         walk_strip_point(t, p);
     else if (real && drawn)

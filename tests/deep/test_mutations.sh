@@ -246,7 +246,7 @@ mutant strip kernels/stroke_setup.inl "square caps of a whole width" 'CAMBER_END
 mutant strip kernels/stroke.h "bevels that reach too far" 'l->bevel ? half_width * c' 'l->bevel ? half_width'
 mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
 mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
-mutant kite shaders/stroke.vert "kites that lie over each other" 'is_cut && inner ? cut : kind' 'is_cut && inner ? 0.5 * cut : kind'
+mutant kite shaders/stroke.vert "kites that lie over each other" 'CUT && inner ? cut : ends' 'CUT && inner ? 0.5 * cut : ends'
 mutant strip shaders/stroke.frag "united lines: no edge between whole and part" '* (area * (1.0 - area)), area, area)' \
     '* area, area, area)'
 mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 'in_y = at->y * scale' \
@@ -308,9 +308,10 @@ mutant strip kernels/stroke_setup.inl "the slope of an edge" 'slope = safe * sca
 mutant strip kernels/stroke.h "half the width, of lines wider than a pixel" 'p->half_width - at->d, 1.0f)' \
     '0.9f * p->half_width - at->d, 1.0f)'
 mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
-mutant strip kernels/stroke_flat.h "a cut on the wrong side" 'at->fb >= CAMBER_TIE(at)' 'at->fb < CAMBER_TIE(at)'
-mutant strip kernels/stroke_setup.inl "tight joins: the inner side on the outer one" 'tight ? (s > 0.0f ? more : -more)' \
-    'tight ? (s > 0.0f ? -more : more)'
+mutant strip kernels/stroke_flat.h "a cut on the wrong side" 'CAMBER_BOTH(at->fb >= CAMBER_TIE(at)' \
+    'CAMBER_BOTH(at->fb < CAMBER_TIE(at)'
+mutant strip kernels/stroke_flat.h "flat joins: the cap turned to the other side" 'past * f->cosine - at->y' \
+    'past * f->cosine + at->y'
 mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'

@@ -2,6 +2,7 @@
 #include "core.h"
 
 #include "kernels/join.h"
+#include "kernels/stroke_ends.h"
 
 #include <math.h>
 
@@ -136,12 +137,31 @@ static void check_word(const sample *s, camber_row row, camber_u32 method) {
     else
         assert_int_equal(camber_join_end(word), miter ? CAMBER_END_MITER : bevel ? CAMBER_END_BEVEL : CAMBER_END_ROUND);
     const camber_u32 triangles = camber_join_triangles(word);
-    if (method == CAMBER_STRIP && camber_join_kind(word) == CAMBER_KIND_TIGHT)
-        assert_near(camber_limit_unpack(word), fmin(0.5 * s->shorter, (double)CAMBER_PAD_PX), 0.006);
-    else if (method == CAMBER_STRIP || fabsf(turn.s) <= CAMBER_STRAIGHT_SINE)
+    if (method == CAMBER_STRIP || fabsf(turn.s) <= CAMBER_STRAIGHT_SINE)
         assert_int_equal(triangles, 0);
     else if (method == CAMBER_KITE || !is_round)
         assert_int_equal(triangles, !miter && t > 120 * PI / 180 ? 4 : 2);
+}
+
+/* A join beside a butt cap tells how long the shorter segment is, and each segment takes the other for it. */
+static void test_stubs(void **state) {
+    (void)state;
+    const camber_u32 ends[] = {CAMBER_JOIN_BEFORE_LAST, CAMBER_JOIN_AFTER_FIRST};
+    for (int i = 0; i <= 400; i++) {
+        const float length = (float)i * 0.005f, longer = length + 1.0f;
+        const camber_u32 word = camber_stub_pack(ends[i % 2], CAMBER_CAPS_BUTT, 0.5f * length);
+        assert_int_equal(camber_stub_pack(0, CAMBER_CAPS_BUTT, 0.5f * length), 0);
+        assert_int_equal(camber_stub_pack(ends[i % 2], CAMBER_CAPS_ROUND, 0.5f * length), 0);
+        assert_int_equal(camber_flat_join(word, 0, 1, longer), 0);
+        const camber_u32 flat = CAMBER_END_FLAT(camber_flat_join(word, 1, 0, longer));
+        if (length >= CAMBER_STUB_PX)
+            assert_int_equal(flat, 0);
+        else
+            assert_near(((double)flat - 1) * CAMBER_STUB_UNIT_PX, length, (double)CAMBER_STUB_UNIT_PX);
+        /* A segment that is no longer than the stub is it. */
+        assert_int_equal(camber_flat_join(word, 1, 0, length), 0);
+        assert_int_equal(CAMBER_END_FLAT(camber_flat_join(word, 1, 1, length)), CAMBER_STUB_MOST);
+    }
 }
 
 static void test_words(void **state) {
@@ -230,9 +250,9 @@ static void test_counts_fit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_half_turn),  cmocka_unit_test(test_packing),    cmocka_unit_test(test_degenerate_vectors),
-        cmocka_unit_test(test_words),      cmocka_unit_test(test_thresholds), cmocka_unit_test(test_fan_triangles),
-        cmocka_unit_test(test_counts_fit),
+        cmocka_unit_test(test_half_turn), cmocka_unit_test(test_packing),    cmocka_unit_test(test_degenerate_vectors),
+        cmocka_unit_test(test_words),     cmocka_unit_test(test_thresholds), cmocka_unit_test(test_fan_triangles),
+        cmocka_unit_test(test_stubs),     cmocka_unit_test(test_counts_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -112,9 +112,9 @@ ROADS
         ;;
     packages)
         echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb pocl-opencl-icd gcc libc6-dev pkg-config curl'
-        echo 'export POCL_CACHE_DIR=/root/here/pocl'
         echo 'ls /usr/lib/*/camber-kernels/*.bin >/root/here/kernels && test ! -e /root/.cache'
-        # The tool, C, Python, the server.
+        # The tool, C, Python, the server. What they keep for their user goes with the folder.
+        echo 'export POCL_CACHE_DIR=/root/here/pocl XDG_CACHE_HOME=/root/here/cache'
         block build | grep '^camber ' | sed 's|tests/data|/checkout/tests/data|'
         echo 'od -An -c -N4 city.png | grep -q "P   N   G"'
         echo 'gcc /checkout/examples/hello.c -o hello $(pkg-config --cflags --libs camber) -lm && ./hello'
@@ -129,7 +129,7 @@ ROADS
         echo 'curl -fsS http://127.0.0.1:$port/12/659/1593.png | od -An -c -N4 | grep -q "P   N   G"'
         echo 'kill $server && wait $server'
         echo 'ls /usr/share/man/man1/camber.1.gz /usr/share/man/man1/camber-tiles.1.gz /usr/share/man/man1/camber-serve.1.gz /usr/share/man/man3/camber.3.gz'
-        echo 'rm -rf /root/here/*'
+        echo 'find /root/here/cache -type f; rm -rf /root/here/*'
         echo "apt-get purge -y \$(dpkg-query -W -f '\${Package}\\n' '*camber*')"
         # Nothing is left that was camber's, wherever it may be.
         echo 'find / -xdev -path /checkout -prune -o -path /proc -prune -o -path /var/cache/apt -prune -o -name "*camber*" -print >/left'

@@ -10,8 +10,8 @@ static inline camber_u32 tile_of_bit(camber_u32 bits, camber_u32 columns) {
     return lowest / CAMBER_TILE_BITS_COLUMNS * columns + lowest % CAMBER_TILE_BITS_COLUMNS;
 }
 
-/* Finds the spans of rows of a box, a lane each, from row y on. Returns how many rows these are. */
-static inline camber_u32 span_rows(global const float *segment, camber_u32 box, camber_u32 y,
+/* Finds the tiles of rows of a box, a lane each, from row y on. Returns how many rows these are. */
+static inline camber_u32 find_rows(global const float *segment, camber_u32 box, camber_u32 y,
                                    const camber_tile_grid *of, camber_u32 *first, camber_u32 *last) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const camber_u32 rows = CAMBER_BOX_LAST_Y(box) + 1u - y;
@@ -20,10 +20,10 @@ static inline camber_u32 span_rows(global const float *segment, camber_u32 box, 
     camber_slab slab;
     camber_segment_place(segment, &s);
     camber_slab_of(&s, &slab);
-    const camber_tile_range span =
-        camber_tile_span(&slab, boxes, camber_touches_all(&s, boxes, of), y + CAMBER_LOAD(0, numbers), of);
-    CAMBER_STORE(span.first, 0, first);
-    CAMBER_STORE(span.last, 0, last);
+    const camber_tile_range tiles =
+        camber_tiles_in_row(&slab, boxes, camber_touches_all(&s, boxes, of), y + CAMBER_LOAD(0, numbers), of);
+    CAMBER_STORE(tiles.first, 0, first);
+    CAMBER_STORE(tiles.last, 0, last);
     return rows < CAMBER_LANES ? rows : CAMBER_LANES;
 }
 

@@ -8,7 +8,7 @@ static __attribute__((noinline)) void count_in_box(global const float *segment, 
                                                    global camber_u32 *own) {
     camber_u32 first[CAMBER_LANES], last[CAMBER_LANES];
     for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y += CAMBER_LANES) {
-        const camber_u32 rows = span_rows(segment, box, y, &of, first, last);
+        const camber_u32 rows = find_rows(segment, box, y, &of, first, last);
         for (camber_u32 j = 0; j < rows; j++)
             for (camber_u32 x = first[j]; x <= last[j]; x++)
                 own[(y + j) * of.columns + x]++;

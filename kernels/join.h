@@ -121,14 +121,14 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
 
 /* The join word of a point where two segments meet.
  *
- *     cut: each segment's quad ends on the bisector M-C       tight: the inner side has no room, each quad keeps
- *     and holds its own part of the join                      its own M. Ma-C misses P: the fragment shader cuts
+ *     cut: each segment's quad ends on the bisector M-C       tight: the inner side has no room, each quad goes on
+ *     and holds its own part of the join                      past P there, by the pad: the fragment shader cuts
  *                                                             at P and the bisector what lies past them
  *
  *        ______________ C                                        ______________ C
  *        in            /|                                        in            /|
  *        -------------P |                                        -------------P |
- *        ____________/  |                                        _________Ma Mb_|
+ *        ____________/  |                                        _________Mb Ma_|
  *                   M   |                                                  |out|
  *                   |out|
  *

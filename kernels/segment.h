@@ -187,8 +187,8 @@ CAMBER_FN void camber_segment_place(CAMBER_GLOBAL const float *segment, camber_s
 
 /* All that lies within reach of a segment's endless line, as rows of tiles cut it. */
 typedef struct camber_slab {
-    camber_real ax, ay, slope, scale, reach; /* slope: x of the direction; scale: 1 over its y; reach: px */
-    camber_mask level;                       /* it runs along the row, and may touch all of it */
+    camber_real ax, ay, ux, scale, reach; /* ux: x of the direction; scale: 1 over its y; reach: px */
+    camber_mask level;                    /* it runs along the row, and may touch all of it */
 } camber_slab;
 
 CAMBER_FN void camber_slab_of(const camber_segment *s, camber_slab *slab) {
@@ -196,7 +196,7 @@ CAMBER_FN void camber_slab_of(const camber_segment *s, camber_slab *slab) {
     const camber_real one = CAMBER_REAL(1.0f), slack = 1e-6f * (CAMBER_FABS(s->ax) + CAMBER_FABS(s->ay));
     slab->ax = s->ax;
     slab->ay = s->ay;
-    slab->slope = s->ux;
+    slab->ux = s->ux;
     slab->level = CAMBER_FABS(s->uy) < 1e-3f;
     slab->scale = one / (slab->level ? one : s->uy);
     slab->reach = s->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(s->ux) + CAMBER_FABS(s->uy)) + slack;
@@ -209,10 +209,10 @@ typedef struct camber_tile_range {
 
 /* The tiles of one row of a box that a slab touches. box: the columns that the box has. middle: y of the row's middle,
  * px; left: where the first column begins, px. */
-CAMBER_FN camber_tile_range camber_row_span(const camber_slab *s, camber_tile_range box, camber_real middle,
-                                            float left) {
+CAMBER_FN camber_tile_range camber_slab_in_row(const camber_slab *s, camber_tile_range box, camber_real middle,
+                                               float left) {
     const float to_middle = 0.5f * CAMBER_TILE_PX, a_tile = 1.0f / CAMBER_TILE_PX;
-    const camber_real across = (middle - s->ay) * s->slope;
+    const camber_real across = (middle - s->ay) * s->ux;
     const camber_real before = s->ax + (across - s->reach) * s->scale, behind = s->ax + (across + s->reach) * s->scale;
     /* Counted from the tiles' middles. */
     const camber_real from = (CAMBER_LESS(before, behind) - to_middle) * a_tile - left * a_tile;
@@ -223,10 +223,10 @@ CAMBER_FN camber_tile_range camber_row_span(const camber_slab *s, camber_tile_ra
     const camber_real begin = CAMBER_MORE(from, first), end = CAMBER_LESS(to, last);
     const camber_words lowest = CAMBER_TO_WORDS(none ? last : begin), highest = CAMBER_TO_WORDS(none ? first : end);
     const camber_words past = CAMBER_TO_REAL(CAMBER_AS_INTEGERS(lowest)) < from ? lowest + 1u : lowest;
-    camber_tile_range span;
-    span.first = s->level ? box.first : none ? box.last + 1u : past;
-    span.last = s->level ? box.last : highest;
-    return span;
+    camber_tile_range tiles;
+    tiles.first = s->level ? box.first : none ? box.last + 1u : past;
+    tiles.last = s->level ? box.last : highest;
+    return tiles;
 }
 
 /* Whether from and to lie in the same column, or row, of tiles, as camber_segment_box counts them before the area's
@@ -262,24 +262,24 @@ CAMBER_FN camber_mask camber_touches_all(const camber_segment *s, camber_words b
     const camber_words x0 = CAMBER_BOX_FIRST_X(box), y0 = CAMBER_BOX_FIRST_Y(box), one = (camber_words)(1u);
     const camber_mask column = x0 == CAMBER_BOX_LAST_X(box), row = y0 == CAMBER_BOX_LAST_Y(box);
     const camber_mask inside = (column & (x0 - one < of->columns - 2u)) | (row & (y0 - one < of->rows - 2u));
-    if (!CAMBER_ANY((column | row) & (inside == 0)))
+    if (!CAMBER_ANY((box != CAMBER_NO_BOX) & (column | row) & (inside == 0)))
         return inside;
     return inside | ((column | row) & camber_segment_is_narrow(s));
 }
 
 /* The tiles of row y of a box that a segment touches. whole: camber_touches_all. */
-CAMBER_FN camber_tile_range camber_tile_span(const camber_slab *s, camber_words box, camber_mask whole, camber_words y,
-                                             const camber_tile_grid *of) {
+CAMBER_FN camber_tile_range camber_tiles_in_row(const camber_slab *s, camber_words box, camber_mask whole,
+                                                camber_words y, const camber_tile_grid *of) {
     const camber_tile_range row = {CAMBER_BOX_FIRST_X(box), CAMBER_BOX_LAST_X(box)};
     const camber_real middle = of->top + (CAMBER_TO_REAL(CAMBER_AS_INTEGERS(y)) + 0.5f) * CAMBER_TILE_PX;
-    camber_tile_range span = camber_row_span(s, row, middle, of->left);
-    span.first = whole ? row.first : span.first;
-    span.last = whole ? row.last : span.last;
-    return span;
+    camber_tile_range tiles = camber_slab_in_row(s, row, middle, of->left);
+    tiles.first = whole ? row.first : tiles.first;
+    tiles.last = whole ? row.last : tiles.last;
+    return tiles;
 }
 
 /* The tiles that segments touch, as bits: eight columns of four rows from the first tile of the box on. In a larger box
- * all bits are set, and camber_tile_span has to be asked row by row. */
+ * all bits are set, and camber_tiles_in_row has to be asked row by row. */
 #define CAMBER_TILE_BITS_COLUMNS 8u
 #define CAMBER_TILE_BITS_ROWS 4u
 #define CAMBER_TILE_BITS_ASK 0xffffffffu
@@ -291,7 +291,7 @@ CAMBER_FN camber_words camber_tile_bits(const camber_segment *s, camber_words bo
     const camber_mask drawn = box != CAMBER_NO_BOX, whole = camber_touches_all(s, box, of);
     const camber_mask large = drawn & ((across >= CAMBER_TILE_BITS_COLUMNS) | (down >= CAMBER_TILE_BITS_ROWS));
     camber_words bits = drawn ? one : none;
-    if (CAMBER_ANY(((across | down) != 0u) | (whole == 0))) {
+    if (CAMBER_ANY(drawn & (((across | down) != 0u) | (whole == 0)))) {
         camber_slab slab;
         camber_slab_of(s, &slab);
         bits = none;
@@ -299,10 +299,10 @@ CAMBER_FN camber_words camber_tile_bits(const camber_segment *s, camber_words bo
             const camber_mask has_row = drawn & (large == 0) & (down >= j);
             if (!CAMBER_ANY(has_row))
                 break;
-            const camber_tile_range span = camber_tile_span(&slab, box, whole, y0 + j, of);
-            const camber_words first = span.first - x0, last = span.last - x0;
+            const camber_tile_range tiles = camber_tiles_in_row(&slab, box, whole, y0 + j, of);
+            const camber_words first = tiles.first - x0, last = tiles.last - x0;
             const camber_words row = ((two << (last & 7u)) - (one << (first & 7u))) << (CAMBER_TILE_BITS_COLUMNS * j);
-            bits |= has_row & (span.first <= span.last) ? row : none;
+            bits |= has_row & (tiles.first <= tiles.last) ? row : none;
         }
     }
     return large ? (camber_words)(CAMBER_TILE_BITS_ASK) : bits;

@@ -123,7 +123,7 @@ CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
     f->cap = from - past * f->cosine - at->y * f->sine;
 }
 
-/* The share of a pixel inside a flat end. */
+/* The share of a pixel inside a flat end. The turned cap is cut as an edge across the segment is. */
 CAMBER_FN camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
     camber_flat_end f;
     if (!camber_is_flat_join(p, out_of))

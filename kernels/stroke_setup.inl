@@ -75,7 +75,7 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_tip_from(CAMBER_COEF_MASK is_round
     return is_round_cap ? until : CAMBER_COEF_OF(CAMBER_NEVER_PX);
 }
 
-/* The same of any end: a cap, or a join by camber_flat_join. */
+/* Where any end is flat, px past it: a cap, or a join by camber_flat_join. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_flat_end_from(CAMBER_COEF_WORDS end, CAMBER_COEF half_width) {
     const CAMBER_COEF stub = (CAMBER_COEF_NUMBER(CAMBER_END_FLAT(end)) - 1.0f) * CAMBER_STUB_UNIT_PX;
     return stub < 0.0f ? camber_flat_from(CAMBER_END_KIND(end), half_width) : stub;

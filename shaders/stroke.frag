@@ -25,7 +25,7 @@ precision highp int;
 #define MEASURED (DASH || TRIM || RAMP || PATTERN)
 
 flat in vec4 v_segment; // A in the area, of PITCHED from where the camera looks at; direction
-flat in vec4 v_shape;   // length, half width; at A and B: where a flat cap lies, px past the end
+flat in vec4 v_shape;   // length, half width; at A and B: where a flat end lies, px past it
 flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine > 0 where it turns towards +y
 flat in vec4 v_rest;    // slope and curve of the edge; at A and B: foreign from here on, px past the end
 #if TIPS

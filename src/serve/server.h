@@ -21,12 +21,12 @@ typedef struct camber_server_desc {
     size_t cache_bytes;     /* 0: 256 MB */
     uint32_t most_px;       /* on a side of a picture. 0: 2048 */
     uint32_t most_ratio;    /* 1 to CAMBER_CHART_MOST_RATIO. 0: 4 */
-    uint32_t side;          /* most tiles on a side of a metatile. 0: 1, which is best for random places */
-    uint32_t threads;       /* that answer, and as many that encode. 0: one a core */
-    const char *renderd;    /* socket that speaks mod_tile's protocol. NULL: none */
-    const char *cache_dir;  /* folder of tiles; with renderd, of the metatiles that are drawn for it. NULL: none */
-    bool edits;             /* the style is being edited: answers are never taken from a browser's cache unasked */
-    bool logs_requests;     /* each request is told to log_request */
+    uint32_t side;       /* most tiles on a side of a metatile. 0: 1, which is best for random places; 8 with renderd */
+    uint32_t threads;    /* that answer, and as many that encode. 0: one a core */
+    const char *renderd; /* socket that speaks mod_tile's protocol. NULL: none */
+    const char *cache_dir; /* folder of tiles; with renderd, of the metatiles that are drawn for it. NULL: none */
+    bool edits;            /* the style is being edited: answers are never taken from a browser's cache unasked */
+    bool logs_requests;    /* each request is told to log_request */
     void (*log_request)(void *user, const char *line); /* JSON, without a line's end. Several threads call it */
     camber_log_fn *log;                                /* of failures while drawing and encoding */
     void *user;                                        /* of both */

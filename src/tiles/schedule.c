@@ -18,9 +18,11 @@
 static const double PICTURE_COST = 12e3, TILE_COST = 1.6e3;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
-/* The time to take a point from the file of features, in points that are drawn; and to look whether deep tiles have it,
- * for a part that goes on from wide zooms to deep ones, and so holds all points. */
-static const double READ_COST = 0.15, LOOK_COST = 0.2;
+/* The time to take a point from the file of features, in points that are drawn. */
+static const double READ_COST = 0.15;
+/* The time to look whether deep tiles have a point. A part that goes on from wide zooms to deep ones holds all points.
+ */
+static const double LOOK_COST = 0.2;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
 /* A point takes up to so much longer where many lie in a tile; half of that where so many do (2026-11-25). */

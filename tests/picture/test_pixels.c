@@ -172,12 +172,12 @@ static void test_turns_of_fans(void **state) {
 /* A segment alone, the last of two, the middle one of three. */
 enum { ALONE, LAST, INNER, PLACES };
 /* Shorter than a pixel, than half the width, or neither. */
-enum { TINY, STUB, LONG, SPANS };
+enum { TINY, SHORT, LONG, SPANS };
 
 static void add_length(trial *t, const camber_oracle_style *style, double length, tally tallies[PLACES][SPANS]) {
     const double arm = style->width_px + 3;
     const double in = between(&t->dice, -1.5, 1.5), out = between(&t->dice, -1.5, 1.5);
-    const int span = length < 1 ? TINY : length < style->width_px / 2 ? STUB : LONG;
+    const int span = length < 1 ? TINY : length < style->width_px / 2 ? SHORT : LONG;
     for (int place = 0; place < PLACES; place++) {
         path p;
         char label[64];

@@ -281,7 +281,7 @@ static bool differ(const property_case *c, const camber_stages *a, const camber_
         const bool inner = i > 0 && i + 1 < a->point_count;
         if (abs(apart) > bits && abs(apart) < 65530) /* a reversal turns to either side */
             return is_bad(story, "another turn, by bits,", i, apart);
-        /* How many chords a fan has hangs by a hair at every step. */
+        /* How many chords a fan has hangs by a hair at every step, as the stub of a strip does. */
         const uint32_t mask = c->method == CAMBER_METHOD_KITE ? ~0u : ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT);
         if (((p->join ^ q->join) & mask) >> 16 && (inner ? !is_near_threshold(c, p) : !ring))
             return is_bad(story, "another join", i, (double)(p->join >> 16));

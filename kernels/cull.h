@@ -333,9 +333,9 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         ((from.beyond & to.beyond) || !(camber_share_within(p, from, to) + camber_share_within(p, to, from) > 1.0f)))
         return;
     if (a.beyond)
-        camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST);
+        camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST | CAMBER_POINT_CUT);
     if (b.beyond)
-        camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST);
+        camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST | CAMBER_POINT_CUT);
 }
 
 /* Walks the points [begin, end) of the stretch, at most CAMBER_CULL_CHUNK. Of neighbours on the same pixel only the

@@ -80,10 +80,11 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
 }
 
 /* The bits of a join word that tell of the line beyond the next point, from the info of the points beside it. A ring
- * has neither first nor last. */
+ * has neither first nor last, and a line that the window cuts does not end there. */
 CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 after) {
-    const camber_u32 first = (before & (CAMBER_POINT_FIRST | CAMBER_POINT_RING)) == CAMBER_POINT_FIRST;
-    const camber_u32 last = (after & (CAMBER_POINT_LAST | CAMBER_POINT_RING)) == CAMBER_POINT_LAST;
+    const camber_u32 goes_on = CAMBER_POINT_RING | CAMBER_POINT_CUT;
+    const camber_u32 first = (before & (CAMBER_POINT_FIRST | goes_on)) == CAMBER_POINT_FIRST;
+    const camber_u32 last = (after & (CAMBER_POINT_LAST | goes_on)) == CAMBER_POINT_LAST;
     return (first ? CAMBER_JOIN_AFTER_FIRST : 0u) | (last ? CAMBER_JOIN_BEFORE_LAST : 0u);
 }
 

@@ -280,7 +280,7 @@ CAMBER_FN void camber_offset_emit_last(const camber_source_line *c, camber_offse
         }
     }
     if (begin.count == 0u) {
-        writer->flags |= CAMBER_POINT_LAST;
+        writer->flags |= CAMBER_POINT_LAST | (c->info[slot] & CAMBER_POINT_CUT);
         camber_offset_emit_end(c, before, row, writer);
         return;
     }
@@ -322,7 +322,7 @@ CAMBER_FN void camber_offset_emit_beside(const camber_source_line *c, camber_u32
         return;
     }
     if (before.kind == CAMBER_OFFSET_NONE)
-        writer->flags = CAMBER_POINT_FIRST;
+        writer->flags = CAMBER_POINT_FIRST | (info & CAMBER_POINT_CUT);
     if (before.kind != CAMBER_OFFSET_NONE && before.seam) {
         camber_offset_writer end = camber_offset_writer_counting();
         camber_offset_emit_elements(c, camber_offset_element_before(c, before.slot), before.slot, row, &end);

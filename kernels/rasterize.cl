@@ -55,8 +55,8 @@ typedef struct backdrop {
 #endif
 } backdrop;
 
-static inline camber_words look_at(const camber_tile_state *c, const backdrop *b, int i, int v) {
-    camber_words rgba = c->touched[CAMBER_PICTURE] >> i & 1ul ? camber_tile_pixels(c, i, v, b->back) : b->bare;
+static inline camber_words look_at(camber_tile_state *c, const backdrop *b, int i, int v) {
+    camber_words rgba = camber_tile_has_pixels(c, i) ? camber_tile_pixels(c, i, v, b->back) : b->bare;
 #if CAMBER_RASTER_PITCHED
     const camber_real y = b->top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + CAMBER_LOAD((size_t)v, ROWS);
     rgba = y < b->horizon ? b->sky : rgba;
@@ -64,7 +64,7 @@ static inline camber_words look_at(const camber_tile_state *c, const backdrop *b
     return rgba;
 }
 
-static inline void write_cells(const camber_tile_state *c, global camber_u32 *pixels, camber_target_args s, float top,
+static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, camber_target_args s, float top,
                                int first, int last) {
     backdrop b = {.back = {s.r, s.g, s.b, s.a}, .top = top};
     b.bare = camber_bare_pixels(b.back);
@@ -173,6 +173,7 @@ CAMBER_KERNEL(1, rasterize,
     }
     camber_tile_end(&c);
     if (!slice.is_last) {
+        camber_tile_close_brush(&c);
         c.done = ~0ul;
         spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL);
         return;

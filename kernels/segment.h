@@ -173,81 +173,45 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
 
 /* ---- Tiles ---- */
 
-/* The words of a segment that say which tiles it touches, in all lanes the same. */
-CAMBER_FN void camber_segment_place(CAMBER_GLOBAL const float *segment, camber_segment *s) {
-    s->ax = CAMBER_REAL(segment[CAMBER_SEGMENT_AX]);
-    s->ay = CAMBER_REAL(segment[CAMBER_SEGMENT_AY]);
-    s->bx = CAMBER_REAL(segment[CAMBER_SEGMENT_BX]);
-    s->by = CAMBER_REAL(segment[CAMBER_SEGMENT_BY]);
-    s->ux = CAMBER_REAL(segment[CAMBER_SEGMENT_UX]);
-    s->uy = CAMBER_REAL(segment[CAMBER_SEGMENT_UY]);
-    s->half_width = CAMBER_REAL(segment[CAMBER_SEGMENT_HALF_WIDTH]);
-    s->reach = CAMBER_REAL(segment[CAMBER_SEGMENT_REACH]);
-}
-
-/* All that lies within reach of a segment's endless line, as rows of tiles cut it. */
-typedef struct camber_slab {
-    camber_real ax, ay, ux, scale, reach; /* ux: x of the direction; scale: 1 over its y; reach: px */
-    camber_mask level;                    /* it runs along the row, and may touch all of it */
-} camber_slab;
-
-CAMBER_FN void camber_slab_of(const camber_segment *s, camber_slab *slab) {
-    const float to_middle = 0.5f * CAMBER_TILE_PX;
-    const camber_real one = CAMBER_REAL(1.0f), slack = 1e-6f * (CAMBER_FABS(s->ax) + CAMBER_FABS(s->ay));
-    slab->ax = s->ax;
-    slab->ay = s->ay;
-    slab->ux = s->ux;
-    slab->level = CAMBER_FABS(s->uy) < 1e-3f;
-    slab->scale = one / (slab->level ? one : s->uy);
-    slab->reach = s->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(s->ux) + CAMBER_FABS(s->uy)) + slack;
-}
-
-/* Columns of tiles [first, last]; none where the last lies before the first. */
-typedef struct camber_tile_range {
-    camber_words first, last;
-} camber_tile_range;
-
-/* The tiles of one row of a box that a slab touches. box: the columns that the box has. middle: y of the row's middle,
- * px; left: where the first column begins, px. */
-CAMBER_FN camber_tile_range camber_slab_in_row(const camber_slab *s, camber_tile_range box, camber_real middle,
-                                               float left) {
-    const float to_middle = 0.5f * CAMBER_TILE_PX, a_tile = 1.0f / CAMBER_TILE_PX;
-    const camber_real across = (middle - s->ay) * s->ux;
-    const camber_real before = s->ax + (across - s->reach) * s->scale, behind = s->ax + (across + s->reach) * s->scale;
-    /* Counted from the tiles' middles. */
-    const camber_real from = (CAMBER_LESS(before, behind) - to_middle) * a_tile - left * a_tile;
-    const camber_real to = (CAMBER_MORE(before, behind) - to_middle) * a_tile - left * a_tile;
-    const camber_real first = CAMBER_TO_REAL(CAMBER_AS_INTEGERS(box.first)),
-                      last = CAMBER_TO_REAL(CAMBER_AS_INTEGERS(box.last));
-    const camber_mask none = (from > last) | (to < first);
-    const camber_real begin = CAMBER_MORE(from, first), end = CAMBER_LESS(to, last);
-    const camber_words lowest = CAMBER_TO_WORDS(none ? last : begin), highest = CAMBER_TO_WORDS(none ? first : end);
-    const camber_words past = CAMBER_TO_REAL(CAMBER_AS_INTEGERS(lowest)) < from ? lowest + 1u : lowest;
-    camber_tile_range tiles;
-    tiles.first = s->level ? box.first : none ? box.last + 1u : past;
-    tiles.last = s->level ? box.last : highest;
-    return tiles;
+/* The squares (tiles or cells) of one row of a box that a segment with its reach touches: first | last << 8. middle: y
+ * of the row's middle, px; left: where the first square begins, px. */
+CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float middle, float left, camber_u32 first,
+                                     camber_u32 last, float side) {
+    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], ux = segment[CAMBER_SEGMENT_UX],
+                uy = segment[CAMBER_SEGMENT_UY];
+    const float to_middle = 0.5f * side, a_square = 1.0f / side;
+    const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay));
+    const float reach =
+        segment[CAMBER_SEGMENT_HALF_WIDTH] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
+    if (CAMBER_FABS(uy) < 1e-3f)
+        return first | last << 8;
+    const float scale = 1.0f / uy, across = (middle - ay) * ux;
+    const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
+    /* Counted from the squares' middles. */
+    const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
+    const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
+    if (from > (float)last || to < (float)first)
+        return 1u; /* none: the last lies before the first */
+    const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
+    return (from > (float)begin ? begin + 1u : begin) | (to < (float)last ? (camber_u32)to : last) << 8;
 }
 
 /* Whether from and to lie in the same column, or row, of tiles, as camber_segment_box counts them before the area's
  * edges cut the box. */
-CAMBER_FN camber_mask camber_same_tile(camber_real from, camber_real to) {
-    const float a_tile = 1.0f / CAMBER_TILE_PX, inset = 0.4375f;
-    const camber_real least = CAMBER_REAL(-1e9f), most = CAMBER_REAL(1e9f);
-    const camber_mask none = CAMBER_TO_INTEGERS(CAMBER_REAL(0.0f)), one = CAMBER_TO_INTEGERS(CAMBER_REAL(1.0f));
-    const camber_real a = (from + inset) * a_tile, b = (to - inset) * a_tile;
-    const camber_real lower = a < least ? least : a > most ? most : a, upper = b < least ? least : b > most ? most : b;
-    const camber_mask first = CAMBER_TO_INTEGERS(lower), last = CAMBER_TO_INTEGERS(upper);
-    const camber_mask first_down = lower < CAMBER_TO_REAL(first) ? one : none;
-    const camber_mask last_down = upper < CAMBER_TO_REAL(last) ? one : none;
-    return first - first_down == last - last_down;
+CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
+    const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = 0.4375f;
+    const float a = (from + inset) * a_tile, b = (to - inset) * a_tile;
+    const float lower = a < least ? least : a > most ? most : a, upper = b < least ? least : b > most ? most : b;
+    const int first = (int)lower, last = (int)upper;
+    return first - (lower < (float)first) == last - (upper < (float)last);
 }
 
 /* Whether the box of a segment lies in one column or in one row of tiles. */
-CAMBER_FN camber_mask camber_segment_is_narrow(const camber_segment *s) {
-    const camber_real x0 = CAMBER_LESS(s->ax, s->bx) - s->reach, x1 = CAMBER_MORE(s->ax, s->bx) + s->reach;
-    const camber_real y0 = CAMBER_LESS(s->ay, s->by) - s->reach, y1 = CAMBER_MORE(s->ay, s->by) + s->reach;
-    return camber_same_tile(x0, x1) | camber_same_tile(y0, y1);
+CAMBER_FN camber_u32 camber_segment_is_narrow(CAMBER_GLOBAL const float *segment) {
+    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], bx = segment[CAMBER_SEGMENT_BX],
+                by = segment[CAMBER_SEGMENT_BY], reach = segment[CAMBER_SEGMENT_REACH];
+    return camber_same_tile(CAMBER_LESS(ax, bx) - reach, CAMBER_MORE(ax, bx) + reach) ||
+           camber_same_tile(CAMBER_LESS(ay, by) - reach, CAMBER_MORE(ay, by) + reach);
 }
 
 /* The four bytes of a box: camber_segment_box. */
@@ -256,56 +220,23 @@ CAMBER_FN camber_mask camber_segment_is_narrow(const camber_segment *s) {
 #define CAMBER_BOX_LAST_X(box) ((box) >> 16 & 255u)
 #define CAMBER_BOX_LAST_Y(box) ((box) >> 24)
 
-/* Whether a segment touches all tiles of its box. It does where that has one column or row. At the area's edge the box
- * may be cut, but what it touches must be as in any other area. */
-CAMBER_FN camber_mask camber_touches_all(const camber_segment *s, camber_words box, const camber_tile_grid *of) {
-    const camber_words x0 = CAMBER_BOX_FIRST_X(box), y0 = CAMBER_BOX_FIRST_Y(box), one = (camber_words)(1u);
-    const camber_mask column = x0 == CAMBER_BOX_LAST_X(box), row = y0 == CAMBER_BOX_LAST_Y(box);
-    const camber_mask inside = (column & (x0 - one < of->columns - 2u)) | (row & (y0 - one < of->rows - 2u));
-    if (!CAMBER_ANY((box != CAMBER_NO_BOX) & (column | row) & (inside == 0)))
-        return inside;
-    return inside | ((column | row) & camber_segment_is_narrow(s));
+/* Whether a box is one tile, away from the area's left and right edges: camber_tile_span then is that tile. */
+CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) {
+    return box >> 16 == (box & 0xffffu) && CAMBER_BOX_FIRST_X(box) - 1u < columns - 2u;
 }
 
-/* The tiles of row y of a box that a segment touches. whole: camber_touches_all. */
-CAMBER_FN camber_tile_range camber_tiles_in_row(const camber_slab *s, camber_words box, camber_mask whole,
-                                                camber_words y, const camber_tile_grid *of) {
-    const camber_tile_range row = {CAMBER_BOX_FIRST_X(box), CAMBER_BOX_LAST_X(box)};
-    const camber_real middle = of->top + (CAMBER_TO_REAL(CAMBER_AS_INTEGERS(y)) + 0.5f) * CAMBER_TILE_PX;
-    camber_tile_range tiles = camber_slab_in_row(s, row, middle, of->left);
-    tiles.first = whole ? row.first : tiles.first;
-    tiles.last = whole ? row.last : tiles.last;
-    return tiles;
-}
-
-/* The tiles that segments touch, as bits: eight columns of four rows from the first tile of the box on. In a larger box
- * all bits are set, and camber_tiles_in_row has to be asked row by row. */
-#define CAMBER_TILE_BITS_COLUMNS 8u
-#define CAMBER_TILE_BITS_ROWS 4u
-#define CAMBER_TILE_BITS_ASK 0xffffffffu
-
-CAMBER_FN camber_words camber_tile_bits(const camber_segment *s, camber_words box, const camber_tile_grid *of) {
-    const camber_words none = (camber_words)(0u), one = (camber_words)(1u), two = (camber_words)(2u);
-    const camber_words x0 = CAMBER_BOX_FIRST_X(box), y0 = CAMBER_BOX_FIRST_Y(box);
-    const camber_words across = CAMBER_BOX_LAST_X(box) - x0, down = CAMBER_BOX_LAST_Y(box) - y0;
-    const camber_mask drawn = box != CAMBER_NO_BOX, whole = camber_touches_all(s, box, of);
-    const camber_mask large = drawn & ((across >= CAMBER_TILE_BITS_COLUMNS) | (down >= CAMBER_TILE_BITS_ROWS));
-    camber_words bits = drawn ? one : none;
-    if (CAMBER_ANY(drawn & (((across | down) != 0u) | (whole == 0)))) {
-        camber_slab slab;
-        camber_slab_of(s, &slab);
-        bits = none;
-        for (camber_u32 j = 0; j < CAMBER_TILE_BITS_ROWS; j++) {
-            const camber_mask has_row = drawn & (large == 0) & (down >= j);
-            if (!CAMBER_ANY(has_row))
-                break;
-            const camber_tile_range tiles = camber_tiles_in_row(&slab, box, whole, y0 + j, of);
-            const camber_words first = tiles.first - x0, last = tiles.last - x0;
-            const camber_words row = ((two << (last & 7u)) - (one << (first & 7u))) << (CAMBER_TILE_BITS_COLUMNS * j);
-            bits |= has_row & (tiles.first <= tiles.last) ? row : none;
-        }
-    }
-    return large ? (camber_words)(CAMBER_TILE_BITS_ASK) : bits;
+/* The tiles of a box in row y that a segment touches: first | last << 8. A box of one column or row has all its tiles.
+ * At the area's edge the box may be cut, but the span must be as in any other area. */
+CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber_u32 box, camber_u32 y,
+                                      const camber_tile_grid *of) {
+    const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
+    const camber_u32 all = first | last << 8;
+    if ((first == last && first - 1u < of->columns - 2u) || (top == bottom && top - 1u < of->rows - 2u))
+        return all;
+    if ((first == last || top == bottom) && camber_segment_is_narrow(segment))
+        return all;
+    const float middle = of->top + ((float)y + 0.5f) * CAMBER_TILE_PX;
+    return camber_row_span(segment, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
 #ifdef CAMBER_DEVICE

@@ -5,7 +5,6 @@
  * records of a range, rounded up to sixteens, it writes from element `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
  *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
- *     tile_bits[n]: camber_tile_bits
  *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH; 0 if the records have none
  *     planes[CAMBER_PLANE_WORDS * n], only with CAMBER_RASTER_PITCHED: the segments in their plane */
 #include "brush_ext.h"
@@ -135,7 +134,7 @@ static inline void put_planes(const camber_segment *s, const camber_plane *p, gl
 /* Where the segments of a vector of records go. */
 typedef struct outputs {
     global float *segments;
-    global camber_u32 *boxes, *tile_bits;
+    global camber_u32 *boxes;
     global float *arc_lengths, *planes;
 } outputs;
 
@@ -175,9 +174,7 @@ static inline void make_segments(global const camber_u32 *records, global const 
     is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
 #endif
     const camber_words box = camber_segment_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
-    const camber_tile_grid grid = {r.left, r.top, r.columns, r.rows};
     CAMBER_STORE(box, 0, to.boxes);
-    CAMBER_STORE(camber_tile_bits(&s, box, &grid), 0, to.tile_bits);
     /* If a picture is drawn in several areas, most segments lie in others. */
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
         return;
@@ -196,14 +193,13 @@ static inline void make_segments(global const camber_u32 *records, global const 
 
 CAMBER_KERNEL(1, setup,
               (global const camber_u32 *restrict records, global const float *restrict rows,
-               global float *restrict segments, global camber_u32 *restrict boxes,
-               global camber_u32 *restrict tile_bits, const camber_setup_args r, global float *restrict arc_lengths,
-               global float *restrict planes),
-              (records, rows, segments, boxes, tile_bits, r, arc_lengths, planes)) {
+               global float *restrict segments, global camber_u32 *restrict boxes, const camber_setup_args r,
+               global float *restrict arc_lengths, global float *restrict planes),
+              (records, rows, segments, boxes, r, arc_lengths, planes)) {
     const uint group = (uint)CAMBER_WORK_ITEM;
     for (uint v = 0; v < CAMBER_VECTORS; v++) {
         const size_t at = (size_t)r.base + 16 * group + CAMBER_LANES * v;
-        const outputs to = {segments + CAMBER_SEGMENT_WORDS * at, boxes + at, tile_bits + at,
+        const outputs to = {segments + CAMBER_SEGMENT_WORDS * at, boxes + at,
                             arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * at, planes + CAMBER_PLANE_WORDS * at};
         make_segments(records, rows, (int)(r.first + 16 * group + CAMBER_LANES * v), r, to);
     }

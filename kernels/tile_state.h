@@ -256,8 +256,10 @@ CAMBER_FN void camber_tile_change_brush(camber_tile_state *c, camber_brush next)
     c->now = next;
 }
 
-/* Closes all that is open. */
+/* Closes all that is open, but for a brush that draws straight into the picture: camber_tile_pixels closes that. */
 CAMBER_FN void camber_tile_end(camber_tile_state *c) {
+    if (camber_tile_level(c) == CAMBER_PICTURE)
+        return;
     camber_tile_close_brush(c);
     if (c->is_open[CAMBER_LAYER])
         camber_tile_close_level(c, CAMBER_LAYER, c->now.layer_opacity);
@@ -320,8 +322,15 @@ CAMBER_FN camber_words camber_rgba(camber_real r, camber_real g, camber_real b, 
     return camber_channel(r) | camber_channel(g) << 8 | camber_channel(b) << 16 | camber_channel(a) << 24;
 }
 
-/* The pixels of a vector, over the background. */
-CAMBER_FN camber_words camber_tile_pixels(const camber_tile_state *c, int i, int v, const float *back) {
+/* Whether anything was drawn in a cell of the picture. */
+CAMBER_FN int camber_tile_has_pixels(const camber_tile_state *c, int i) {
+    return ((c->touched[CAMBER_PICTURE] | c->brushed) >> i & 1u) != 0u;
+}
+
+/* The pixels of a vector, over the background, after camber_tile_end. To be called once for each vector. */
+CAMBER_FN camber_words camber_tile_pixels(camber_tile_state *c, int i, int v, const float *back) {
+    if (c->brushed >> i & 1u)
+        camber_tile_close_vector(c, CAMBER_PICTURE, i, v, !(c->touched[CAMBER_PICTURE] >> i & 1u));
     const camber_real through = c->level[CAMBER_PICTURE][i][3][v];
     return camber_rgba(c->level[CAMBER_PICTURE][i][0][v] + through * back[0],
                        c->level[CAMBER_PICTURE][i][1][v] + through * back[1],

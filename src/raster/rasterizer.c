@@ -91,8 +91,8 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
             break;
         cl_mem records = part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL];
         const camber_kernel_arg arguments[] = {
-            CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),    BUFFER(BUFFER_SEGMENTS),    BUFFER(BUFFER_BOXES),
-            BUFFER(BUFFER_TILE_BITS),   CAMBER_ARG_VALUE(args), BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};
+            CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
+            CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};
         const size_t jobs = (range.end - range.first + 15) / 16;
         status = run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments, jobs);
     }
@@ -119,12 +119,12 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
         camber_raster_reserve(raster, BUFFER_COUNTS, 4 * (size_t)c.tiles * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.tiles);
-    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_TILE_BITS),
-                                       BUFFER(BUFFER_COUNTS), CAMBER_ARG_VALUE(c)};
+    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS),
+                                       CAMBER_ARG_VALUE(c)};
     const camber_kernel_arg total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), CAMBER_ARG_VALUE(c.tiles),
                                        CAMBER_ARG_VALUE(chunk_count)};
     if (status == CAMBER_OK)
-        status = run(raster, STAGE_BIN_COUNT, count, 5, chunk_count);
+        status = run(raster, STAGE_BIN_COUNT, count, 4, chunk_count);
     if (status == CAMBER_OK)
         status = run(raster, STAGE_BIN_SCAN, total, 4, c.tiles / 16);
     return status;
@@ -164,10 +164,9 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
 }
 
 static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
-    const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),  BUFFER(BUFFER_TILE_BITS),
-                                      BUFFER(BUFFER_STARTS),   BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_LISTS),
-                                      CAMBER_ARG_VALUE(c)};
-    return run(raster, STAGE_BIN_SCATTER, fill, 7, chunk_count);
+    const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_STARTS),
+                                      BUFFER(BUFFER_COUNTS),   BUFFER(BUFFER_LISTS), CAMBER_ARG_VALUE(c)};
+    return run(raster, STAGE_BIN_SCATTER, fill, 6, chunk_count);
 }
 
 static bool is_heavy(const camber_raster *raster, size_t tile) {
@@ -286,8 +285,6 @@ static camber_status prepare(camber_raster *raster, const camber_raster_scene *s
         status = camber_raster_reserve(raster, BUFFER_SEGMENTS, 4 * CAMBER_SEGMENT_WORDS * segments);
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_BOXES, 4 * segments);
-    if (status == CAMBER_OK)
-        status = camber_raster_reserve(raster, BUFFER_TILE_BITS, 4 * segments);
     if (status == CAMBER_OK && raster->variant)
         status = prepare_rich(raster, scene, segments);
     if (status == CAMBER_OK && !raster->given)

@@ -137,17 +137,11 @@ static camber_status make_segments(const camber_twin *t, const camber_record_ran
 /* Counts a segment in each tile that it meets, or puts it into their lists. */
 static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
+    const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
     const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
-    camber_segment s;
-    camber_slab slab;
-    if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
-        return;
-    camber_segment_place(t->stages->segments + CAMBER_SEGMENT_WORDS * segment, &s);
-    camber_slab_of(&s, &slab);
-    const camber_mask whole = camber_touches_all(&s, box, &of);
-    for (uint32_t y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
-        const camber_tile_range tiles = camber_tiles_in_row(&slab, box, whole, y, &of);
-        for (uint32_t x = tiles.first; x <= tiles.last; x++) {
+    for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
+        const uint32_t span = camber_tile_span(t->stages->segments + CAMBER_SEGMENT_WORDS * segment, box, y, &of);
+        for (uint32_t x = span & 255u; x <= span >> 8; x++) {
             uint32_t *count = counts + y * t->columns + x;
             if (fill)
                 t->stages->lists[*count] = (uint32_t)segment;

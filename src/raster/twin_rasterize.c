@@ -230,19 +230,19 @@ static void draw_segment(camber_tile_state *c, const camber_twin *t, uint32_t wh
 
 /* ---- Tiles ---- */
 
-static camber_words pixel_of(const camber_twin *t, const camber_tile_state *c, uint32_t x, uint32_t y) {
+static camber_words pixel_of(const camber_twin *t, camber_tile_state *c, uint32_t x, uint32_t y) {
     const uint32_t cell = y % CAMBER_TILE_PX / CAMBER_CELL_PX * CAMBER_TILE_CELLS + x % CAMBER_TILE_PX / CAMBER_CELL_PX;
     const uint32_t pixel = y % CAMBER_CELL_PX * CAMBER_CELL_PX + x % CAMBER_CELL_PX;
     const float *sky = t->scene->sky;
     if (t->area->y + y < t->scene->horizon)
         return camber_rgba(sky[0], sky[1], sky[2], sky[3]);
-    if (!(c->touched[CAMBER_PICTURE] >> cell & 1))
+    if (!camber_tile_has_pixels(c, (int)cell))
         return camber_bare_pixels(t->scene->background);
     return camber_tile_pixels(c, (int)cell, (int)pixel, t->scene->background);
 }
 
 /* Writes the pixels of a tile that lie in the area. */
-static void write_tile(const camber_twin *t, const camber_tile_state *c, uint32_t column, uint32_t row) {
+static void write_tile(const camber_twin *t, camber_tile_state *c, uint32_t column, uint32_t row) {
     const uint32_t left = column * CAMBER_TILE_PX, top = row * CAMBER_TILE_PX;
     for (uint32_t y = top; y < top + CAMBER_TILE_PX && y < t->area->height; y++)
         for (uint32_t x = left; x < left + CAMBER_TILE_PX && x < t->area->width; x++) {

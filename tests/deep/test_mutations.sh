@@ -167,8 +167,6 @@ mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(
     'put_triangle(indices + 3, sr, e, e + 1)'
 mutant fan kernels/emit.cl "a fan from the inner edge" 'outer > 0.0f ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT' \
     'outer < 0.0f ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT'
-mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
-    '#define CAMBER_PAD_PX 0.7f'
 
 mutant strip kernels/offset_emit.cl "slots that begin one too far" 'writer.at = bases[chunk] + 1u' 'writer.at = bases[chunk] + 2u'
 mutant strip kernels/offset_clip.cl "what is left of a neighbour" 'camber_offset_clip_of(&source_line, slot)' \
@@ -187,7 +185,8 @@ mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex
 mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
 mutant strip kernels/join.h "split miters cut like bevels" 'split_end = miter   ?' 'split_end = !miter ?'
-mutant strip kernels/join.h "tight joins that forget the bisector" 'end = split || tight ?' 'end = split ?'
+mutant strip kernels/cull.h "lines that end where the window cuts them" 'real | CAMBER_POINT_LAST | CAMBER_POINT_CUT' \
+    'real | CAMBER_POINT_LAST'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
 mutant strip kernels/join.h "round joins past their limit" 'turn.c > row->round_cos' 'turn.c < row->round_cos'
 mutant strip kernels/join.h "round and square caps swapped" 'cap == CAMBER_CAPS_ROUND ' 'cap == CAMBER_CAPS_SQUARE '
@@ -224,8 +223,8 @@ mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' 
 
 mutant strip shaders/stroke.vert "cuts at the tangent of another angle" 'return 2.0 * q / ' 'return q / '
 mutant strip shaders/stroke.vert "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
-mutant strip shaders/stroke.vert "butt ends without a pad" '== CAMBER_ENDS_BUTT ? CAMBER_PAD_PX' '== CAMBER_ENDS_BUTT ? 0.0'
-mutant kite shaders/stroke.vert "kites cut on the outer side" 'is_cut && inner ? cut' 'is_cut && !inner ? cut'
+mutant strip shaders/stroke.vert "butt ends without a pad" '? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX, side' '? 0.0 : CAMBER_NO_LIMIT_PX, side'
+mutant kite shaders/stroke.vert "kites cut on the outer side" 'CUT && inner ? cut' 'CUT && !inner ? cut'
 mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer * cos(angle))' 'vec2(-sin(angle), outer * cos(angle))'
 mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
 mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
@@ -278,15 +277,15 @@ mutant strip kernels/emit.cl "arc lengths of the neighbour" 'as_uint(arc_lengths
 # ---- Kernels that draw: the twin tells ----
 
 drawer=(--draw cl)
+mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
+    '#define CAMBER_PAD_PX 0.7f'
 mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &before)' 'first, r, &before)'
 mutant strip kernels/setup.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
     'first - 1, r, &second)'
 mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
 mutant kite kernels/setup.cl "lines that go on to the next" 'r.strips ? STARTS : CAMBER_POINT_FIRST' \
     'r.strips ? STARTS : 0u'
-mutant strip kernels/bin_count.cl "large boxes with a tile too few" 'x <= last[j]' 'x < last[j]'
-mutant strip kernels/bin.h "bits of another row" '/ CAMBER_TILE_BITS_COLUMNS * columns' '/ CAMBER_TILE_BITS_ROWS * columns'
-mutant strip kernels/segment.h "a row's last tile without a bit" '(two << (last & 7u))' '(one << (last & 7u))'
+mutant strip kernels/bin_count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
     'lists[starts[tile + 1] - 1u - own[tile]++]'

@@ -509,7 +509,7 @@ def test_reach():
 # Every file system that may be written to becomes one that may not, but an own one for the compiler of kernels. Its last
 # words are the command, as a user without rights.
 READ_ONLY = """for place in $(cut -d' ' -f2 /proc/self/mounts | sort -r); do mount -o remount,bind,ro $place; done 2>/dev/null
-mount -t tmpfs -o mode=777 none cache && ! touch here 2>/dev/null && XDG_CACHE_HOME=$PWD/cache \
+mount -t tmpfs -o mode=777 none cache && ! touch here 2>/dev/null && XDG_CACHE_HOME=$PWD/cache POCL_CACHE_DIR=$PWD/cache/pocl \
 exec setpriv --reuid=65534 --regid=65534 --clear-groups --no-new-privs --bounding-set=-all "$@" """
 
 

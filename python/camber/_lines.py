@@ -182,8 +182,9 @@ class _Arrow:
         return values if is_valid is None else numpy.where(is_valid[:, None], values, numpy.nan)
 
     def numbers(self, array, first, count):
-        values, is_valid = self.buffer(array, 1, numpy.float64, array.offset + first, count), \
-            self.is_valid(array, first, count)
+        """Elements of an array of numbers. One that is not there is NaN."""
+        values = self.buffer(array, 1, numpy.float64, array.offset + first, count)
+        is_valid = self.is_valid(array, first, count)
         return values if is_valid is None else numpy.where(is_valid, values, numpy.nan)
 
     def is_valid(self, array, first, count):

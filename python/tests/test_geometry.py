@@ -207,7 +207,11 @@ def test_points_that_are_missing_split_a_line(interleaved):
     points, offsets = numpy.concatenate(LINES), numpy.array([0, 8], "i4")
     valid = numpy.array([0b11110111], numpy.uint8)
     split = numpy.where(numpy.arange(8)[:, None] == 3, numpy.nan, points)
-    assert (camber.draw(Arrow("+l", 1, [None, offsets], [points_of(points, interleaved, valid)]), **WANTED)
+    whole = points_of(points, interleaved, valid.copy())
+    assert (camber.draw(Arrow("+l", 1, [None, offsets.copy()], [whole]), **WANTED) == camber.draw(split, **WANTED)).all()
+    sides = [Arrow("g", 8, [missing, numpy.array(points[:, i])], nulls=int(missing is not None))
+             for i, missing in enumerate((None, valid))]  # y alone is missing
+    assert (camber.draw(Arrow("+l", 1, [None, offsets], [Arrow("+s", 8, [None], sides)]), **WANTED)
             == camber.draw(split, **WANTED)).all()
 
 

@@ -153,7 +153,7 @@ build_packages() { # DEBIAN
     mkdir "$run/checkout/debs"
     [ -z "${CAMBER_DEBS:-}" ] || { cp "$CAMBER_DEBS"/*.deb "$run/checkout/debs"; return; } # made before
     if [ "$1" != "$here" ]; then
-        echo 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates && cp -a /checkout camber && cd camber
+        echo 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates build-essential && cp -a /checkout camber && cd camber
               ./dev package && cp build/package/*.deb /checkout/debs' >"$run/make"
         inside in_root "$1" "$run/$1.make" "$run/make" >"$run/log" 2>&1 || { tail -n 40 "$run/log"; return 1; }
         rm -rf --one-file-system "$run/$1.make"

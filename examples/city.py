@@ -46,8 +46,8 @@ def by_datashader(points, offsets):
     ends = numpy.insert(points, offsets[1:-1], numpy.nan, axis=0)  # it has lines of a pixel or more, and no joins
     canvas = datashader.Canvas(SIZE, SIZE, (0, SIZE), (0, SIZE))
     counts = canvas.line(pandas.DataFrame(ends, columns=["x", "y"]), "x", "y", agg=datashader.any(), line_width=WIDTH)
-    shaded = datashader.transfer_functions.shade(counts, cmap=["#333366"])
-    return numpy.array(datashader.transfer_functions.set_background(shaded, "white").to_pil())
+    shaded = datashader.transfer_functions.shade(counts, cmap="#333366", how="linear", span=(0, 1), min_alpha=0)
+    return numpy.array(datashader.transfer_functions.set_background(shaded, "white").to_pil(origin="upper"))
 
 
 def time_of(draw):

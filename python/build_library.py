@@ -69,6 +69,13 @@ struct ArrowArray {
     void (*release)(struct ArrowArray *);
     void *private_data;
 };
+struct ArrowArrayStream {
+    int (*get_schema)(struct ArrowArrayStream *, struct ArrowSchema *);
+    int (*get_next)(struct ArrowArrayStream *, struct ArrowArray *);
+    const char *(*get_last_error)(struct ArrowArrayStream *);
+    void (*release)(struct ArrowArrayStream *);
+    void *private_data;
+};
 """
 
 CALLBACKS = 'extern "Python" void camber_python_log(void *user, camber_log_level level, const char *message);'

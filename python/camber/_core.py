@@ -66,6 +66,18 @@ def text_of(pointer):
     return None if pointer == ffi.NULL else ffi.string(pointer).decode("utf-8", "replace")
 
 
+def as_path(path):
+    """A path or a text as bytes, none of which the library would take for its end."""
+    path = os.fsencode(path)
+    if b"\0" in path:
+        raise ArgumentError("%r has a NUL in it" % path)
+    return path
+
+
+def as_text(text):
+    return ffi.NULL if text is None else ffi.new("char[]", as_path(text))
+
+
 def version():
     return text_of(lib.camber_version())
 
@@ -99,6 +111,7 @@ class Keeper:
     def __init__(self):
         self.lock = threading.Lock()
         self.process = os.getpid()
+        self.surface = ffi.NULL  # whose GL context calls and destroyers leave current on their thread
         self._held = {}  # address -> [pointer, destroy, addresses of parents, number of children, whether it is dropped]
         self._dropped = collections.deque()
 
@@ -124,12 +137,20 @@ class Keeper:
                     self._held[address][4] = True
                     self._free(address)
             finally:
-                self.lock.release()
+                self.release()
+
+    def release(self):
+        """Frees the lock, and before it the surface, so that another thread can use both."""
+        if self.surface != ffi.NULL:
+            lib.camber_surface_release(self.surface)
+        self.lock.release()
 
     def _free(self, address):
         pointer, destroy, parents, children, is_dropped = self._held[address]
         if is_dropped and children == 0:
             destroy(pointer)
+            if pointer == self.surface:
+                self.surface = ffi.NULL
             del self._held[address]
             for parent in parents:
                 self._held[parent][3] -= 1
@@ -146,12 +167,10 @@ class Core:
         Core.opened_in = os.getpid()
         self._keeper = Keeper()
         self._owner = None
-        self.surface = ffi.NULL
         self._log = _Log()
         handle = ffi.new_handle(self._log)
         desc = ffi.new("camber_context_desc *", {"log": lib.camber_python_log, "log_user": handle})
-        texts = [ffi.NULL if path is None else ffi.new("char[]", os.fsencode(path))
-                 for path in (cache_dir, access["root"])]
+        texts = as_text(cache_dir), as_text(access["root"])
         desc.cache_dir, desc.access.root = texts
         desc.access.remote, desc.access.vrt = access["remote"], access["vrt"]
         made = ffi.new("camber_context **")
@@ -178,10 +197,8 @@ class Core:
         return self
 
     def __exit__(self, *_):
-        if self.surface != ffi.NULL:
-            lib.camber_surface_release(self.surface)
         self._owner = None
-        self._keeper.lock.release()
+        self._keeper.release()
         self._keeper.free_dropped()
 
     def check(self, status):
@@ -192,13 +209,20 @@ class Core:
     def own(self, pointer, destroy, parents=()):
         return self._keeper.own(pointer, destroy, [self.pointer, *parents])
 
-    def make(self, function, *arguments):
-        """Calls X_create, whose last parameter takes the object; X_destroy follows when Python drops it."""
+    def make(self, function, *arguments, parents=()):
+        """Calls X_create, whose last parameter takes the object; X_destroy follows when Python drops it.
+
+        An argument that is an object is freed later than what is made; so are parents, which a desc names.
+        """
         made = ffi.new(ffi.typeof(function).args[-1])
         self.check(function(*arguments, made))
         name = function.__name__
         destroy = getattr(lib, name[:name.rindex("_")] + "_destroy", None) or DESTROYERS[name]
-        return self.own(made[0], destroy, [each for each in arguments if _is_object(each) and each != self.pointer])
+        made = self.own(made[0], destroy, [*parents, *(each for each in arguments
+                                                       if _is_object(each) and each != self.pointer)])
+        if function is lib.camber_surface_create:
+            self._keeper.surface = ffi.cast("camber_surface *", made)  # does not own it: the keeper frees it
+        return made
 
 
 DESTROYERS = {"camber_style_create_builtin": lib.camber_style_destroy}
@@ -222,7 +246,7 @@ class Context:
         rasterizer = pick(RASTERIZERS, "draw", draw)
         self._core = Core({"root": root, "remote": allow_remote, "vrt": allow_vrt}, cache_dir)
         self._desc = ffi.new("camber_device_desc *", {"memory_bytes": memory})
-        self._match = ffi.new("char[]", os.fsencode(device)) if device else ffi.NULL
+        self._match = as_text(device or None)
         self._desc.match = self._match
         self._rasterizer = rasterizer
         self._opened = None
@@ -235,7 +259,6 @@ class Context:
         if self._rasterizer == lib.CAMBER_RASTERIZER_GL or (
                 self._rasterizer == lib.CAMBER_RASTERIZER_AUTO and lib.camber_surface_may_be_hardware(ffi.NULL)):
             surface = core.make(lib.camber_surface_create, core.pointer, ffi.NULL)
-            core.surface = ffi.cast("camber_surface *", surface)
             self._desc.gl = lib.camber_surface_get_handles(surface)
         device = core.make(lib.camber_device_create, core.pointer, self._desc)
         desc = ffi.new("camber_renderer_desc *", {"rasterizer": self._rasterizer})
@@ -282,4 +305,4 @@ def default(context=None):
     return _defaults.context
 
 
-atexit.register(_defaults.__dict__.clear)  # before drivers are taken down
+atexit.register(lambda: _defaults.__dict__.clear())  # the last thread's, before drivers are taken down

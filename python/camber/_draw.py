@@ -89,11 +89,24 @@ def as_colors(color):
     return colors, True
 
 
-class Table:
-    """Strokes and paints by row, and the row of each line, as the library wants them."""
+def as_rows(rows, lines):
+    """The row of each line, where there is one for each line, or geometry with its lines. None: none was given."""
+    if rows is None:
+        return None
+    rows = as_whole(rows, numpy.uint32, "rows")
+    if len(rows) != lines.origin_count:
+        raise ArgumentError("there are %d rows and %d lines; give one for each" % (len(rows), lines.origin_count))
+    return rows if lines.origins is None else rows[lines.origins]
 
-    def __init__(self, width, color, rows, line_count, origins, origin_count, *, join="round", cap="butt",
-                 miter_limit=0, offset=0, gap=0, blur=0, dash=None):
+
+class Table:
+    """Strokes and paints by row, and the row of each line, as the library wants them.
+
+    rows has what as_rows gives; lines is None where they have their rows already, or all have row 0.
+    """
+
+    def __init__(self, width, color, rows, lines, *, join="round", cap="butt", miter_limit=0, offset=0, gap=0, blur=0,
+                 dash=None):
         if not (0 <= gap < float("inf") and 0 <= blur < float("inf")):
             raise ArgumentError("gap is %r and blur %r; give 0 or more pixels" % (gap, blur))
         colors, has_colors = as_colors(color)
@@ -103,22 +116,21 @@ class Table:
                             % (widths.dtype, widths.shape))
         counts = {len(colors)} if has_colors else set()
         counts |= {len(widths)} if widths.ndim else set()
-        wanted = None if rows is not None else origin_count
+        if rows is None and lines is None and counts - {1}:
+            raise ArgumentError("there are several widths or colours, and the network was made without rows; give it "
+                                "rows=range(n) to have one for each line")
+        wanted = None if rows is not None or lines is None else lines.origin_count
         if len(counts) > 1 or (wanted is not None and counts and counts != {wanted}):
             raise ArgumentError("there are %s widths and colours, and %s"
                                 % (" and ".join(map(str, sorted(counts))),
                                    "%d lines; give one for each, or rows" % wanted if wanted is not None
                                    else "both go by rows: give as many"))
         self.count = counts.pop() if counts else 1
-        self.rows = None
-        if rows is not None:
-            self.rows = as_whole(rows, numpy.uint32, "rows")
-            if len(self.rows) != line_count:
-                raise ArgumentError("there are %d rows and %d lines; give one for each" % (len(self.rows), line_count))
-            if line_count and int(self.rows.max()) >= self.count:
-                raise ArgumentError("row %d has no width and colour: there are %d" % (self.rows.max(), self.count))
-        elif self.count > 1:
-            self.rows = numpy.arange(line_count, dtype=numpy.uint32) if origins is None else origins.astype(numpy.uint32)
+        self.rows = rows
+        if rows is not None and len(rows) and int(rows.max()) >= self.count:
+            raise ArgumentError("row %d has no width and colour: there are %d" % (rows.max(), self.count))
+        if rows is None and self.count > 1:
+            self.rows = as_rows(range(self.count), lines)
         if self.count == 0:  # no lines: a row that none has
             colors, widths = numpy.zeros((1, 4)), numpy.zeros(())
         self.strokes = numpy.zeros(max(self.count, 1), STROKE)
@@ -209,7 +221,7 @@ def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows
     """Draws lines in pixels; returns a uint8 array of height x width x 4."""
     context = default(context)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
-    table = Table(width, color, rows, len(lines), lines.origins, lines.origin_count, **style)
+    table = Table(width, color, as_rows(rows, lines), lines, **style)
     size = as_size(size)
     with context._core as core:
         _, renderer, mesh = context._open(core)
@@ -227,7 +239,7 @@ def tessellate(points, offsets=None, *, width=8, rows=None, method="strip", fan_
     """The mesh of lines in pixels, as arrays over the library's memory."""
     context = default(context)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
-    table = Table(width, "#000", rows, len(lines), lines.origins, lines.origin_count, **style)
+    table = Table(width, "#000", as_rows(rows, lines), lines, **style)
     with context._core as core:
         device = context._open(core)[0]
         polylines = make_polylines(core, lines, table.rows, keep_open)
@@ -249,10 +261,7 @@ class Network:
                  context=None):
         self._context = default(context)
         lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
-        self._count = len(lines)
-        self._rows = None if rows is None else as_whole(rows, numpy.uint32, "rows")
-        if self._rows is not None and len(self._rows) != len(lines):
-            raise ArgumentError("there are %d rows and %d lines; give one for each" % (len(self._rows), len(lines)))
+        self._rows = as_rows(rows, lines)
         entries = numpy.zeros(len(lines), dtype_of("camber_network_entry"))
         entries["polyline"] = numpy.arange(len(lines))
         entries["row"] = 0 if rows is None else self._rows
@@ -263,7 +272,7 @@ class Network:
             "entry_count": len(entries), "keep_open": keep_open, "has_arc_length": dashed})
         self._dashed = dashed
         if importance is not None:
-            importance = numpy.ascontiguousarray(importance, numpy.float32)
+            importance = numpy.require(importance, numpy.float32, "CA")
             if importance.shape != (len(lines.points),):
                 raise ArgumentError("importance has the shape %s; give one number for each of the %d points"
                                     % (importance.shape, len(lines.points)))
@@ -288,8 +297,7 @@ class Network:
              size=(1024, 1024), background=None, overlap="flatten", opacity=1, premultiplied=False, out=None, **style):
         """Draws what a camera sees. scale is pixels a world unit; without center and scale all is seen."""
         size = as_size(size)
-        table = Table(width, color, numpy.zeros(self._count, numpy.uint32) if self._rows is None else self._rows,
-                      self._count, None, self._count, **style)
+        table = Table(width, color, self._rows, None, **style)
         if table.dash is not None and not self._dashed:
             raise ArgumentError("dashes want a network that is made with dashed=True")
         x, y, scale = self._camera(center, scale, size)

@@ -8,21 +8,25 @@ from ._library import ffi
 
 
 class Lines:
-    """points (n x 2), offsets (lines + 1), and for each line the number of what it came from. None: its own."""
+    """points (n x 2), offsets (lines + 1), and for each line the number of what it came from. None: its own.
 
-    def __init__(self, points, offsets, origins=None):
+    origin_count says how many there were to come from, those of no line too.
+    """
+
+    def __init__(self, points, offsets, origins=None, origin_count=None):
         self.points, self.offsets, self.origins = points, offsets, origins
+        self._origin_count = origin_count
 
     def __len__(self):
         return len(self.offsets) - 1
 
     @property
     def origin_count(self):
-        return len(self) if self.origins is None else int(self.origins.max(initial=-1)) + 1
+        return len(self) if self.origins is None else self._origin_count
 
 
 def as_points(points, dtype):
-    """An array of pairs, of the type and C-contiguous: the caller's own where it is so already."""
+    """An array of pairs, of the type, C-contiguous and aligned: the caller's own where it is so already."""
     array = numpy.asarray(points)
     if array.dtype.kind not in "fiu":
         raise TypeError("points have the type %s; give floats or whole numbers" % array.dtype)
@@ -31,7 +35,7 @@ def as_points(points, dtype):
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError("points have the shape %s; give n x 2: x and y of each" % (array.shape,))
     with numpy.errstate(over="ignore"):  # what becomes infinite is left out and counted, as NaN is
-        return numpy.ascontiguousarray(array, dtype)
+        return numpy.require(array, dtype, "CA")
 
 
 def as_whole(values, dtype, what):
@@ -46,7 +50,7 @@ def as_whole(values, dtype, what):
     if array.size and (int(array.min()) < 0 or int(array.max()) > numpy.iinfo(dtype).max):
         raise ValueError("%s go from %d to %d; give 0 to %d" % (what, array.min(), array.max(),
                                                                 numpy.iinfo(dtype).max))
-    return numpy.ascontiguousarray(array, dtype)
+    return numpy.require(array, dtype, "CA")
 
 
 def as_lines(points, offsets, dtype, offset_dtype):
@@ -59,6 +63,8 @@ def as_lines(points, offsets, dtype, offset_dtype):
         lines = from_arrow(points)
     elif hasattr(points, "geom_type") or hasattr(points, "geometry"):
         lines = from_geometries(points)
+    elif hasattr(points, "__arrow_c_stream__"):
+        lines = from_arrow_stream(points)
     elif isinstance(points, (list, tuple)) or getattr(points, "dtype", None) == object:
         lines = from_list(points)
     else:  # one line
@@ -70,15 +76,15 @@ def as_lines(points, offsets, dtype, offset_dtype):
     if int(offsets[-1]) != len(points) or offsets[0] != 0 or (len(offsets) > 1 and (offsets[1:] < offsets[:-1]).any()):
         raise ValueError("offsets go from %d to %d, and must ascend from 0 to %d, the number of points"
                          % (offsets[0], offsets[-1], len(points)))
-    return Lines(points, offsets, lines.origins)
+    return Lines(points, offsets, lines.origins, lines._origin_count)
 
 
-def join(arrays, origins):
+def join(arrays, origins=None, origin_count=None):
     """Lines of an array of points each."""
     offsets = numpy.zeros(len(arrays) + 1, numpy.uint64)
     numpy.cumsum([len(array) for array in arrays], out=offsets[1:])
     points = numpy.concatenate(arrays) if arrays else numpy.empty((0, 2))
-    return Lines(points, offsets, origins)
+    return Lines(points, offsets, origins, origin_count)
 
 
 def from_list(items):
@@ -87,7 +93,7 @@ def from_list(items):
         return from_geometries(items)
     if len(items) and all(numpy.ndim(item) == 1 and len(item) == 2 for item in items):
         return Lines(numpy.asarray(items), [0, len(items)])
-    return join([as_points(item, numpy.float64) for item in items], None)
+    return join([as_points(item, numpy.float64) for item in items])
 
 
 # ---- Shapely and GeoPandas ----
@@ -118,7 +124,7 @@ def from_geometries(geometries):
         for part in parts_of(geometry):
             arrays.append(part)
             origins.append(number)
-    return join(arrays, numpy.asarray(origins, numpy.int64))
+    return join(arrays, numpy.asarray(origins, numpy.int64), len(geometries))
 
 
 # ---- GeoArrow, by Arrow's C data interface ----
@@ -135,17 +141,17 @@ def _format(schema):
 
 
 class _Arrow:
-    """The memory of an Arrow array, which its capsules own."""
+    """The memory of an Arrow array, which its owner frees: capsules, or structs that a stream has filled."""
 
-    def __init__(self, capsules):
-        self.capsules = capsules
+    def __init__(self, owner):
+        self.owner = owner
 
     def bytes(self, pointer, first, count):
-        kept = ffi.gc(ffi.cast("char *", pointer) + first, lambda _, capsules=self.capsules: None)
+        kept = ffi.gc(ffi.cast("char *", pointer) + first, lambda _, owner=self.owner: None)
         return numpy.frombuffer(ffi.buffer(kept, count), numpy.uint8)
 
     def buffer(self, array, number, dtype, first, count):
-        """Elements of a buffer, without a copy; they are valid as long as the capsule is."""
+        """Elements of a buffer, without a copy; they are valid as long as their owner is."""
         if count == 0 or array.buffers[number] == ffi.NULL:
             return numpy.zeros(count, dtype)
         size = numpy.dtype(dtype).itemsize
@@ -162,47 +168,101 @@ class _Arrow:
         return offsets
 
     def points(self, schema, array, first, count):
-        """Points as pairs: as they lie where x and y alternate, else put together."""
+        """Points as pairs: as they lie where x and y alternate, else put together. One that is not there is NaN."""
         kind = _format(schema)
         if kind.startswith("+w:") and kind[3:].isdigit() and _format(schema.children[0]) == "g":
             side = int(kind[3:])
-            values = self.buffer(array.children[0], 1, numpy.float64,
-                             array.children[0].offset + (array.offset + first) * side, count * side)
-            return values.reshape(count, side)[:, :2]
-        if kind == "+s" and array.n_children >= 2 and all(_format(schema.children[i]) == "g" for i in (0, 1)):
-            return numpy.stack([self.buffer(array.children[i], 1, numpy.float64,
-                                        array.children[i].offset + array.offset + first, count) for i in (0, 1)], axis=1)
-        raise TypeError("Arrow's format %r is no point; %s" % (kind, WANTED))
+            values = self.numbers(array.children[0], (array.offset + first) * side, count * side)
+            values = values.reshape(count, side)[:, :2]
+        elif kind == "+s" and array.n_children >= 2 and all(_format(schema.children[i]) == "g" for i in (0, 1)):
+            values = numpy.stack([self.numbers(array.children[i], array.offset + first, count) for i in (0, 1)], axis=1)
+        else:
+            raise TypeError("Arrow's format %r is no point; %s" % (kind, WANTED))
+        is_valid = self.is_valid(array, first, count)
+        return values if is_valid is None else numpy.where(is_valid[:, None], values, numpy.nan)
 
-    def is_valid(self, array, count):
+    def numbers(self, array, first, count):
+        """Elements of an array of numbers. One that is not there is NaN."""
+        values = self.buffer(array, 1, numpy.float64, array.offset + first, count)
+        is_valid = self.is_valid(array, first, count)
+        return values if is_valid is None else numpy.where(is_valid, values, numpy.nan)
+
+    def is_valid(self, array, first, count):
         """Which elements are there: None where all are."""
         if array.null_count == 0 or array.n_buffers == 0 or array.buffers[0] == ffi.NULL:
             return None
-        first, last = array.offset, array.offset + count
-        bits = self.bytes(array.buffers[0], 0, (last + 7) // 8)
-        return numpy.unpackbits(bits, bitorder="little")[first:last].astype(bool)
+        first += array.offset
+        bits = self.bytes(array.buffers[0], 0, (first + count + 7) // 8)
+        return numpy.unpackbits(bits, bitorder="little")[first:first + count].astype(bool)
+
+    def lines(self, schema, array):
+        """Linestrings and multilinestrings."""
+        count, origins = array.length, None
+        offsets = self.list(schema, array, 0, count, "points")
+        is_valid = self.is_valid(array, 0, count)
+        inner_schema, inner = schema.children[0], array.children[0]
+        if _format(inner_schema) in ("+l", "+L"):
+            origins = numpy.repeat(numpy.arange(count), numpy.diff(offsets))
+            is_valid = True if is_valid is None else numpy.repeat(is_valid, numpy.diff(offsets))
+            first, count = int(offsets[0]) if count else 0, len(origins)
+            offsets = self.list(inner_schema, inner, first, count, "points")
+            is_inner_valid = self.is_valid(inner, first, count)
+            is_valid = is_valid & (True if is_inner_valid is None else is_inner_valid)
+            inner_schema, inner = inner_schema.children[0], inner.children[0]
+        first = int(offsets[0]) if count else 0
+        points = self.points(inner_schema, inner, first, int(offsets[-1]) - first if count else 0)
+        offsets = offsets[:count + 1] - first if first else offsets[:count + 1]
+        if is_valid is not None and not numpy.all(is_valid):  # a line that is not there has no points
+            points = points[numpy.repeat(is_valid, numpy.diff(offsets))]
+            offsets = numpy.concatenate([[0], numpy.cumsum(numpy.diff(offsets) * is_valid)])
+        return Lines(points, offsets if count else numpy.zeros(1, numpy.int64), origins, array.length)
+
+
+def _struct(capsule, kind, name):
+    """The struct that a capsule has, if nobody else has taken or released it."""
+    made = ffi.cast("struct %s *" % kind, _capsule_pointer(capsule, name))
+    if made.release == ffi.NULL:
+        raise ValueError("Arrow's %s has been released already" % kind)
+    return made
 
 
 def from_arrow(value):
-    """Linestrings and multilinestrings, from whatever gives them by __arrow_c_array__."""
+    """The lines of whatever gives an array by __arrow_c_array__."""
     capsules = value.__arrow_c_array__()
-    arrow = _Arrow(capsules)
-    schema = ffi.cast("struct ArrowSchema *", _capsule_pointer(capsules[0], b"arrow_schema"))
-    array = ffi.cast("struct ArrowArray *", _capsule_pointer(capsules[1], b"arrow_array"))
-    count, origins = array.length, None
-    offsets = arrow.list(schema, array, 0, count, "points")
-    is_valid = arrow.is_valid(array, count)
-    inner_schema, inner = schema.children[0], array.children[0]
-    if _format(inner_schema) in ("+l", "+L"):
-        origins = numpy.repeat(numpy.arange(count), numpy.diff(offsets))
-        is_valid = None if is_valid is None else numpy.repeat(is_valid, numpy.diff(offsets))
-        first, count = int(offsets[0]) if count else 0, len(origins)
-        offsets = arrow.list(inner_schema, inner, first, count, "points")
-        inner_schema, inner = inner_schema.children[0], inner.children[0]
-    first = int(offsets[0]) if count else 0
-    points = arrow.points(inner_schema, inner, first, int(offsets[-1]) - first if count else 0)
-    offsets = offsets[:count + 1] - first if first else offsets[:count + 1]
-    if is_valid is not None and not is_valid.all():  # a line that is not there has no points
-        points = points[numpy.repeat(is_valid, numpy.diff(offsets))]
-        offsets = numpy.concatenate([[0], numpy.cumsum(numpy.diff(offsets) * is_valid)])
-    return Lines(points, offsets if count else numpy.zeros(1, numpy.int64), origins)
+    return _Arrow(capsules).lines(_struct(capsules[0], "ArrowSchema", b"arrow_schema"),
+                                  _struct(capsules[1], "ArrowArray", b"arrow_array"))
+
+
+def _new(kind):
+    """A struct for a stream to fill, which is released when Python drops it."""
+    return ffi.gc(ffi.new("struct %s *" % kind), lambda made: made.release != ffi.NULL and made.release(made))
+
+
+def from_arrow_stream(value):
+    """The lines of whatever gives arrays, one after the other, by __arrow_c_stream__: as pyarrow's chunked ones do."""
+    capsule = value.__arrow_c_stream__()
+    stream = _struct(capsule, "ArrowArrayStream", b"arrow_array_stream")
+
+    def check(failed):
+        if failed:
+            told = stream.get_last_error(stream)
+            raise ValueError("Arrow's stream failed: %s" % (ffi.string(told).decode("utf-8", "replace") if told else failed))
+
+    schema, pieces = _new("ArrowSchema"), []
+    check(stream.get_schema(stream, schema))
+    while True:
+        array = _new("ArrowArray")
+        check(stream.get_next(stream, array))
+        if array.release == ffi.NULL:
+            break
+        pieces.append(_Arrow((schema, array)).lines(schema, array))
+    if len(pieces) == 1:
+        return pieces[0]
+    lines = join([piece.points for piece in pieces])
+    starts = lines.offsets.astype(numpy.int64)
+    offsets = numpy.concatenate([[0], *(piece.offsets[1:] + start for piece, start in zip(pieces, starts))])
+    firsts = numpy.cumsum([0, *(piece.origin_count for piece in pieces)])
+    origins = None
+    if pieces and pieces[0].origins is not None:
+        origins = numpy.concatenate([piece.origins + first for piece, first in zip(pieces, firsts)])
+    return Lines(lines.points, offsets.astype(numpy.int64), origins, int(firsts[-1]))

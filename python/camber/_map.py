@@ -5,7 +5,7 @@ import os
 
 import numpy
 
-from ._core import ArgumentError, NotFoundError, default, ffi, lib, pick, text_of
+from ._core import ArgumentError, NotFoundError, as_path, as_text, default, ffi, lib, pick, text_of
 from ._draw import ENCODINGS, METHODS, as_size, render_frame
 
 THEMES = {"light": lib.CAMBER_THEME_LIGHT, "dark": lib.CAMBER_THEME_DARK}
@@ -24,7 +24,7 @@ def read_style(style, theme):
     """(document as bytes, its name in messages, the file that its paths start from)"""
     if isinstance(style, dict):
         return json.dumps(style).encode(), b"style", None
-    path = os.fsencode(style)
+    path = as_path(style)
     if not os.path.exists(path):
         size = ffi.new("size_t *")
         text = lib.camber_style_get_text(path, theme, size)
@@ -34,10 +34,6 @@ def read_style(style, theme):
         return bytes(ffi.buffer(text, size[0])), path, None
     with open(path, "rb") as file:
         return file.read(), path, path
-
-
-def as_text(text):
-    return ffi.NULL if text is None else ffi.new("char[]", os.fsencode(text))
 
 
 def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
@@ -65,7 +61,7 @@ class Map:
 
     def __init__(self, *inputs, style=None, theme="light", layer=None, where=None, context=None):
         self._context = default(context)
-        self._inputs = [os.fsencode(path) for path in inputs]
+        self._inputs = [as_path(path) for path in inputs]
         self._layer, self._where = as_text(layer), as_text(where)
         self._scene = self._mesh = self._features = None
         self._read_for = None  # what the features are read for; None: everything
@@ -184,7 +180,8 @@ class Map:
             self._read_all(core)
             engine = core.make(lib.camber_tiles_engine_create, self._features,
                                ffi.new("camber_tiles_engine_desc *",
-                                       {"renderer": renderer, "device": device, **engine_desc}))
+                                       {"renderer": renderer, "device": device, **engine_desc}),
+                               parents=[renderer, device])
             core.check(lib.camber_tiles_draw(engine, desc, stats))
         return {field: getattr(stats, field) for field, _ in ffi.typeof("camber_tiles_stats").fields}
 

@@ -180,6 +180,9 @@ def test_networks():
             network.draw(**{**style, **wrong})
     with pytest.raises(ValueError):
         camber.Network(POINTS, OFFSETS, importance=[1, 2])
+    for wrong in {"width": [3, 6]}, {"color": ["#f00", "#00f"]}:  # which line would have which is not said
+        with pytest.raises(ValueError, match="made without rows"):
+            camber.Network(POINTS, OFFSETS).draw(**wrong)
     few = camber.Network(POINTS, OFFSETS, importance=[0, 0, 0, 0, 0, 0]).draw(width=2, simplify=1, size=(70, 66))
     assert (few != camber.Network(POINTS, OFFSETS).draw(width=2, size=(70, 66))).any()
 

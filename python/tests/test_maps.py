@@ -60,6 +60,12 @@ def test_tiles(city, tool, tmp_path):
     assert camber.tiles(city, output=out, max_zoom=11, min_zoom=10, attribution="(c) somebody", resume=True)["done"]
 
 
+def test_tiles_of_a_context_that_nobody_keeps(city, tmp_path):
+    for turn in range(3):  # the device and the renderer must outlive the engine, which a sanitizer sees
+        counts = camber.Map(city, context=camber.Context()).tiles(tmp_path / ("%d.pmtiles" % turn), max_zoom=3)
+        assert counts["tiles"] > 0
+
+
 @pytest.mark.parametrize("call, error", [
     (lambda city: camber.render("/nowhere.osm.pbf"), FileNotFoundError),
     (lambda city: camber.render(__file__), camber.InputError),
@@ -74,7 +80,12 @@ def test_tiles(city, tool, tmp_path):
     (lambda city: camber.render(city, zoom=float("nan"), center=(0, 0)), ValueError),
     (lambda city: camber.render(city, bbox=(0, 0, 1)), (ValueError, TypeError)),
     (lambda city: camber.render(city, method="cone"), ValueError),
-    (lambda city: camber.render(b"a\0b"), (ValueError, FileNotFoundError)),
+    *((call, ValueError) for call in (
+        lambda city: camber.render(city.encode() + b"\0b"), lambda city: camber.render(city, style="light\0"),
+        lambda city: camber.render(city, layer="roads\0"), lambda city: camber.render(city, where="1=1\0"),
+        lambda city: camber.tiles(city, output="x.pmtiles\0", max_zoom=1),
+        lambda city: camber.Context(cache_dir="/tmp\0"), lambda city: camber.Context(root="/tmp\0"))),
+    (lambda city: camber.Context("cpu\0").device, ValueError),
     (lambda city: camber.render(7), TypeError),
     (lambda city: camber.tiles(city, output="/nowhere/at/all.pmtiles"), OSError),
     (lambda city: camber.tiles(city, output="x.pmtiles", max_zoom=99), ValueError),

@@ -2,8 +2,9 @@
 # The documents' recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
 #
 #   recipes.sh [DEBIAN...]      bookworm and trixie where none is named; RECIPES="build ci" chooses from build, core, ci, demo
-#   RECIPES=packages recipes.sh the packages that ./dev package makes here, in a fresh system of this Debian: installed,
-#                               the documents' first examples run, all removed
+#   RECIPES=packages recipes.sh [DEBIAN...]   the packages that ./dev package makes, in a fresh system: installed, the
+#                               documents' first examples run, all removed. They are made here for this Debian, which is
+#                               taken where none is named, and in a fresh system for another
 #
 # A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions,
 # whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with
@@ -113,6 +114,9 @@ ROADS
     packages)
         echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb pocl-opencl-icd gcc libc6-dev pkg-config curl'
         echo 'ls /usr/lib/*/camber-kernels/*.bin >/root/here/kernels && test ! -e /root/.cache'
+        # The system as it is now: each file of camber's packages, and a moment that is later than all other files.
+        echo "dpkg -L \$(dpkg-query -W -f '\${Package}\\n' '*camber*') | sort -u >/files && grep -q /camber /files"
+        echo 'while read -r file; do [ -d "$file" ] || echo "$file"; done </files >/owned && sleep 1 && touch /moment'
         # The tool, C, Python, the server. What they keep for their user goes with the folder.
         echo 'export POCL_CACHE_DIR=/root/here/pocl XDG_CACHE_HOME=/root/here/cache'
         block build | grep '^camber ' | sed 's|tests/data|/checkout/tests/data|'
@@ -131,19 +135,32 @@ ROADS
         echo 'ls /usr/share/man/man1/camber.1.gz /usr/share/man/man1/camber-tiles.1.gz /usr/share/man/man1/camber-serve.1.gz /usr/share/man/man3/camber.3.gz'
         echo 'find /root/here/cache -type f; rm -rf /root/here/*'
         echo "apt-get purge -y \$(dpkg-query -W -f '\${Package}\\n' '*camber*')"
-        # Nothing is left that was camber's, wherever it may be.
-        echo 'find / -xdev -path /checkout -prune -o -path /proc -prune -o -path /var/cache/apt -prune -o -name "*camber*" -print >/left'
+        # Nothing is left that was camber's, by its package or by its name, and nothing that was written since, wherever it
+        # may be; what dpkg, apt and ldconfig keep for themselves is theirs.
+        echo 'while read -r file; do [ ! -e "$file" ] || echo "$file"; done </owned >/left'
+        echo 'find / -xdev \( -path /checkout -o -path /proc -o -path /sys -o -path /dev -o -path /var/cache/apt \) -prune -o -name "*camber*" -print >>/left'
+        echo 'find / -xdev \( -path /checkout -o -path /proc -o -path /sys -o -path /dev -o -path /var/cache -o -path /var/lib/dpkg -o -path /var/lib/apt -o -path /var/log -o -path /etc/ld.so.cache -o -path /left -o -path /moment \) -prune -o -type f -newer /moment -print >>/left'
         echo 'cat /left && test ! -s /left && test -z "$(ls /tmp)"'
         ;;
     *) echo "no recipe $1" >&2; exit 2 ;;
     esac
 }
 
-# Makes the packages here, and looks at what programs will be linked with; they lie in the checkout then.
-build_packages() {
+# Makes the packages of a Debian, and looks at what programs will be linked with; they lie in the checkout then.
+build_packages() { # DEBIAN
     local package=${CAMBER_BUILD:-$source/build}/package libraries
+    rm -rf "$run/checkout/debs"
     mkdir "$run/checkout/debs"
     [ -z "${CAMBER_DEBS:-}" ] || { cp "$CAMBER_DEBS"/*.deb "$run/checkout/debs"; return; } # made before
+    if [ "$1" != "$here" ]; then
+        echo 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates build-essential && cp -a /checkout camber && cd camber
+              ./dev package && cp build/package/*.deb /checkout/debs' >"$run/make"
+        inside in_root "$1" "$run/$1.make" "$run/make" >"$run/log" 2>&1 || { tail -n 40 "$run/log"; return 1; }
+        rm -rf --one-file-system "$run/$1.make"
+        return
+    fi
+    command -v dpkg-buildpackage >/dev/null && command -v dh_python3 >/dev/null ||
+        skip "the packages: no dpkg-buildpackage or dh_python3 (Debian: dpkg-dev, debhelper, dh-python)"
     (cd "$source" && ./dev package) || return 1
     libraries=$(echo "$package"/camber-*/obj-*/src)
     bash "$source/packaging/abi.sh" soname "$libraries" || return 1
@@ -169,11 +186,9 @@ git -C "$run/checkout" -c user.name=camber -c user.email=camber@example.org comm
 chown -R root: "$run/checkout"
 
 if [ "${RECIPES:-}" = packages ]; then
-    debian=$(. /etc/os-release && [ "$ID" = debian ] && echo "$VERSION_CODENAME") || skip "the packages: this is no Debian"
-    command -v dpkg-buildpackage >/dev/null && command -v dh_python3 >/dev/null ||
-        skip "the packages: no dpkg-buildpackage or dh_python3 (Debian: dpkg-dev, debhelper, dh-python)"
-    build_packages || { echo "FAILED: the packages do not build"; exit 1; }
-    set -- "$debian"
+    here=$(. /etc/os-release && [ "$ID" = debian ] && echo "$VERSION_CODENAME") || here=
+    [ $# -gt 0 ] || set -- ${here:+"$here"}
+    [ $# -gt 0 ] || skip "the packages: this is no Debian, and none is named"
 fi
 [ $# -gt 0 ] || set -- bookworm trixie
 failures=0
@@ -187,6 +202,11 @@ for debian; do
     inside in_root "$debian" "$run/$debian.update" "$run/update" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: no $mirror"; }
     for recipe in ${RECIPES:-build core ci demo}; do
         begun=$SECONDS
+        if [ "$recipe" = packages ] && ! build_packages "$debian"; then
+            echo "FAILED: $debian: the packages do not build"
+            failures=$((failures + 1))
+            continue
+        fi
         script_of "$recipe" >"$run/$recipe"
         if { [ "$recipe" = packages ] || [ "$(block "$recipe" | wc -l)" != 0 ]; } && inside in_root "$debian" "$run/$debian.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
             echo "$debian: $recipe: works, $((SECONDS - begun)) s"

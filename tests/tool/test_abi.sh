@@ -29,12 +29,15 @@ wants() { # EXIT STATUS, FOLDER, WHAT IS SAID
 draw='int camber_draw(const struct camber_desc *desc) { return desc->width; }'
 make old 'int height;' "$draw int camber_old(void) { return 1; }" 0
 wants 0 old 'no release'
+cp -r "$folder/old" "$folder/stripped"
+strip "$folder"/stripped/*.so
+wants 1 stripped 'debug information'
 bash "$abi" write "$folder/old" "$folder/old"
 wants 0 old 'go on'
 make more 'int height;' "$draw int camber_old(void) { return 1; } int camber_new(void) { return 1; }" 0
 wants 0 more 'go on'
 make field 'int height, depth;' "$draw int camber_old(void) { return 1; }" 0
-wants 1 field 'count SOVERSION up'
+wants 1 field 'count camber_soversion up'
 make gone 'int height;' "$draw" 0
 wants 1 gone 'camber_old'
 make next 'int height, depth;' "$draw" 1

@@ -155,7 +155,7 @@ if [ -n "$(find "$libdir/camber-kernels" -name '*.bin' 2>/dev/null)" ]; then # n
     if grep 'built in' "$folder/log"; then echo "the installed kernels are not used"; exit 1; fi
     grep -q 'kernels of .*: from the cache' "$folder/log" || { cat "$folder/log"; exit 1; }
 fi
-rm "$libdir"/camber/camber-gdal.so
+rm "$libdir"/camber/camber-gdal.so.*
 status=0
 "$folder/usr/bin/camber" tessellate -q "$folder/line.geojson" -o "$folder/none.glb" 2>"$folder/log" || status=$?
 [ "$status" = 74 ] && [ "$(wc -l <"$folder/log")" = 1 ] && grep -q 'GDAL cannot be loaded' "$folder/log" ||

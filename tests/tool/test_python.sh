@@ -18,13 +18,14 @@ cp -r "$source"/{pyproject.toml,setup.py,MANIFEST.in,LICENSE,python,docs} "$fold
 cd "$folder/tree"
 export CAMBER_BUILD=$build LD_LIBRARY_PATH=$build/src CAMBER_TOOL=$build/src/camber PYTHONDONTWRITEBYTECODE=1
 pip() { "$python" -m pip --disable-pip-version-check "$@" >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }; }
+sanitizer=$(ldd "$build/src/libcamber.so" | awk '/lib[at]san/ { print $3 }')
+case $sanitizer in *libasan*) export CFLAGS=-fsanitize=address PYTHONMALLOC=malloc ;; esac # so that it sees Python's blocks
 pip install --no-index --no-deps --root-user-action=ignore --target "$folder/site" .
-if "$python" -c 'import build' 2>/dev/null; then # the same from a source distribution, as a release has it
+if "$python" -c 'import build.__main__' 2>/dev/null; then # the same from a source distribution, as a release has it
     "$python" -m build --outdir "$folder/dist" >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
     ls "$folder"/dist/camber-*.tar.gz "$folder"/dist/camber-*.whl
 fi
 export PYTHONPATH=$folder/site
-sanitizer=$(ldd "$build/src/libcamber.so" | awk '/lib[at]san/ { print $3 }')
 if [ -n "$sanitizer" ]; then
     echo "under a sanitizer: the stubs are not compared"
 elif "$python" -c 'import mypy' 2>/dev/null; then # the stubs say what the module has

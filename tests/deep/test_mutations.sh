@@ -185,8 +185,6 @@ mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex
 mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
 mutant strip kernels/join.h "split miters cut like bevels" 'split_end = miter   ?' 'split_end = !miter ?'
-mutant strip kernels/cull.h "lines that end where the window cuts them" 'real | CAMBER_POINT_LAST | CAMBER_POINT_CUT' \
-    'real | CAMBER_POINT_LAST'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
 mutant strip kernels/join.h "round joins past their limit" 'turn.c > row->round_cos' 'turn.c < row->round_cos'
 mutant strip kernels/join.h "round and square caps swapped" 'cap == CAMBER_CAPS_ROUND ' 'cap == CAMBER_CAPS_SQUARE '

@@ -183,6 +183,29 @@ CAMBER_API camber_status camber_polylines_create(camber_context *context, const 
 CAMBER_API void camber_polylines_destroy(camber_polylines *polylines);
 CAMBER_API camber_polylines_stats camber_polylines_get_stats(const camber_polylines *polylines);
 
+/* ---- Areas: rings that are filled ------------------------------------------------------------------ */
+
+/* Areas as rings. A ring need not close: its last point is joined to its first. */
+typedef struct camber_areas_desc {
+    const float *points; /* point_count pairs of x, y in pixels */
+    size_t point_count;
+    const uint32_t *offsets; /* ring_count + 1 indices into points, ascending, from 0 to point_count */
+    size_t ring_count;
+    /* area_count + 1 indices into the rings, ascending, from 0 to ring_count. The first ring of an area is its outer
+     * one, and the others are holes. NULL: each ring is an area, and area_count is not read. */
+    const uint32_t *rings;
+    size_t area_count;
+    const uint32_t *rows; /* of each area, as camber_polylines_desc has them. NULL: all 0 */
+} camber_areas_desc;
+
+/* Makes closed polylines of areas, one a ring, for passes whose paints have a fill. Outer rings are turned clockwise as
+ * seen, by their signed area, and holes the other way. Invalid points are left out, and the ring goes on without them.
+ * A ring of fewer than three distinct points has no area; as a polyline it is drawn as any other.
+ * Returns what camber_polylines_create does, CAMBER_ERROR_INPUT for rings that do not ascend from 0 to ring_count, too.
+ */
+CAMBER_API camber_status camber_areas_create(camber_context *context, const camber_areas_desc *desc,
+                                             camber_polylines **areas);
+
 /* ---- Strokes: how wide, which joins and caps ------------------------------------------------------ */
 
 typedef enum camber_join {
@@ -542,6 +565,22 @@ typedef struct camber_image {
 
 #define CAMBER_IMAGE_SIDE_MAX 16384
 
+/* What lies inside of rings, by how often they wind around it: clockwise as seen counts 1, the other way -1. */
+typedef enum camber_fill_rule {
+    CAMBER_FILL_NONZERO = 0, /* a number of times that is not 0, in sum */
+    CAMBER_FILL_EVENODD,     /* an odd number of times */
+} camber_fill_rule;
+
+/* A fill of areas, or of the whole picture: one colour, or copies of one image side by side. */
+typedef struct camber_fill {
+    camber_color color;
+    const camber_image *image; /* in place of the colour, with the colour's alpha. NULL: none */
+    float width_px, height_px; /* the size of one copy in the picture. 0: the image's own */
+    float x_px, y_px;          /* where the top left corner of one copy lies in the picture */
+    double bearing_deg;        /* of the map that the copies lie on, as a camera has it */
+    camber_fill_rule rule;     /* of areas */
+} camber_fill;
+
 /* How a row is drawn in one pass. Dashes, trims, ramps and images need a mesh with arc lengths. Several paints may
  * point at one dash, ramp or image. Give equal ones one pointer: rows in turn then share it on the device. */
 typedef struct camber_paint {
@@ -563,16 +602,13 @@ typedef struct camber_paint {
      * direction. NULL: none. */
     const camber_image *image;
     float image_px; /* how much of the line one copy of the image takes. 0: as much as keeps the image's shape */
+    /* The row's polylines are rings, and what lies inside of them is filled; beside this only the translation counts.
+     * Areas of a pass that have one fill and follow each other are one path: where they meet or overlap there is no
+     * seam, and a translucent fill covers each pixel once. Where the fills of a pass change more than 64 times, all
+     * areas of one fill come together, in the order of the first of each. Rings that do not close, as
+     * camber_areas_create and networks make them, fill what lies to the right of them. NULL: lines are drawn. */
+    const camber_fill *fill;
 } camber_paint;
-
-/* A fill of the whole picture: one colour, or copies of one image side by side. */
-typedef struct camber_fill {
-    camber_color color;
-    const camber_image *image; /* in place of the colour, with the colour's alpha. NULL: none */
-    float width_px, height_px; /* the size of one copy in the picture. 0: the image's own */
-    float x_px, y_px;          /* where the top left corner of one copy lies in the picture */
-    double bearing_deg;        /* of the map that the copies lie on, as a camera has it */
-} camber_fill;
 
 typedef enum camber_overlap {
     /* A translucent pass covers each pixel once, however often its lines cross it: coverage is gathered first and

@@ -1,5 +1,6 @@
-/* bin_count: counts for each chunk of segments how many of them each tile has. A work-item takes a chunk.
- * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]. Writes counts[chunks * tiles]. */
+/* bin_count: counts for each chunk of segments how many of them each tile has, and, behind the tiles, how many edges of
+ * rings cross the top of each row of tiles. A work-item takes a chunk.
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]. Writes counts[chunks * lists]. */
 #include "segment.h"
 
 /* Counts a segment in each tile of its box that it touches. A function of its own, so that the loop over segments, most
@@ -13,6 +14,13 @@ static __attribute__((noinline)) void count_in_tiles(global const float *segment
     }
 }
 
+/* Counts a segment in each row of tiles whose top it crosses as the edge of a ring. */
+static __attribute__((noinline)) void count_in_rows(global const float *segment, camber_u32 box, camber_tile_grid of,
+                                                    global camber_u32 *own) {
+    for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++)
+        own[of.columns * of.rows + y] += camber_crosses_top(segment, y, &of);
+}
+
 CAMBER_KERNEL(1, bin_count,
               (global const float *restrict segments, global const camber_u32 *restrict boxes,
                global camber_u32 *restrict counts, const camber_bin_args c),
@@ -20,13 +28,15 @@ CAMBER_KERNEL(1, bin_count,
     const size_t chunk = CAMBER_WORK_ITEM, first = chunk * c.a_chunk;
     const size_t end = first + c.a_chunk < c.segment_count ? first + c.a_chunk : c.segment_count;
     const camber_tile_grid of = c.of;
-    global camber_u32 *own = counts + chunk * c.tiles;
-    for (size_t i = 0; i < c.tiles / 16; i++)
+    global camber_u32 *own = counts + chunk * c.lists;
+    for (size_t i = 0; i < c.lists / 16; i++)
         vstore16((uint16)(0u), i, own);
     for (size_t i = first; i < end; i++) {
         const camber_u32 box = boxes[i];
         if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
             continue;
+        if ((camber_u32)i - c.first_edge < c.edge_count)
+            count_in_rows(segments + CAMBER_SEGMENT_WORDS * i, box, of, own);
         if (camber_box_is_one_tile(box, of.columns)) {
             own[CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box)]++;
             continue;

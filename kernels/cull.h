@@ -41,8 +41,9 @@
 #else
 #define CAMBER_WALK_PITCHED 1
 #endif
-/* A flag of a stretch's word, which also holds the row at CAMBER_POINT_ROW_SHIFT. */
+/* Flags of a stretch's word, which also holds the row at CAMBER_POINT_ROW_SHIFT. An area is a ring that is filled. */
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
+#define CAMBER_STRETCH_AREA 16u
 
 /* Points of a polyline without invalid ones between them. A last stretch begins at the number of all points. */
 typedef struct camber_stretch {
@@ -309,6 +310,57 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
     camber_put_cut(w, p, seam, camber_pull(w, p, other, seam), 0u);
 }
 
+/* ---- Areas ---- */
+
+/* Where the way from `in` to `out`, which alone lies beyond the window's left side, crosses that side. It has the bits
+ * that camber_put_cut finds where it cuts there. */
+CAMBER_FN float camber_left_crossing(const camber_projection *p, camber_kept_point in, camber_kept_point out) {
+#if CAMBER_WALK_PITCHED
+    if (p->slope > 0.0f) {
+        const float in_wider = p->slope * (p->window_y1 - in.y), out_wider = p->slope * (p->window_y1 - out.y);
+        const float share = camber_share_to(in.x - p->window_x0 + in_wider, out.x - p->window_x0 + out_wider);
+        return in.y + (out.y - in.y) * (share > 0.0f ? share : 0.0f);
+    }
+#endif
+    return in.y + (out.y - in.y) * ((p->window_x0 - in.x) / (out.x - in.x));
+}
+
+CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, camber_kept_point at, float y,
+                                    camber_u32 info) {
+    camber_put_slot(w, p->window_x0 - p->slope * (p->window_y1 - y), y, info | CAMBER_POINT_CUT);
+#if CAMBER_WALK_ARC_LENGTHS
+    camber_walk_put_arc_length(w, p, at.along);
+#endif
+}
+
+/* What an area's segment does left of the window still changes how often its ring winds around what is in the window.
+ * That part is put as a line along the window's left side, from where the segment crosses that to the height of its
+ * end:
+ *
+ *     A1----------+---A2           A1'---+
+ *      \          | window          |    |     A1' lies on the left side, as high as A1. Points of the ring left of
+ *       A0        |                 A0'  |     the window change nothing there but this.
+ */
+CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
+    const camber_u32 real = (w->word & ~0xffu) | CAMBER_POINT_REAL;
+    float from = a.y, to = b.y;
+    if (!(a.beyond & b.beyond & 1u)) {
+        const camber_kept_point near_a = camber_pull(w, p, a, b), near_b = camber_pull(w, p, b, a);
+        if (!((near_a.beyond | near_b.beyond) & 1u))
+            return; /* it crosses the left side above or below the window */
+        if (near_a.beyond & 1u)
+            to = camber_left_crossing(p, near_b, near_a);
+        else
+            from = camber_left_crossing(p, near_a, near_b);
+    }
+    if (from == to || (from < p->window_y0 && to < p->window_y0) || (from > p->window_y1 && to > p->window_y1))
+        return;
+    camber_put_left_slot(w, p, a, from, real | CAMBER_POINT_FIRST);
+    camber_put_left_slot(w, p, b, to, real | CAMBER_POINT_LAST);
+}
+
+/* ---- Points ---- */
+
 /* The slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
 CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & ~0xffu) | CAMBER_POINT_REAL;
@@ -326,6 +378,10 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         if (seam && !begins)
             camber_walk_put_sentinel(w, p, 0u, a);
     }
+    const camber_u32 is_left =
+        (w->word & CAMBER_STRETCH_AREA) && has_next && ((a.beyond | b.beyond) & 1u) && !(a.beyond & b.beyond & 12u);
+    if (is_left && a.beyond)
+        camber_put_left(w, p, a, b);
     if (!has_next || (a.beyond & b.beyond) || !(a.beyond | b.beyond))
         return;
     const camber_kept_point from = camber_pull(w, p, a, b), to = camber_pull(w, p, b, a);
@@ -336,6 +392,8 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST | CAMBER_POINT_CUT);
     if (b.beyond)
         camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST | CAMBER_POINT_CUT);
+    if (is_left && !a.beyond)
+        camber_put_left(w, p, a, b);
 }
 
 /* Walks the points [begin, end) of the stretch, at most CAMBER_CULL_CHUNK. Of neighbours on the same pixel only the

@@ -7,4 +7,6 @@
 
 #include "bin_scatter.cl"
 
+#include "wind.cl"
+
 #include "rasterize.cl"

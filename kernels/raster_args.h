@@ -25,7 +25,8 @@ typedef struct camber_setup_args {
 /* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
 typedef struct camber_bin_args {
     camber_u32 segment_count, a_chunk; /* of all chunks, and of one */
-    camber_u32 tiles;                  /* columns * rows, rounded up to sixteens */
+    camber_u32 lists;                  /* of tiles, and of rows of tiles, rounded up to sixteens */
+    camber_u32 first_edge, edge_count; /* no edge of a ring lies outside these segments */
     camber_tile_grid of;
 } camber_bin_args;
 
@@ -33,7 +34,8 @@ typedef struct camber_bin_args {
 typedef struct camber_target_args {
     float left, top; /* where the first tile lies in the picture, px */
     camber_u32 columns, stride;
-    float r, g, b, a; /* background, premultiplied */
+    camber_u32 first_row; /* the list of the first row of tiles; ~0: there are no areas */
+    float r, g, b, a;     /* background, premultiplied */
     camber_u32 above; /* rows of pixels of the target before the first tile */
     float horizon;    /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
     camber_eye eye;
@@ -42,7 +44,7 @@ typedef struct camber_target_args {
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state. That is six sets of cells and a count of each cell, a word for each row of cells, and planes from
+ * spills its state. That is six sets of cells and a count of each cell, two words for each row of cells, and planes from
  * word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture. */
 typedef struct camber_spill_args {
     camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
@@ -53,6 +55,7 @@ typedef struct camber_spill_args {
 #define CAMBER_SPILL_WORDS 48
 #define CAMBER_SPILL_BLEND_COUNTS 48 /* the byte at which they begin, behind six sets of cells with a bit a cell */
 #define CAMBER_SPILL_ROWS 28         /* the word at which the rows' words begin */
+#define CAMBER_SPILL_WINDINGS 36     /* the same: twice the winding of an area's rings, and whether they have edges */
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
 #define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
 
@@ -62,13 +65,13 @@ typedef struct camber_spill_args {
 
 #ifdef CAMBER_DEVICE
 typedef char camber_setup_args_has_68_bytes[sizeof(camber_setup_args) == 68 ? 1 : -1];
-typedef char camber_bin_args_has_28_bytes[sizeof(camber_bin_args) == 28 ? 1 : -1];
-typedef char camber_target_args_has_76_bytes[sizeof(camber_target_args) == 76 ? 1 : -1];
+typedef char camber_bin_args_has_36_bytes[sizeof(camber_bin_args) == 36 ? 1 : -1];
+typedef char camber_target_args_has_80_bytes[sizeof(camber_target_args) == 80 ? 1 : -1];
 typedef char camber_spill_args_has_24_bytes[sizeof(camber_spill_args) == 24 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_setup_args) == 68, "setup reads 68 bytes");
-_Static_assert(sizeof(camber_bin_args) == 28, "bin_count and bin_scatter read 28 bytes");
-_Static_assert(sizeof(camber_target_args) == 76, "rasterize reads 76 bytes");
+_Static_assert(sizeof(camber_bin_args) == 36, "bin_count and bin_scatter read 36 bytes");
+_Static_assert(sizeof(camber_target_args) == 80, "rasterize reads 80 bytes");
 _Static_assert(sizeof(camber_spill_args) == 24, "rasterize reads 24 bytes");
 #endif
 

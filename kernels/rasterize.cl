@@ -3,11 +3,13 @@
  * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 2], lists[starts[tiles]], brushes[brush count],
  * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
  * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
- * planes[CAMBER_PLANE_WORDS * n]. Writes pixels, rows of `stride` words. Before the last slice it writes spill[tiles *
+ * planes[CAMBER_PLANE_WORDS * n]. Where there are areas, crossings
+ * and ends, as wind writes them. Writes pixels, rows of `stride` words. Before the last slice it writes spill[tiles *
  * tile_words] instead.
  *
  * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
  * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */
+#include "area.h"
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
 #include "spill.cl"
@@ -83,15 +85,104 @@ static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, 
         }
 }
 
+/* ---- Areas ---- */
+
+/* The crossings of the tile's row that no brush has taken yet: those of the brushes to come, the nearest last. */
+typedef struct crossings_left {
+    global const camber_u32 *words;
+    camber_u32 first, end, column; /* column: of the tile */
+} crossings_left;
+
+/* The brush of the next crossing; 0, which has no area: there is none. */
+static inline camber_u32 next_area(const crossings_left *left) {
+    return left->end > left->first
+               ? left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_BRUSH]
+               : 0u;
+}
+
+/* Takes the crossings of a brush. Returns how often its rings wind around the tile's corner. */
+static inline int take_winding(crossings_left *left, camber_u32 brush) {
+    int winding = 0;
+    for (; next_area(left) == brush && brush != 0u; left->end--) {
+        const camber_u32 place = left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_PLACE];
+        winding += camber_crossing_column(place) <= left->column ? camber_crossing_times(place) : 0;
+    }
+    return winding;
+}
+
+/* All that brushes need beside a tile's state. */
+typedef struct tile_brushes {
+    global const camber_brush *brushes;
+#if CAMBER_RASTER_RICH
+    global const camber_brush_ext *brush_ext;
+    global const float *side_table;
+#if CAMBER_RASTER_PITCHED
+    camber_eye eye;
+#endif
+#endif
+} tile_brushes;
+
+/* Draws the area whose edges have been added. */
+static inline void end_area(camber_tile_state *c, const positions *at, const tile_brushes *from,
+                            camber_tile_rows where) {
+    if (!camber_brush_is_area(&c->now))
+        return;
+#if CAMBER_RASTER_RICH
+    if (c->brush_ext.features & CAMBER_FEATURE_IMAGE) {
+        const drawn_segment source = {
+            0,
+            0,
+            from->side_table,
+#if CAMBER_RASTER_PITCHED
+            0,
+            from->eye
+#endif
+        };
+        camber_u64 whole;
+        const camber_u64 cells = camber_area_find(c, where, &whole);
+        fill_with_images(c, at, source, cells, whole);
+        return;
+    }
+#endif
+    camber_area_draw(c, where);
+}
+
+static inline void change_brush(camber_tile_state *c, const positions *at, const tile_brushes *from,
+                                camber_tile_rows where, camber_u32 brush) {
+    end_area(c, at, from, where);
+    camber_tile_change_brush(c, from->brushes[brush]);
+#if CAMBER_RASTER_RICH
+    camber_tile_use_ext(c, from->brush_ext[brush]);
+#endif
+}
+
+/* Draws the areas above a brush that cover the tile as a whole: it has none of their edges. Returns the brush that was
+ * drawn last. */
+static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
+                                                             const tile_brushes *from, camber_tile_rows where,
+                                                             crossings_left *left, camber_u32 brush,
+                                                             camber_u32 current) {
+    for (camber_u32 next = next_area(left); next > brush && !camber_tile_is_full(c); next = next_area(left)) {
+        const int winding = take_winding(left, next);
+        if (winding == 0)
+            continue;
+        change_brush(c, at, from, where, next);
+        c->winding = winding;
+        current = next;
+    }
+    return current;
+}
+
 CAMBER_KERNEL(1, rasterize,
               (global const float *restrict segments, global const camber_u32 *restrict starts,
                global const camber_u32 *restrict lists, global const camber_brush *restrict brushes,
                global const camber_u32 *restrict jobs, global camber_u32 *restrict pixels, const camber_target_args s,
                global float *restrict spill, const camber_spill_args slice, global const float *restrict arc_lengths,
                global const camber_brush_ext *restrict brush_ext, global const float *restrict side_table,
-               global const float *restrict planes),
+               global const float *restrict planes, global const camber_u32 *restrict crossings,
+               global const camber_u32 *restrict ends),
               (segments, starts, lists, brushes, jobs, pixels, s, spill, slice, arc_lengths, brush_ext, side_table,
-               planes)) {
+               planes, crossings, ends)) {
     camber_tile_state c;
     positions at;
     sixteen b;
@@ -115,14 +206,31 @@ CAMBER_KERNEL(1, rasterize,
             c.done |= 255ul << (CAMBER_TILE_CELLS * j);
 #endif
     global float *own_spill = spill + tile * slice.tile_words;
+    const tile_brushes from_brushes = {
+        brushes,
+#if CAMBER_RASTER_RICH
+        brush_ext,
+        side_table,
+#if CAMBER_RASTER_PITCHED
+        s.eye
+#endif
+#endif
+    };
+    crossings_left left_of = {crossings, 0, 0, column};
+    if (s.first_row != ~0u) {
+        left_of.first = starts[s.first_row + row] - starts[s.first_row];
+        left_of.end = ends[row];
+    }
     if (!slice.is_first) {
-        if (!slice.is_last && starts[tile] == starts[tile + 1])
+        if (!slice.is_last && starts[tile] == starts[tile + 1] && left_of.first == left_of.end)
             return;
         current = restore_cells(&c, own_spill, brushes, slice, first, last);
+        if (current != ~0u && current != CAMBER_SPILL_FULL) {
 #if CAMBER_RASTER_RICH
-        if (current != ~0u && current != CAMBER_SPILL_FULL)
             camber_tile_use_ext(&c, brush_ext[current]);
 #endif
+            c.winding += take_winding(&left_of, current);
+        }
     }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
         global const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k];
@@ -130,11 +238,16 @@ CAMBER_KERNEL(1, rasterize,
         const camber_u32 brush = as_uint(segment[CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
             draw_sixteen(&c, &at, segments, where, &b);
-            camber_tile_change_brush(&c, brushes[brush]);
-#if CAMBER_RASTER_RICH
-            camber_tile_use_ext(&c, brush_ext[brush]);
-#endif
+            draw_areas_above(&c, &at, &from_brushes, where, &left_of, brush, current);
+            if (camber_tile_is_full(&c))
+                break;
+            change_brush(&c, &at, &from_brushes, where, brush);
+            c.winding = take_winding(&left_of, brush);
             current = brush;
+        }
+        if (camber_brush_is_area(&c.now)) {
+            camber_area_add_edge(&c, segment, where);
+            continue;
         }
 #if CAMBER_RASTER_RICH
         const size_t which = lists[k];
@@ -165,12 +278,14 @@ CAMBER_KERNEL(1, rasterize,
             break;
     }
     draw_sixteen(&c, &at, segments, where, &b);
+    current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;
         spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open);
         return;
     }
+    end_area(&c, &at, &from_brushes, where);
     camber_tile_end(&c);
     if (!slice.is_last) {
         camber_tile_close_brush(&c);

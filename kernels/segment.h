@@ -27,12 +27,17 @@
 
 /* Words of a row of the rasterizer's table. */
 #define CAMBER_RASTER_ROW_WORDS 4 /* half width, px, below 0: not drawn; x, y translation, px; brush number */
+/* The half width of an edge of a ring, and how far around the box of its ends tiles have to know of it, px. */
+#define CAMBER_EDGE_PX 0.0f
+#define CAMBER_EDGE_REACH_PX 0.5f
 
 /* How a brush's segments come together. */
 #define CAMBER_BRUSH_OVER 0u  /* each is drawn over the others */
 #define CAMBER_BRUSH_UNION 1u /* their areas are united first, and drawn once */
 #define CAMBER_BRUSH_MASKED                                                                                            \
     2u /* in a masked layer, a translucent colour replaces what lies below it; only CAMBER_RASTER_RICH */
+#define CAMBER_BRUSH_AREA 3u         /* they are the edges of rings, and what is inside is drawn: area.h */
+#define CAMBER_BRUSH_AREA_EVENODD 4u /* the same, by CAMBER_FILL_EVENODD */
 
 /* A colour and mode that segments are drawn with. Layers and groups are put onto what lies below as a whole; number 0
  * is none. A layer belongs to one group. */
@@ -150,6 +155,11 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     return s;
 }
 
+/* Makes a segment the edge of a ring where its half width says so. */
+CAMBER_FN void camber_edge_segment(camber_segment *s) {
+    s->reach = s->half_width == CAMBER_EDGE_PX ? CAMBER_REAL(CAMBER_EDGE_REACH_PX) : s->reach;
+}
+
 /* The box of tiles that a segment may touch: x and y of the first tile, then x and y of the last, a byte each. left and
  * top: where the area's first tile lies in the picture, px. */
 CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask drawn, float left, float top,
@@ -163,9 +173,11 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
     const camber_real x1 = (CAMBER_MORE(s->ax, s->bx) + s->reach - inset) * a_tile - from_x;
     const camber_real y0 = (CAMBER_LESS(s->ay, s->by) - s->reach + inset) * a_tile - from_y;
     const camber_real y1 = (CAMBER_MORE(s->ay, s->by) + s->reach - inset) * a_tile - from_y;
-    const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (x1 >= 0.0f) & (y1 >= 0.0f);
+    /* What lies left of the area still changes the winding of its tiles. */
+    const camber_real far = s->half_width == CAMBER_EDGE_PX ? CAMBER_MORE(x1, none) : x1;
+    const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (far >= 0.0f) & (y1 >= 0.0f);
     const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);
-    const camber_real lx = x1 < right ? x1 : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
+    const camber_real lx = far < right ? far : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
     const camber_words box = CAMBER_TO_WORDS(meets ? fx : none) | CAMBER_TO_WORDS(meets ? fy : none) << 8 |
                              CAMBER_TO_WORDS(meets ? lx : none) << 16 | CAMBER_TO_WORDS(meets ? ly : none) << 24;
     return meets ? box : (camber_words)(CAMBER_NO_BOX);
@@ -237,6 +249,13 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber
         return all;
     const float middle = of->top + ((float)y + 0.5f) * CAMBER_TILE_PX;
     return camber_row_span(segment, middle, of->left, first, last, CAMBER_TILE_PX);
+}
+
+/* Whether a segment is the edge of a ring that crosses the top of row y of tiles, which then has to know of it. */
+CAMBER_FN camber_u32 camber_crosses_top(CAMBER_GLOBAL const float *segment, camber_u32 y, const camber_tile_grid *of) {
+    const float top = of->top + (float)(y * CAMBER_TILE_PX), ay = segment[CAMBER_SEGMENT_AY],
+                by = segment[CAMBER_SEGMENT_BY];
+    return segment[CAMBER_SEGMENT_HALF_WIDTH] == CAMBER_EDGE_PX && (ay < top) != (by < top);
 }
 
 #ifdef CAMBER_DEVICE

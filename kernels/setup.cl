@@ -167,6 +167,7 @@ static inline void make_segments(global const camber_u32 *records, global const 
                       ay = CAMBER_AS_REAL(is_dot ? b.y : before.y) + y;
     camber_segment s = camber_segment_of(px, py, ax, ay, CAMBER_AS_REAL(b.x) + x, CAMBER_AS_REAL(b.y) + y,
                                          is_dot ? b.join : before.join, b.join, row[0], r.linear);
+    camber_edge_segment(&s);
     camber_mask is_drawn = is_real & is_end & (row[0] >= 0.0f);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;

@@ -2,7 +2,15 @@
 #ifndef CAMBER_SPILL_CL
 #define CAMBER_SPILL_CL
 
-#include "tile_state.h"
+#include "area.h"
+
+/* Cells whose rings have edges in their row. */
+static inline ulong area_cells(const camber_tile_state *c) {
+    ulong cells = 0;
+    for (int j = 0; j < CAMBER_TILE_CELLS; j++)
+        cells |= c->area_rows >> j & 1u ? 255ul << (CAMBER_TILE_CELLS * j) : 0ul;
+    return cells;
+}
 
 static inline size_t plane_at(camber_u32 plane, int cell, int v) {
     return ((size_t)plane * CAMBER_CELLS + (size_t)cell) * CAMBER_VECTORS + (size_t)v;
@@ -39,11 +47,13 @@ static inline void spill_cells(const camber_tile_state *c, global float *spill, 
             bits[CAMBER_TILE_CELLS * k + j] = (uchar)(of[k] >> (CAMBER_TILE_CELLS * j));
         vstore8(vload8((size_t)j, c->blend_count), (size_t)j, blend_count);
         rows[j] = now;
+        rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] = (camber_u32)c->winding << 1 | (c->area_rows >> j & 1u);
     }
     spill_planes(planes, c->brush[0], 0, 1, c->brushed);
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
     if (c->now.mode == CAMBER_BRUSH_UNION)
         spill_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
+    spill_planes(planes, c->sums[0][0], s.sums, 3, area_cells(c));
     spill_planes(planes, c->level[CAMBER_GROUP][0][0], s.group, 4, c->touched[CAMBER_GROUP]);
     spill_planes(planes, c->level[CAMBER_LAYER][0][0], s.layer, 4, c->touched[CAMBER_LAYER]);
 #if CAMBER_RASTER_RICH
@@ -86,6 +96,12 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global const float 
     c->now = brushes[now & CAMBER_SPILL_BRUSH];
     if (c->now.mode == CAMBER_BRUSH_UNION)
         restore_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
+    for (int j = first; j <= last; j++) {
+        const camber_u32 word = rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
+        c->winding = (int)word >> 1;
+        c->area_rows |= (word & 1u) << j;
+    }
+    restore_planes(planes, c->sums[0][0], s.sums, 3, area_cells(c));
 #if CAMBER_RASTER_RICH
     if (c->now.mode == CAMBER_BRUSH_MASKED)
         restore_planes(planes, c->mask[0], s.layer + 4, 1, c->touched[CAMBER_LAYER]);

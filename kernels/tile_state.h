@@ -33,13 +33,16 @@ typedef uint8_t camber_u8;
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
     camber_real brush[CAMBER_CELLS][CAMBER_VECTORS];   /* let through */
-    camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS]; /* a union's, of areas and of normals */
+    /* A union's, of areas and of normals; of rings the first, how each pixel changes the winding: area.h. */
+    camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
     camber_real level[CAMBER_LEVELS][CAMBER_CELLS][4][CAMBER_VECTORS];
     camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; a bit each */
     camber_u64 done;                            /* cells in which nothing below shows */
     camber_u64 filled;                          /* cells in which no more of the same brush shows */
     int is_open[CAMBER_LEVELS];
+    int winding;          /* of the brush's rings around the tile's top left corner */
+    camber_u32 area_rows; /* rows of cells in which edges have changed the winding; a bit each */
     camber_u8 blend_count[CAMBER_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
 #if CAMBER_HAS_MASKS
@@ -80,6 +83,8 @@ CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_
     for (int i = 0; i < CAMBER_CELLS; i++)
         c->blend_count[i] = 0;
     c->brushed = c->filled = 0;
+    c->winding = 0;
+    c->area_rows = 0;
     for (int k = 0; k < CAMBER_LEVELS; k++) {
         c->touched[k] = 0;
         c->is_open[k] = k == CAMBER_PICTURE;

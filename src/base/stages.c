@@ -17,6 +17,7 @@ static const char *const NAMES[CAMBER_STAGE_COUNT] = {
     [CAMBER_STAGE_BIN_COUNT] = "bin_count",
     [CAMBER_STAGE_BIN_SCAN] = "bin_scan",
     [CAMBER_STAGE_BIN_SCATTER] = "bin_scatter",
+    [CAMBER_STAGE_WIND] = "wind",
     [CAMBER_STAGE_RASTERIZE] = "rasterize",
 };
 _Static_assert((int)CAMBER_STAGE_COUNT <= (int)CAMBER_STAGE_TIMES_MAX, "a list has room for all stages");

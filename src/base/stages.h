@@ -20,6 +20,7 @@ typedef enum camber_stage_id {
     CAMBER_STAGE_BIN_COUNT,
     CAMBER_STAGE_BIN_SCAN,
     CAMBER_STAGE_BIN_SCATTER,
+    CAMBER_STAGE_WIND,
     CAMBER_STAGE_RASTERIZE,
     CAMBER_STAGE_COUNT
 } camber_stage_id;

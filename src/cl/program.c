@@ -186,6 +186,7 @@ static camber_status make_kernels(camber_device *device, camber_program *program
                   {"bin_count", &program->bin_count, PROGRAM_RASTER},
                   {"bin_scan", &program->bin_scan, PROGRAM_RASTER},
                   {"bin_scatter", &program->bin_scatter, PROGRAM_RASTER},
+                  {"wind", &program->wind, PROGRAM_RASTER},
                   {"rasterize", &program->rasterize, PROGRAM_RASTER}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
@@ -372,11 +373,22 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
 void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
-    cl_kernel kernels[] = {
-        program->cull_count,   program->cull_emit,      program->classify,        program->scan,
-        program->emit,         program->arc_length_sum, program->arc_length_scan, program->offset_clip,
-        program->offset_count, program->offset_emit,    program->setup,           program->bin_count,
-        program->bin_scan,     program->bin_scatter,    program->rasterize};
+    cl_kernel kernels[] = {program->cull_count,
+                           program->cull_emit,
+                           program->classify,
+                           program->scan,
+                           program->emit,
+                           program->arc_length_sum,
+                           program->arc_length_scan,
+                           program->offset_clip,
+                           program->offset_count,
+                           program->offset_emit,
+                           program->setup,
+                           program->bin_count,
+                           program->bin_scan,
+                           program->bin_scatter,
+                           program->wind,
+                           program->rasterize};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

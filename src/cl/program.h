@@ -11,7 +11,7 @@ typedef struct camber_program {
     cl_kernel cull_count, cull_emit; /* of networks: which points a camera sees */
     cl_kernel arc_length_sum, arc_length_scan;
     cl_kernel offset_clip, offset_count, offset_emit; /* of lines beside others */
-    cl_kernel setup, bin_count, bin_scan, bin_scatter, rasterize;
+    cl_kernel setup, bin_count, bin_scan, bin_scatter, wind, rasterize;
     uint64_t key; /* names its file in the cache */
     bool built;   /* compiled from source: no cache had it */
     bool kept;    /* a cache has it by now */

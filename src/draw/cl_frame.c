@@ -58,6 +58,8 @@ static void add_times(const camber_renderer *renderer, camber_frame_stats *stats
     camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_COUNT, times.bin_count_ms);
     camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_SCAN, times.bin_scan_ms);
     camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_SCATTER, times.bin_scatter_ms);
+    if (times.wind_ms > 0.0)
+        camber_stage_times_add(&stats->times, CAMBER_STAGE_WIND, times.wind_ms);
     camber_stage_times_add(&stats->times, CAMBER_STAGE_RASTERIZE, times.rasterize_ms);
 }
 

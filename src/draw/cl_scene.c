@@ -36,7 +36,7 @@ static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_b
     return CAMBER_OK;
 }
 
-/* ---- Lines ---- */
+/* ---- Lines and areas ---- */
 
 static camber_status set_features(camber_cl_tables *t, const camber_draw_list *list, const camber_row_paint *paint,
                                   camber_brush_ext *brush_ext) {
@@ -82,6 +82,46 @@ static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_comm
     return brush;
 }
 
+/* Gives the brush of a command of areas: no other command has it, so that its areas come together alone. */
+static camber_status use_area_brush(camber_cl_tables *t, const camber_draw_list *list,
+                                    const camber_draw_command *command, uint32_t *number) {
+    const camber_fill_paint *fill = &command->fill;
+    const camber_color c = fill->color;
+    const bool evenodd = fill->rule == CAMBER_FILL_EVENODD;
+    camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = c.a, .group = command->group};
+    camber_brush_ext brush_ext = {0};
+    bool is_opaque;
+    camber_status status = CAMBER_OK;
+    brush.mode = evenodd ? CAMBER_BRUSH_AREA_EVENODD : CAMBER_BRUSH_AREA;
+    if (command->group)
+        brush.group_opacity = command->group_opacity;
+    if (fill->has_image) {
+        brush_ext.features = CAMBER_FEATURE_IMAGE;
+        status = camber_cl_images_add_fill(&t->images, list, fill, &brush_ext.image, &is_opaque);
+    }
+    return status == CAMBER_OK ? use_brush(t, t->brush_count, &brush, &brush_ext, number) : status;
+}
+
+/* Adds the table of a command of areas. */
+static camber_status add_area_rows(camber_cl_tables *t, const camber_draw_list *list,
+                                   const camber_draw_command *command) {
+    const size_t count = command->mesh->row_count;
+    uint32_t number = 0;
+    if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
+                     CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
+        return CAMBER_ERROR_MEMORY;
+    const camber_status status = use_area_brush(t, list, command, &number);
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
+        const camber_row_paint *paint = list->rows + command->first_row + i;
+        float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count++;
+        row[0] = camber_draw_command_alpha(command, paint) < 0.0f ? -1.0f : CAMBER_EDGE_PX;
+        row[1] = paint->translate_px[0];
+        row[2] = paint->translate_px[1];
+        memcpy(row + 3, &number, sizeof number);
+    }
+    return status;
+}
+
 /* Adds the table of a command, whose brushes are found from first_brush on. */
 static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const size_t count = command->mesh->row_count, first_brush = t->brush_count;
@@ -117,11 +157,12 @@ static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list,
 }
 
 static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
-    const camber_raster_input input = {command->mesh, command->first, command->end, t->row_count};
+    const bool is_area = command->composite == CAMBER_COMPOSITE_AREA;
+    const camber_raster_input input = {command->mesh, command->first, command->end, t->row_count, is_area};
     if (!camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))
         return CAMBER_ERROR_MEMORY;
     t->inputs[t->input_count++] = input;
-    return add_rows(t, list, command);
+    return is_area ? add_area_rows(t, list, command) : add_rows(t, list, command);
 }
 
 /* ---- Fills ---- */
@@ -133,7 +174,7 @@ static camber_status add_fill_input(camber_cl_tables *t, const camber_brush *bru
                      CAMBER_RASTER_ROW_WORDS * sizeof *t->rows) ||
         !camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))
         return CAMBER_ERROR_MEMORY;
-    const camber_status status = use_brush(t, 0, brush, brush_ext, &number);
+    const camber_status status = use_brush(t, t->brush_count, brush, brush_ext, &number);
     if (status != CAMBER_OK)
         return status;
     float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count;

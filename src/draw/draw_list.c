@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16 };
+enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16, FILLS_MAX = 64 };
 
 /* Past all lines' ends, in shares of their length. */
 static const float FAR_BEYOND = 1e9f;
@@ -32,7 +32,7 @@ static camber_status check_pass(camber_context *context, const camber_pass *pass
         const camber_paint *paint = pass->paints + i;
         const char *what = paint->image ? "images" : paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
         const bool trims = paint->trim_end > paint->trim_start;
-        if (!has_arc_length && (paint->dash || paint->ramp || paint->image || trims))
+        if (!has_arc_length && !paint->fill && (paint->dash || paint->ramp || paint->image || trims))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "%s of a mesh without arc lengths; tessellate it with has_arc_length", what);
     }
@@ -60,6 +60,7 @@ typedef struct row_maker {
     const camber_pass *pass;
     const camber_ramp *ramp; /* the last one that was looked at, and whether it has translucent colours */
     bool is_translucent;
+    size_t first_fill; /* of the pass */
 } row_maker;
 
 /* *number is that of the use, which may be the last one again. */
@@ -86,7 +87,10 @@ static bool is_translucent(const camber_ramp *ramp) {
 }
 
 static bool is_drawn(const camber_pass *pass, size_t row) {
-    return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
+    const camber_paint *paint = pass->paints + row;
+    if (row >= pass->paint_count)
+        return false;
+    return paint->fill ? paint->fill->color.a > 0.0f : paint->width_px > 0.0f && paint->color.a > 0.0f;
 }
 
 static unsigned features_of(const camber_paint *paint) {
@@ -124,16 +128,70 @@ static camber_status set_image(camber_draw_list *list, const camber_paint *paint
     return add_image_use(list, &use, &row->image_use);
 }
 
+static camber_status set_fill_image(camber_draw_list *list, const camber_fill *fill, camber_fill_paint *paint) {
+    size_t number;
+    camber_status status = camber_image_set_add(&list->images, fill->image, &number);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_image_use mean = camber_image_use_as_mean(fill->image, number);
+    const camber_image_use use =
+        camber_image_use_in_fill(fill->image, number, (double)fill->width_px, (double)fill->height_px);
+    paint->color.r = paint->color.g = paint->color.b = 1.0f;
+    status = add_image_use(list, &mean, &paint->mean_use);
+    return status == CAMBER_OK ? add_image_use(list, &use, &paint->image_use) : status;
+}
+
+/* Resolves a fill. */
+static camber_status make_fill(camber_draw_list *list, const camber_fill *fill, camber_fill_paint *made) {
+    memset(made, 0, sizeof *made); /* fills are compared by their bytes */
+    made->color = fill->color;
+    made->has_image = fill->image != NULL;
+    made->x_px = fill->x_px;
+    made->y_px = fill->y_px;
+    made->bearing_deg = fill->bearing_deg;
+    made->rule = fill->rule;
+    return made->has_image ? set_fill_image(list, fill, made) : CAMBER_OK;
+}
+
+/* Finds the fill of an area's paint among those of the list from `first` on, or adds it. */
+static camber_status find_fill(camber_draw_list *list, size_t first, const camber_fill *fill, int32_t *number) {
+    camber_fill_paint made;
+    const camber_status status = make_fill(list, fill, &made);
+    if (status != CAMBER_OK)
+        return status;
+    size_t i = first;
+    while (i < list->fill_count && memcmp(list->fills + i, &made, sizeof made) != 0)
+        i++;
+    if (i == list->fill_count) {
+        if (!camber_grow(list->context, &list->fills, &list->fill_capacity, list->fill_count + 1, sizeof *list->fills))
+            return CAMBER_ERROR_MEMORY;
+        list->fills[list->fill_count++] = made;
+    }
+    *number = (int32_t)i;
+    return CAMBER_OK;
+}
+
+/* The row of an area. */
+static camber_status make_area_row(row_maker *m, const camber_paint *paint, camber_row_paint *row) {
+    *row = (camber_row_paint){.half_gap_px = -1.0f,
+                              .translate_px = {paint->translate_x_px, paint->translate_y_px},
+                              .color = {1.0f, 1.0f, 1.0f, paint->fill->color.a}};
+    return find_fill(m->list, m->first_fill, paint->fill, &row->fill);
+}
+
 static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row) {
     static const camber_color white = {1, 1, 1, 1};
     const camber_pass *pass = m->pass;
     const camber_paint *paint = pass->paints + number;
     camber_status status = CAMBER_OK;
+    if (paint->fill)
+        return make_area_row(m, paint, row);
     *row = (camber_row_paint){.half_width_px = camber_paint_half_width(paint),
                               .half_gap_px = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f,
                               .blur_px = fmaxf(paint->blur_px, 0.0f),
                               .translate_px = {paint->translate_x_px, paint->translate_y_px},
                               .color = paint->image ? white : paint->color,
+                              .fill = CAMBER_NO_FILL,
                               .features = features_of(paint)};
     row->color.a = paint->color.a;
     set_trim(paint, row->trim);
@@ -179,12 +237,13 @@ typedef struct span {
     bool one_alpha;    /* polylines of other alphas within it are not drawn */
     bool is_layered, is_masked, is_one_color;
     bool is_begun; /* one of its rows is drawn */
+    int32_t fill;  /* of its areas. CAMBER_NO_FILL: it has lines */
     camber_color color;
     unsigned features;
 } span;
 
 static span begin_span(size_t first, size_t end) {
-    return (span){.first = first, .end = end, .alpha = 1.0f, .is_one_color = true};
+    return (span){.first = first, .end = end, .alpha = 1.0f, .is_one_color = true, .fill = CAMBER_NO_FILL};
 }
 
 static void add_to_span(const pass_lines *lines, const camber_row_paint *row, span *s) {
@@ -193,6 +252,7 @@ static void add_to_span(const pass_lines *lines, const camber_row_paint *row, sp
     if (!s->is_begun) {
         s->alpha = accumulates ? 1.0f : c.a;
         s->color = c;
+        s->fill = row->fill;
     }
     s->is_one_color = s->is_one_color && c.r == s->color.r && c.g == s->color.g && c.b == s->color.b &&
                       !(row->features & CAMBER_FEATURES_COLORS);
@@ -204,6 +264,8 @@ static void add_to_span(const pass_lines *lines, const camber_row_paint *row, sp
 static void end_span(const pass_lines *lines, span *s) {
     if (!s->is_begun)
         s->alpha = 0.0f;
+    if (s->fill != CAMBER_NO_FILL)
+        return;
     s->is_layered = s->alpha < 1.0f || s->is_masked || (lines->overlap == CAMBER_OVERLAP_UNITE && s->is_one_color);
     s->one_alpha = s->one_alpha || s->is_layered;
 }
@@ -220,7 +282,8 @@ static span find_span(const pass_lines *lines, size_t first) {
         const camber_row_paint *row = row_of(lines, s.end);
         if (row->half_width_px < 0.0f)
             continue;
-        if (s.is_begun && !accumulates && row->color.a != s.alpha)
+        if (s.is_begun &&
+            (row->fill != s.fill || (row->fill == CAMBER_NO_FILL && !accumulates && row->color.a != s.alpha)))
             break;
         add_to_span(lines, row, &s);
         if (lines->mesh->row_count == 1)
@@ -236,10 +299,18 @@ static span pick_alpha(const pass_lines *lines, float alpha) {
     s.one_alpha = true;
     for (size_t i = lines->first; i < lines->end; i++) {
         const camber_row_paint *row = row_of(lines, i);
-        if (row->half_width_px >= 0.0f && row->color.a == alpha)
+        if (row->half_width_px >= 0.0f && row->fill == CAMBER_NO_FILL && row->color.a == alpha)
             add_to_span(lines, row, &s);
     }
     end_span(lines, &s);
+    return s;
+}
+
+/* All areas of one fill. */
+static span pick_fill(const pass_lines *lines, int32_t fill) {
+    span s = begin_span(lines->first, lines->end);
+    s.is_begun = true;
+    s.fill = fill;
     return s;
 }
 
@@ -247,7 +318,7 @@ static span pick_alpha(const pass_lines *lines, float alpha) {
 static span mask_all(const pass_lines *lines) {
     span s = begin_span(lines->first, lines->end);
     for (size_t i = lines->first; i < lines->end; i++)
-        if (row_of(lines, i)->half_width_px >= 0.0f)
+        if (row_of(lines, i)->half_width_px >= 0.0f && row_of(lines, i)->fill == CAMBER_NO_FILL)
             add_to_span(lines, row_of(lines, i), &s);
     s.alpha = 1.0f;
     s.is_one_color = false;
@@ -269,35 +340,20 @@ static bool fades(const camber_pass *pass) {
     return pass->opacity > 0.0f && pass->opacity < 1.0f;
 }
 
-static camber_status set_fill_image(camber_draw_list *list, const camber_fill *fill, camber_fill_paint *paint) {
-    size_t number;
-    camber_status status = camber_image_set_add(&list->images, fill->image, &number);
-    if (status != CAMBER_OK)
-        return status;
-    const camber_image_use mean = camber_image_use_as_mean(fill->image, number);
-    const camber_image_use use =
-        camber_image_use_in_fill(fill->image, number, (double)fill->width_px, (double)fill->height_px);
-    paint->color.r = paint->color.g = paint->color.b = 1.0f;
-    status = add_image_use(list, &mean, &paint->mean_use);
-    return status == CAMBER_OK ? add_image_use(list, &use, &paint->image_use) : status;
-}
-
 /* A fill's opacity is in its colour: it needs no layer. */
 static camber_status add_fill(camber_draw_list *list, const camber_pass *pass) {
-    const camber_fill *fill = &pass->fill;
-    camber_draw_command command = {
-        .fill = {fill->color, fill->image != NULL, 0, 0, fill->x_px, fill->y_px, fill->bearing_deg}};
-    camber_fill_paint *paint = &command.fill;
-    camber_status status = CAMBER_OK;
-    paint->color.a = fill->color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
-    if (!(paint->color.a > 0.0f))
+    camber_draw_command command = {.fill_number = CAMBER_NO_FILL};
+    const float alpha = pass->fill.color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
+    if (!(alpha > 0.0f))
         return CAMBER_OK;
-    if (paint->has_image)
-        status = set_fill_image(list, fill, paint);
+    const camber_status status = make_fill(list, &pass->fill, &command.fill);
+    command.fill.color.a = alpha;
     return status == CAMBER_OK ? add_command(list, &command) : status;
 }
 
 static camber_composite composite_of(const span *s) {
+    if (s->fill != CAMBER_NO_FILL)
+        return CAMBER_COMPOSITE_AREA;
     if (!s->is_layered)
         return CAMBER_COMPOSITE_STRAIGHT;
     if (s->is_masked)
@@ -319,28 +375,36 @@ typedef struct command_maker {
 
 /* Adds a span. is_whole: it has all lines of its pass, whose opacity one layer may take then. */
 static camber_status add_span(command_maker *m, span s, bool is_whole) {
+    const bool is_area = s.fill != CAMBER_NO_FILL;
     float opacity = 1.0f;
     if (s.alpha <= 0.0f)
         return CAMBER_OK;
-    if (fades(m->pass) && is_whole && m->lines->overlap != CAMBER_OVERLAP_ACCUMULATE) {
+    if (is_area && fades(m->pass) && is_whole) {
+        opacity = m->pass->opacity;
+    } else if (fades(m->pass) && is_whole && m->lines->overlap != CAMBER_OVERLAP_ACCUMULATE) {
         opacity = m->pass->opacity;
         s.one_alpha = s.one_alpha || !s.is_layered;
         s.is_layered = true;
     } else if (fades(m->pass) && m->group == 0) {
         m->group = ++m->list->group_count;
     }
-    const camber_draw_command command = {.mesh = m->pass->mesh,
-                                         .first = s.first,
-                                         .end = s.end,
-                                         .first_row = m->first_row,
-                                         .features = s.features,
-                                         .composite = composite_of(&s),
-                                         .one_alpha = s.one_alpha,
-                                         .alpha = s.alpha,
-                                         .color = s.color,
-                                         .layer_opacity = s.alpha * opacity,
-                                         .group = m->group,
-                                         .group_opacity = m->pass->opacity};
+    camber_draw_command command = {.mesh = m->pass->mesh,
+                                   .fill_number = s.fill,
+                                   .first = s.first,
+                                   .end = s.end,
+                                   .first_row = m->first_row,
+                                   .features = s.features,
+                                   .composite = composite_of(&s),
+                                   .one_alpha = s.one_alpha,
+                                   .alpha = s.alpha,
+                                   .color = s.color,
+                                   .layer_opacity = s.alpha * opacity,
+                                   .group = m->group,
+                                   .group_opacity = m->pass->opacity};
+    if (is_area) {
+        command.fill = m->list->fills[s.fill];
+        command.fill.color.a *= opacity;
+    }
     return add_command(m->list, &command);
 }
 
@@ -353,6 +417,17 @@ static bool has_many_layers(const pass_lines *lines, const span *first) {
         layers += s.is_layered && s.alpha > 0.0f;
     }
     return layers > LAYERS_MAX;
+}
+
+/* Whether spans of areas, from the pass's first span on, change their fill more often than a pass may. */
+static bool has_many_fills(const pass_lines *lines, const span *first) {
+    span s = *first;
+    size_t areas = s.fill != CAMBER_NO_FILL;
+    while (s.end < lines->end && areas <= FILLS_MAX) {
+        s = find_span(lines, s.end);
+        areas += s.fill != CAMBER_NO_FILL;
+    }
+    return areas > FILLS_MAX;
 }
 
 static camber_status add_in_order(command_maker *m, span s) {
@@ -370,7 +445,7 @@ static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
     for (size_t i = lines->first; i < lines->end; i++) {
         const camber_row_paint *row = row_of(lines, i);
         const float alpha = row->color.a;
-        if (row->half_width_px < 0.0f)
+        if (row->half_width_px < 0.0f || row->fill != CAMBER_NO_FILL)
             continue;
         size_t at = 0;
         while (at < count && alphas[at] < alpha)
@@ -398,10 +473,27 @@ static camber_status add_by_alpha(command_maker *m) {
     return status;
 }
 
+/* The areas of one fill come together, in the order of the first of each fill. Lines come above them. */
+static camber_status add_by_fill(command_maker *m) {
+    const camber_draw_list *list = m->list;
+    bool *added = camber_alloc_zero(list->context, list->fill_count, sizeof *added);
+    camber_status status = added ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    for (size_t i = m->lines->first; i < m->lines->end && status == CAMBER_OK; i++) {
+        const camber_row_paint *row = row_of(m->lines, i);
+        if (row->half_width_px < 0.0f || row->fill == CAMBER_NO_FILL || added[row->fill])
+            continue;
+        added[row->fill] = true;
+        status = add_span(m, pick_fill(m->lines, row->fill), false);
+    }
+    camber_free(list->context, added);
+    return status == CAMBER_OK ? add_by_alpha(m) : status;
+}
+
 static camber_status add_lines(row_maker *rows) {
     const camber_pass *pass = rows->pass;
     const camber_mesh *mesh = pass->mesh;
     const size_t first_row = rows->list->row_count;
+    rows->first_fill = rows->list->fill_count;
     if (mesh->empty)
         return CAMBER_OK;
     const size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
@@ -415,7 +507,8 @@ static camber_status add_lines(row_maker *rows) {
     lines.rows = rows->list->rows + first_row;
     command_maker m = {rows->list, pass, &lines, first_row, 0};
     const span first = find_span(&lines, lines.first);
-    return has_many_layers(&lines, &first) ? add_by_alpha(&m) : add_in_order(&m, first);
+    return has_many_fills(&lines, &first) || has_many_layers(&lines, &first) ? add_by_fill(&m)
+                                                                             : add_in_order(&m, first);
 }
 
 /* ---- The list ---- */
@@ -467,7 +560,8 @@ camber_status camber_draw_list_build(camber_draw_list *list, const camber_frame 
     camber_status status = check_frame(list->context, frame);
     if (status == CAMBER_OK)
         status = find_pitch(list->context, frame, &pitch_deg);
-    list->command_count = list->row_count = list->use_count = list->group_count = 0;
+    list->command_count = list->row_count = list->use_count = list->fill_count = 0;
+    list->group_count = 0;
     camber_image_set_clear(&list->images);
     camber_side_table_clear(&list->side_table);
     if (status != CAMBER_OK)
@@ -486,6 +580,7 @@ void camber_draw_list_free(camber_draw_list *list) {
     camber_image_set_free(&list->images);
     camber_side_table_free(&list->side_table);
     camber_free(list->context, list->image_uses);
+    camber_free(list->context, list->fills);
     camber_free(list->context, list->rows);
     camber_free(list->context, list->commands);
 }

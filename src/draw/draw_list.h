@@ -19,6 +19,7 @@ typedef enum camber_composite {
     CAMBER_COMPOSITE_COVERAGE, /* a layer of one colour: coverage is gathered, one line over the other */
     CAMBER_COMPOSITE_UNION,    /* the same, and where edges meet in a pixel it has the area of all lines together */
     CAMBER_COMPOSITE_MASKED,   /* a layer of translucent colours, in which the last line alone is seen */
+    CAMBER_COMPOSITE_AREA,     /* no layer: what is inside of the polylines is filled, all at once */
 } camber_composite;
 
 /* A row's paint, with where the side table has what it names. */
@@ -34,23 +35,28 @@ typedef struct camber_row_paint {
     camber_side_dashes dashes;       /* with CAMBER_FEATURE_DASH */
     uint32_t first_stop, stop_count; /* with CAMBER_FEATURE_RAMP */
     size_t image_use;                /* of the list, with CAMBER_FEATURE_IMAGE */
+    int32_t fill;                    /* of the list: the row's areas are filled. CAMBER_NO_FILL: its lines are drawn */
 } camber_row_paint;
 
-/* A fill of the whole picture. */
+enum { CAMBER_NO_FILL = -1 };
+
+/* A fill of the whole picture, or of areas. */
 typedef struct camber_fill_paint {
     camber_color color; /* straight, the pass's opacity in its alpha; with an image white */
     bool has_image;
     size_t image_use, mean_use; /* of the list */
     float x_px, y_px;           /* in the picture: the top left corner of one image */
     double bearing_deg;
+    camber_fill_rule rule;
 } camber_fill_paint;
 
 typedef struct camber_draw_command {
-    camber_mesh *mesh; /* NULL: a fill */
-    camber_fill_paint fill;
-    size_t first, end; /* polylines of the mesh */
-    size_t first_row;  /* of the list's rows, of which every row of the mesh has one */
-    unsigned features; /* CAMBER_FEATURE_* of its rows */
+    camber_mesh *mesh;      /* NULL: a fill of the picture */
+    camber_fill_paint fill; /* of the picture, or of areas */
+    int32_t fill_number;    /* of the rows that are drawn. CAMBER_NO_FILL: lines */
+    size_t first, end;      /* polylines of the mesh */
+    size_t first_row;       /* of the list's rows, of which every row of the mesh has one */
+    unsigned features;      /* CAMBER_FEATURE_* of its rows */
     camber_composite composite;
     bool one_alpha; /* only rows of this alpha are drawn, in a layer as opaque ones; else all, each with its own */
     float alpha;
@@ -73,7 +79,8 @@ typedef struct camber_draw_list {
     camber_draw_command *commands;
     camber_row_paint *rows;
     camber_image_use *image_uses;
-    size_t command_count, command_capacity, row_count, row_capacity, use_count, use_capacity;
+    camber_fill_paint *fills; /* of areas, each once */
+    size_t command_count, command_capacity, row_count, row_capacity, use_count, use_capacity, fill_count, fill_capacity;
     camber_image_set images; /* of the frame, each once: numbers of image uses are theirs */
     uint32_t group_count;
     camber_side_table side_table;
@@ -88,7 +95,8 @@ void camber_draw_list_free(camber_draw_list *list);
 
 /* The alpha at which a command draws one of its mesh's rows into its layer or the picture. Below 0: it does not. */
 static inline float camber_draw_command_alpha(const camber_draw_command *command, const camber_row_paint *row) {
-    if (row->half_width_px < 0.0f || (command->one_alpha && row->color.a != command->alpha))
+    if (row->half_width_px < 0.0f || row->fill != command->fill_number ||
+        (command->one_alpha && row->color.a != command->alpha))
         return -1.0f;
     return command->one_alpha && command->composite != CAMBER_COMPOSITE_STRAIGHT ? 1.0f : row->color.a;
 }

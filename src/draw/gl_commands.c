@@ -15,6 +15,7 @@ static camber_flatten_kind kind_of(const camber_renderer *renderer, const camber
         return renderer->share.surface->half_float_targets ? CAMBER_FLATTEN_UNION : CAMBER_FLATTEN_COVERAGE;
     case CAMBER_COMPOSITE_MASKED: return CAMBER_FLATTEN_MASKED;
     case CAMBER_COMPOSITE_STRAIGHT:
+    case CAMBER_COMPOSITE_AREA:
     case CAMBER_COMPOSITE_COLORS: break;
     }
     return CAMBER_FLATTEN_COLORS;

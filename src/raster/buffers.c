@@ -33,8 +33,9 @@ void camber_raster_destroy(camber_raster *raster) {
 }
 
 camber_raster_times camber_raster_get_times(const camber_raster *raster) {
-    return (camber_raster_times){raster->ms[STAGE_SETUP], raster->ms[STAGE_BIN_COUNT], raster->ms[STAGE_BIN_SCAN],
-                                 raster->ms[STAGE_BIN_SCATTER], raster->ms[STAGE_RASTERIZE]};
+    return (camber_raster_times){raster->ms[STAGE_SETUP],    raster->ms[STAGE_BIN_COUNT],
+                                 raster->ms[STAGE_BIN_SCAN], raster->ms[STAGE_BIN_SCATTER],
+                                 raster->ms[STAGE_WIND],     raster->ms[STAGE_RASTERIZE]};
 }
 
 uint32_t camber_raster_slice_count(const camber_raster *raster) {
@@ -149,7 +150,8 @@ static camber_status copy_pixels(camber_raster *raster, uint8_t **rgba) {
 }
 
 camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_stages *stages) {
-    camber_raster_stages made = {.segment_count = raster->segment_count, .tile_count = raster->tile_count};
+    camber_raster_stages made = {
+        .segment_count = raster->segment_count, .tile_count = raster->tile_count, .list_count = raster->list_count};
     camber_status status = get(raster, BUFFER_SEGMENTS, 4 * CAMBER_SEGMENT_WORDS * made.segment_count, &made.segments);
     if (status == CAMBER_OK)
         status = get(raster, BUFFER_BOXES, 4 * made.segment_count, &made.boxes);
@@ -159,9 +161,9 @@ camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_sta
     if (status == CAMBER_OK && raster->variant & CAMBER_RASTER_PITCHED)
         status = get(raster, BUFFER_PLANES, 4 * CAMBER_PLANE_WORDS * made.segment_count, &made.planes);
     if (status == CAMBER_OK)
-        status = get(raster, BUFFER_STARTS, 4 * (made.tile_count + 1), &made.starts);
+        status = get(raster, BUFFER_STARTS, 4 * (made.list_count + 1), &made.starts);
     if (status == CAMBER_OK)
-        status = get(raster, BUFFER_LISTS, 4 * (size_t)made.starts[made.tile_count], &made.lists);
+        status = get(raster, BUFFER_LISTS, 4 * (size_t)made.starts[made.list_count], &made.lists);
     if (status == CAMBER_OK)
         status = copy_pixels(raster, &made.rgba);
     if (status != CAMBER_OK) {

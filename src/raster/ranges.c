@@ -33,7 +33,8 @@ static camber_status find_range(const camber_raster_input *input, size_t which, 
     const size_t end = part->first_polyline + part->polyline_count;
     const size_t from = input->first > part->first_polyline ? input->first : part->first_polyline;
     const size_t to = input->end < end ? input->end : end;
-    *range = (camber_record_range){.mesh = input->mesh, .part = which, .first_row = input->first_row};
+    *range = (camber_record_range){
+        .mesh = input->mesh, .part = which, .first_row = input->first_row, .is_area = input->is_area};
     if (from >= to || part->index_count == 0)
         return CAMBER_OK;
     const bool whole = from == part->first_polyline && to == end;

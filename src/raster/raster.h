@@ -1,5 +1,5 @@
 /* The OpenCL rasterizer: it draws the records of meshes by the stages setup -> bin_count -> bin_scan -> bin_scatter ->
- * rasterize. The CPU twin makes the same bytes.
+ * wind (where there are areas) -> rasterize. The CPU twin makes the same bytes.
  *
  * Input: a scene, which lists polylines of meshes with tables of rows and brushes. Output: the pixels of an area. The
  * kernels are built in variants, so that a plain frame does not pay for features that it lacks:
@@ -26,6 +26,7 @@ typedef struct camber_raster_input {
         *mesh; /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
     size_t first, end;
     size_t first_row; /* where the table begins among all rows */
+    bool is_area;     /* the polylines are rings: half widths of rows that are drawn are CAMBER_EDGE_PX */
 } camber_raster_input;
 
 /* All that is drawn, in drawing order. Brushes of one layer follow each other, and so do those of a group. */
@@ -63,7 +64,7 @@ typedef struct camber_raster_pixels {
 
 /* Milliseconds of the last area's kernels on the device's queue. */
 typedef struct camber_raster_times {
-    double setup_ms, bin_count_ms, bin_scan_ms, bin_scatter_ms, rasterize_ms;
+    double setup_ms, bin_count_ms, bin_scan_ms, bin_scatter_ms, wind_ms, rasterize_ms;
 } camber_raster_times;
 
 typedef struct camber_raster camber_raster;
@@ -93,10 +94,11 @@ typedef struct camber_raster_stages {
     float *arc_lengths; /* segment_count times CAMBER_SEGMENT_ARC_LENGTHS. NULL: a plain scene */
     float *planes;      /* segment_count times CAMBER_PLANE_WORDS. NULL: no pitch */
     size_t segment_count;
-    uint32_t *starts; /* tile_count + 1 */
+    uint32_t *starts; /* list_count + 1 */
     size_t tile_count;
-    uint32_t *lists; /* starts[tile_count] */
-    uint8_t *rgba;   /* of the area */
+    size_t list_count; /* tiles; where there are areas, rows of tiles with the edges that cross their tops, too */
+    uint32_t *lists;   /* starts[list_count] */
+    uint8_t *rgba;     /* of the area */
 } camber_raster_stages;
 
 /* Reads the stages of the area that was drawn last: the last slice of its last band. */
@@ -115,6 +117,7 @@ typedef struct camber_record_range {
     size_t first, end; /* the records [first, end) of the part */
     size_t base;       /* where its segments begin, a multiple of 16 */
     size_t first_row;
+    bool is_area;
 } camber_record_range;
 
 /* Lists the ranges of a scene, and how many segments they take. The caller frees *ranges with camber_free. */

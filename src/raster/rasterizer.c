@@ -5,6 +5,8 @@
  */
 #include "raster/rasterizer.h"
 
+#include "kernels/area.h"
+
 #include "base/stages.h"
 #include "cl/launch.h"
 
@@ -48,8 +50,9 @@ static camber_status settle(camber_raster *raster) {
 /* Starts a stage's kernel for so many jobs: a work-group of one work-item for each. */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
-    const cl_kernel kernels[STAGES] = {raster->program->setup, raster->program->bin_count, raster->program->bin_scan,
-                                       raster->program->bin_scatter, raster->program->rasterize};
+    const cl_kernel kernels[STAGES] = {raster->program->setup,    raster->program->bin_count,
+                                       raster->program->bin_scan, raster->program->bin_scatter,
+                                       raster->program->wind,     raster->program->rasterize};
     const camber_launch launch = {stage_name(stage), kernels[stage], args, arg_count, job_count, 1};
     cl_event event = NULL;
     if (job_count == 0)
@@ -101,32 +104,36 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
 
 static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const camber_raster_area *area = &raster->band;
-    const size_t tiles = (raster->tile_count + 15) / 16 * 16,
-                 most = raster->device->info.largest_buffer_bytes / (4 * tiles);
+    const size_t lists = (raster->list_count + 15) / 16 * 16,
+                 most = raster->device->info.largest_buffer_bytes / (4 * lists);
     const size_t wanted = (raster->segment_count + CHUNK - 1) / CHUNK, bound = most < CHUNKS_MAX ? most : CHUNKS_MAX;
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (raster->segment_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
+    const size_t slice = raster->first_segment, end = raster->end_edge > slice ? raster->end_edge - slice : 0;
+    const size_t first_edge = raster->first_edge > slice ? raster->first_edge - slice : 0;
     return (camber_bin_args){
         (uint32_t)raster->segment_count,
         (uint32_t)a_chunk,
-        (uint32_t)tiles,
+        (uint32_t)lists,
+        (uint32_t)first_edge,
+        (uint32_t)(end > first_edge ? end - first_edge : 0),
         {(float)area->x, (float)area->y, camber_raster_tiles(area->width), camber_raster_tiles(area->height)}};
 }
 
 static camber_status count_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
     camber_status status =
-        camber_raster_reserve(raster, BUFFER_COUNTS, 4 * (size_t)c.tiles * (chunk_count ? chunk_count : 1));
+        camber_raster_reserve(raster, BUFFER_COUNTS, 4 * (size_t)c.lists * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
-        status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.tiles);
+        status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.lists);
     const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS),
                                        CAMBER_ARG_VALUE(c)};
-    const camber_kernel_arg total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), CAMBER_ARG_VALUE(c.tiles),
+    const camber_kernel_arg total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), CAMBER_ARG_VALUE(c.lists),
                                        CAMBER_ARG_VALUE(chunk_count)};
     if (status == CAMBER_OK)
         status = run(raster, STAGE_BIN_COUNT, count, 4, chunk_count);
     if (status == CAMBER_OK)
-        status = run(raster, STAGE_BIN_SCAN, total, 4, c.tiles / 16);
+        status = run(raster, STAGE_BIN_SCAN, total, 4, c.lists / 16);
     return status;
 }
 
@@ -134,21 +141,21 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
  * band or the slice can still be halved. */
 static camber_status start_lists(camber_raster *raster, bool *fits) {
     const camber_device *device = raster->device;
-    const size_t tiles = raster->tile_count;
+    const size_t lists = raster->list_count;
     uint64_t sum = 0;
     cl_int code;
-    if (!camber_grow(device->context, &raster->starts, &raster->start_capacity, tiles + 2, sizeof *raster->starts))
+    if (!camber_grow(device->context, &raster->starts, &raster->start_capacity, lists + 2, sizeof *raster->starts))
         return CAMBER_ERROR_MEMORY;
     cl_uint *totals = clEnqueueMapBuffer(device->queue, raster->buffers[BUFFER_TOTALS], CL_TRUE, CL_MAP_READ, 0,
-                                         4 * tiles, 0, NULL, NULL, &code);
+                                         4 * lists, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
-    for (size_t i = 0; i < tiles; i++) {
+    for (size_t i = 0; i < lists; i++) {
         raster->starts[i] = (uint32_t)sum;
         sum += totals[i];
     }
-    /* One more than there are tiles, as rasterize looks at the next tile's list, too. */
-    raster->starts[tiles] = raster->starts[tiles + 1] = (uint32_t)sum;
+    /* One more than there are lists, as rasterize looks at the next tile's list, too. */
+    raster->starts[lists] = raster->starts[lists + 1] = (uint32_t)sum;
     clEnqueueUnmapMemObject(device->queue, raster->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
     *fits = 4 * sum <= camber_raster_most_bytes(raster) ||
             (raster->band.height <= CAMBER_TILE_PX && raster->segment_count <= 16);
@@ -157,7 +164,7 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     if (sum > UINT32_MAX)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT, "%llu segments in tiles; draw less at once",
                            (unsigned long long)sum);
-    camber_status status = camber_raster_put(raster, BUFFER_STARTS, raster->starts, 4 * (tiles + 2));
+    camber_status status = camber_raster_put(raster, BUFFER_STARTS, raster->starts, 4 * (lists + 2));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_LISTS, 4 * (sum ? (size_t)sum : 1));
     return status;
@@ -167,6 +174,20 @@ static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, 
     const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_STARTS),
                                       BUFFER(BUFFER_COUNTS),   BUFFER(BUFFER_LISTS), CAMBER_ARG_VALUE(c)};
     return run(raster, STAGE_BIN_SCATTER, fill, 6, chunk_count);
+}
+
+/* Finds the windings that edges leave to the right of them. */
+static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
+    if (raster->list_count == raster->tile_count)
+        return CAMBER_OK;
+    const size_t edges = raster->starts[raster->list_count] - raster->starts[raster->tile_count];
+    camber_status status =
+        camber_raster_reserve(raster, BUFFER_CROSSINGS, 4 * CAMBER_CROSSING_WORDS * (edges ? edges : 1));
+    if (status == CAMBER_OK)
+        status = camber_raster_reserve(raster, BUFFER_ENDS, 4 * (size_t)of.rows);
+    const camber_kernel_arg wind[] = {BUFFER(BUFFER_SEGMENTS),  BUFFER(BUFFER_STARTS), BUFFER(BUFFER_LISTS),
+                                      BUFFER(BUFFER_CROSSINGS), BUFFER(BUFFER_ENDS),   CAMBER_ARG_VALUE(of)};
+    return status == CAMBER_OK ? run(raster, STAGE_WIND, wind, sizeof wind / sizeof *wind, of.rows) : status;
 }
 
 static bool is_heavy(const camber_raster *raster, size_t tile) {
@@ -199,12 +220,12 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
     return camber_raster_put(raster, BUFFER_JOBS, raster->jobs, 2 * count * sizeof *raster->jobs);
 }
 
-/* Lays out the planes of a spill: five for the brush and the picture, three for unions, four for the group and for the
- * layer, one for masks. */
+/* Lays out the planes of a spill: five for the brush and the picture, three for unions and areas, four for the group
+ * and for the layer, one for masks. */
 static camber_spill_args plan_spill(const camber_raster_scene *scene) {
     bool unions = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
-        unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION;
+        unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION || camber_brush_is_area(scene->brushes + i);
         groups = groups || scene->brushes[i].group;
         layers = layers || scene->brushes[i].layer;
         masks = masks || scene->brushes[i].mode == CAMBER_BRUSH_MASKED;
@@ -223,6 +244,8 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
                             .top = (float)band->y,
                             .columns = raster->columns,
                             .stride = raster->columns * CAMBER_TILE_PX,
+                            .first_row =
+                                raster->list_count > raster->tile_count ? (uint32_t)raster->tile_count : UINT32_MAX,
                             .r = scene->background[0],
                             .g = scene->background[1],
                             .b = scene->background[2],
@@ -240,7 +263,8 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
         CAMBER_ARG_VALUE(s),      BUFFER(BUFFER_SPILL),
         CAMBER_ARG_VALUE(k),      BUFFER(BUFFER_ARC_LENGTHS),
         BUFFER(BUFFER_BRUSH_EXT), BUFFER(BUFFER_SIDE_TABLE),
-        BUFFER(BUFFER_PLANES)};
+        BUFFER(BUFFER_PLANES),    BUFFER(BUFFER_CROSSINGS),
+        BUFFER(BUFFER_ENDS)};
     const size_t count = sizeof arguments / sizeof *arguments;
     if (status == CAMBER_OK)
         status = run(raster, STAGE_RASTERIZE, arguments, count, heavy);
@@ -308,6 +332,8 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
     status = list_jobs(raster, &heavy, &jobs);
     if (status == CAMBER_OK)
         status = scatter_segments(raster, c, chunk_count);
+    if (status == CAMBER_OK)
+        status = wind_rows(raster, c.of);
     return status == CAMBER_OK ? rasterize_tiles(raster, p->scene, k, heavy, jobs) : status;
 }
 
@@ -318,6 +344,7 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
     camber_spill_args k = plan_spill(p->scene);
     camber_status status = CAMBER_OK;
     raster->tile_count = (size_t)raster->columns * camber_raster_tiles(raster->band.height);
+    raster->list_count = raster->tile_count + (raster->end_edge ? camber_raster_tiles(raster->band.height) : 0);
     do {
         raster->segment_count = left < most ? left : most;
         raster->first_segment = left - raster->segment_count;
@@ -365,6 +392,19 @@ static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     return status;
 }
 
+/* Finds the segments between which all edges of rings lie. */
+static void find_edges(camber_raster *raster, const listed_scene *p) {
+    raster->first_edge = p->segment_count;
+    raster->end_edge = 0;
+    for (size_t i = 0; i < p->range_count; i++) {
+        const camber_record_range *range = p->ranges + i;
+        if (!range->is_area)
+            continue;
+        raster->first_edge = range->base < raster->first_edge ? range->base : raster->first_edge;
+        raster->end_edge = range->base + range->end - range->first;
+    }
+}
+
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, cl_mem pixels) {
     camber_context *context = raster->device->context;
@@ -381,6 +421,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
         status = camber_raster_list_ranges(context, scene, &ranges, &p.range_count, &p.segment_count);
     p.ranges = ranges;
     raster->segment_count = p.segment_count;
+    find_edges(raster, &p);
     if (status == CAMBER_OK)
         status = prepare(raster, scene);
     if (status == CAMBER_OK)

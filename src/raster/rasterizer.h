@@ -18,13 +18,15 @@ enum {
     BUFFER_TOTALS,
     BUFFER_STARTS,
     BUFFER_LISTS,
+    BUFFER_CROSSINGS,
+    BUFFER_ENDS, /* of rows' crossings */
     BUFFER_JOBS,
     BUFFER_PIXELS,
     BUFFER_SPILL, /* of tiles, between slices */
     BUFFERS
 };
 
-enum { STAGE_SETUP, STAGE_BIN_COUNT, STAGE_BIN_SCAN, STAGE_BIN_SCATTER, STAGE_RASTERIZE, STAGES };
+enum { STAGE_SETUP, STAGE_BIN_COUNT, STAGE_BIN_SCAN, STAGE_BIN_SCATTER, STAGE_WIND, STAGE_RASTERIZE, STAGES };
 
 /* A kernel that was started, and its stage. */
 typedef struct camber_raster_pending {
@@ -46,7 +48,9 @@ struct camber_raster {
     cl_mem given;                        /* the caller's buffer for the pixels; NULL: a buffer of our own */
     uint32_t columns;                    /* tiles */
     size_t first_segment, segment_count; /* of the slice */
+    size_t first_edge, end_edge;         /* no edge of a ring lies outside these segments; none: there are no areas */
     size_t tile_count;
+    size_t list_count; /* of tiles, and behind them of rows of tiles where there are areas */
     uint32_t slice_count;
     camber_drawing_memory memory;
     camber_raster_pending pending[CAMBER_RASTER_PENDING];

@@ -74,6 +74,7 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
     camber_segment s =
         camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
+    camber_edge_segment(&s);
     bool drawn = ends && row[0] >= 0.0f;
     if (t->stages->arc_lengths)
         put_arc_length(part->arc_lengths, record_number(is_dot ? i : i - 1, r), record_number(i, r), &s,
@@ -134,6 +135,24 @@ static camber_status make_segments(const camber_twin *t, const camber_record_ran
 
 /* ---- Lists ---- */
 
+static void add_to_list(const camber_twin *t, size_t segment, uint32_t *count, bool fill) {
+    if (fill)
+        t->stages->lists[*count] = (uint32_t)segment;
+    ++*count;
+}
+
+/* The same as each_tile for the rows of tiles whose tops it crosses as the edge of a ring. */
+static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
+    const uint32_t box = t->stages->boxes[segment];
+    const float *words = t->stages->segments + CAMBER_SEGMENT_WORDS * segment;
+    const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
+    if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
+        return;
+    for (uint32_t y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++)
+        if (camber_crosses_top(words, y, &of))
+            add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
+}
+
 /* Counts a segment in each tile that it meets, or puts it into their lists. */
 static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
@@ -141,28 +160,26 @@ static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bo
     const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
     for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
         const uint32_t span = camber_tile_span(t->stages->segments + CAMBER_SEGMENT_WORDS * segment, box, y, &of);
-        for (uint32_t x = span & 255u; x <= span >> 8; x++) {
-            uint32_t *count = counts + y * t->columns + x;
-            if (fill)
-                t->stages->lists[*count] = (uint32_t)segment;
-            ++*count;
-        }
+        for (uint32_t x = span & 255u; x <= span >> 8; x++)
+            add_to_list(t, segment, counts + y * t->columns + x, fill);
     }
+    if (t->stages->list_count > t->stages->tile_count)
+        each_row(t, segment, counts, fill);
 }
 
 static camber_status make_lists(const camber_twin *t) {
     camber_raster_stages *stages = t->stages;
-    uint32_t *next = camber_alloc_zero(t->context, stages->tile_count, sizeof *next);
+    uint32_t *next = camber_alloc_zero(t->context, stages->list_count, sizeof *next);
     if (!next)
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < stages->segment_count; i++)
         each_tile(t, i, next, false);
     stages->starts[0] = 0;
-    for (size_t i = 0; i < stages->tile_count; i++) {
+    for (size_t i = 0; i < stages->list_count; i++) {
         stages->starts[i + 1] = stages->starts[i] + next[i];
         next[i] = stages->starts[i];
     }
-    stages->lists = camber_alloc(t->context, stages->starts[stages->tile_count], sizeof *stages->lists);
+    stages->lists = camber_alloc(t->context, stages->starts[stages->list_count], sizeof *stages->lists);
     for (size_t i = 0; i < stages->segment_count && stages->lists; i++)
         each_tile(t, i, next, true);
     camber_free(t->context, next);
@@ -176,7 +193,10 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
     size_t range_count = 0;
     const camber_twin t = {
         context, scene, area, &made, camber_raster_tiles(area->width), camber_raster_tiles(area->height)};
-    made.tile_count = (size_t)t.columns * t.rows;
+    made.tile_count = made.list_count = (size_t)t.columns * t.rows;
+    for (size_t i = 0; i < scene->input_count; i++)
+        if (scene->inputs[i].is_area)
+            made.list_count = made.tile_count + t.rows;
     camber_status status = camber_raster_list_ranges(context, scene, &ranges, &range_count, &made.segment_count);
     if (status != CAMBER_OK)
         return status;
@@ -187,7 +207,7 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
             camber_alloc(context, made.segment_count, CAMBER_SEGMENT_ARC_LENGTHS * sizeof *made.arc_lengths);
     if (scene->pitched)
         made.planes = camber_alloc(context, made.segment_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
-    made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
+    made.starts = camber_alloc(context, made.list_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
     if (!made.segments || !made.boxes || (scene->brush_ext && !made.arc_lengths) || (scene->pitched && !made.planes) ||
         !made.starts || !made.rgba)

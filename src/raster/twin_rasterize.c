@@ -5,7 +5,7 @@
  * kernels/tile_state.h, which it compiles for one lane, and so do the kernels for more. */
 #include "raster/twin.h"
 
-#include "kernels/tile_state.h"
+#include "kernels/area.h"
 
 #include <math.h>
 
@@ -144,8 +144,8 @@ static void put_colors(camber_tile_state *c, const drawn_segment *t, int number,
     }
 }
 
-/* Fills a cell with images. */
-static void put_images(camber_tile_state *c, const drawn_segment *t, cell_place one) {
+/* Fills a cell with images: all of it, or the areas of its pixels. */
+static void put_images(camber_tile_state *c, const drawn_segment *t, cell_place one, const float *areas) {
     camber_tile_take_level(c, camber_tile_level(c), one.number);
     for (int i = 0; i < CAMBER_VECTORS; i++) {
         const float x = pixel_x(one, i), y = pixel_y(one, i);
@@ -155,9 +155,9 @@ static void put_images(camber_tile_state *c, const drawn_segment *t, cell_place 
         camber_plane_spot(t->eye, x, y, &spot);
 #endif
         camber_fill_image(&t->image, &spot, color);
-        camber_tile_put_colors(c, one.number, i, 1.0f, color);
+        camber_tile_put_colors(c, one.number, i, areas ? areas[i] : 1.0f, color);
     }
-    camber_tile_count_colors(c, one.number, 1);
+    camber_tile_count_colors(c, one.number, !areas);
 }
 
 static void draw_cell(camber_tile_state *c, const drawn_segment *t, cell_place one) {
@@ -170,7 +170,7 @@ static void draw_cell(camber_tile_state *c, const drawn_segment *t, cell_place o
     if (meets == CAMBER_CELL_OUTSIDE)
         return;
     if (t->is_fill && t->extras.features & CAMBER_FEATURE_IMAGE) {
-        put_images(c, t, one);
+        put_images(c, t, one, NULL);
         return;
     }
     if (!has_colors)
@@ -253,26 +253,121 @@ static void write_tile(const camber_twin *t, camber_tile_state *c, uint32_t colu
         }
 }
 
-static void draw_tile(const camber_twin *t, camber_tile_state *c, uint32_t column, uint32_t row) {
+/* The crossings of a row of tiles, and those that a tile's brushes have not taken yet: from the last to the first. */
+typedef struct row_crossings {
+    camber_u32 *words;
+    size_t count, left;
+} row_crossings;
+
+static camber_u32 next_area(const row_crossings *crossings) {
+    return crossings->left ? crossings->words[CAMBER_CROSSING_WORDS * (crossings->left - 1) + CAMBER_CROSSING_BRUSH]
+                           : 0;
+}
+
+/* How often a brush's rings wind around the corner of the tile in a column. */
+static int take_winding(row_crossings *crossings, camber_u32 brush, uint32_t column) {
+    int winding = 0;
+    for (; brush && next_area(crossings) == brush; crossings->left--) {
+        const camber_u32 place =
+            crossings->words[CAMBER_CROSSING_WORDS * (crossings->left - 1) + CAMBER_CROSSING_PLACE];
+        if (camber_crossing_column(place) <= column)
+            winding += camber_crossing_times(place);
+    }
+    return winding;
+}
+
+/* A tile that is drawn. */
+typedef struct drawn_tile {
+    const camber_twin *twin;
+    camber_tile_state *state;
+    row_crossings crossings;
+    camber_tile_rows where;
+    uint32_t column;
+} drawn_tile;
+
+/* Draws the area whose edges have been added. */
+static void end_area(const drawn_tile *d) {
+    const camber_raster_scene *scene = d->twin->scene;
+    camber_tile_state *c = d->state;
+    drawn_segment by = {.eye = {0, 0, 0, 0}};
+    if (!camber_brush_is_area(&c->now))
+        return;
+    if (!(c->brush_ext.features & CAMBER_FEATURE_IMAGE)) {
+        camber_area_draw(c, d->where);
+        return;
+    }
+    camber_u64 whole;
+    const camber_u64 cells = camber_area_find(c, d->where, &whole);
+#if CAMBER_STROKE_PITCHED
+    by.eye = scene->eye;
+#endif
+    camber_image_sampler_of(scene->side_table, 4u * c->brush_ext.image, &by.image);
+    for (int i = 0; i < CAMBER_CELLS; i++) {
+        const float x = d->where.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)),
+                    y = d->where.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS));
+        if ((cells | whole) >> i & 1)
+            put_images(c, &by, (cell_place){i, x - by.eye.x, y - by.eye.y}, whole >> i & 1 ? NULL : c->sums[i][0]);
+    }
+}
+
+static void change_brush(drawn_tile *d, camber_u32 brush) {
     static const camber_brush_ext none = {0};
+    const camber_raster_scene *scene = d->twin->scene;
+    end_area(d);
+    camber_tile_change_brush(d->state, scene->brushes[brush]);
+    camber_tile_use_ext(d->state, scene->brush_ext ? scene->brush_ext[brush] : none);
+}
+
+/* Draws the areas above a brush of which the tile has no edges. */
+static void draw_areas_above(drawn_tile *d, camber_u32 brush) {
+    for (camber_u32 next = next_area(&d->crossings); next > brush; next = next_area(&d->crossings)) {
+        const int winding = take_winding(&d->crossings, next, d->column);
+        if (winding == 0)
+            continue;
+        change_brush(d, next);
+        d->state->winding = winding;
+    }
+}
+
+static void draw_tile(drawn_tile *d, uint32_t row) {
+    const camber_twin *t = d->twin;
     const camber_raster_stages *stages = t->stages;
-    const size_t tile = (size_t)row * t->columns + column;
-    const camber_tile_rows where = {(float)t->area->x + (float)(column * CAMBER_TILE_PX),
-                                    (float)t->area->y + (float)(row * CAMBER_TILE_PX), 0, CAMBER_TILE_CELLS - 1};
+    camber_tile_state *c = d->state;
+    const size_t tile = (size_t)row * t->columns + d->column;
     uint32_t current = UINT32_MAX;
+    d->where = (camber_tile_rows){(float)t->area->x + (float)(d->column * CAMBER_TILE_PX),
+                                  (float)t->area->y + (float)(row * CAMBER_TILE_PX), 0, CAMBER_TILE_CELLS - 1};
+    d->crossings.left = d->crossings.count;
     camber_tile_begin(c, ~(camber_u64)0, t->scene->brushes);
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
         const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * stages->lists[k];
         const uint32_t brush = camber_bits_of(segment[CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
-            camber_tile_change_brush(c, t->scene->brushes[brush]);
-            camber_tile_use_ext(c, t->scene->brush_ext ? t->scene->brush_ext[brush] : none);
+            draw_areas_above(d, brush);
+            change_brush(d, brush);
+            c->winding = take_winding(&d->crossings, brush, d->column);
         }
         current = brush;
-        draw_segment(c, t, stages->lists[k], where);
+        if (camber_brush_is_area(&c->now))
+            camber_area_add_edge(c, segment, d->where);
+        else
+            draw_segment(c, t, stages->lists[k], d->where);
     }
+    draw_areas_above(d, 0);
+    end_area(d);
     camber_tile_end(c);
-    write_tile(t, c, column, row);
+    write_tile(t, c, d->column, row);
+}
+
+/* Finds the crossings of a row of tiles. */
+static void wind_row(const camber_twin *t, uint32_t row, row_crossings *crossings) {
+    const camber_raster_stages *stages = t->stages;
+    const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
+    const uint32_t *starts = stages->starts + stages->tile_count + row;
+    crossings->count = 0;
+    if (stages->list_count > stages->tile_count)
+        crossings->count = camber_wind_row(stages->segments, stages->lists + starts[0], starts[1] - starts[0], of,
+                                           of.top + (float)(row * CAMBER_TILE_PX), crossings->words);
 }
 
 #if CAMBER_STROKE_PITCHED
@@ -280,12 +375,17 @@ camber_status camber_twin_draw_pitched(const camber_twin *t) {
 #else
 camber_status camber_twin_draw(const camber_twin *t) {
 #endif
-    camber_tile_state *c = camber_alloc(t->context, 1, sizeof *c);
-    if (!c)
-        return CAMBER_ERROR_MEMORY;
-    for (uint32_t row = 0; row < t->rows; row++)
-        for (uint32_t column = 0; column < t->columns; column++)
-            draw_tile(t, c, column, row);
-    camber_free(t->context, c);
-    return CAMBER_OK;
+    const camber_raster_stages *stages = t->stages;
+    const size_t edges = stages->starts[stages->list_count] - stages->starts[stages->tile_count];
+    drawn_tile d = {.twin = t, .state = camber_alloc(t->context, 1, sizeof *d.state)};
+    d.crossings.words = camber_alloc(t->context, edges, CAMBER_CROSSING_WORDS * sizeof *d.crossings.words);
+    const bool held = d.state && d.crossings.words;
+    for (uint32_t row = 0; row < t->rows && held; row++) {
+        wind_row(t, row, &d.crossings);
+        for (d.column = 0; d.column < t->columns; d.column++)
+            draw_tile(&d, row);
+    }
+    camber_free(t->context, d.crossings.words);
+    camber_free(t->context, d.state);
+    return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }

@@ -217,7 +217,7 @@ static void store_stretch(camber_network *n, const camber_network_desc *desc, ca
     const size_t count = n->point_count - stretch->first;
     n->importance[stretch->first] = n->importance[n->point_count - 1] = INFINITY;
     if (closes && count > 2)
-        stretch->word |= CAMBER_STRETCH_RING;
+        stretch->word |= CAMBER_STRETCH_RING | (entry.is_area ? CAMBER_STRETCH_AREA : 0u);
     n->stats.kept_points += count;
     n->stats.kept_segments += count - 1;
     n->stats.dots += count == 1;

@@ -1,0 +1,416 @@
+/* Areas: the device beside the twin to the last bit; pictures beside 16 x 16 samples of each pixel, which share no
+ * formula with what they judge; no seam between neighbours; the same bytes in areas and slices of any size; a camera
+ * that cuts rings beside rings that are not cut. */
+#include "raster_twin.h"
+
+#include "camber_network.h"
+#include "draw/renderer.h"
+
+#include <math.h>
+
+enum { SIDE_PX = 500, SAMPLES = 16 };
+
+/* ---- Rings ---- */
+
+typedef struct rings {
+    float *points;
+    uint32_t *offsets, *rows;
+    size_t point_count, ring_count, point_capacity;
+} rings;
+
+static rings rings_begin(size_t most_points) {
+    rings r = {.points = malloc(2 * most_points * sizeof *r.points),
+               .offsets = calloc(most_points + 1, sizeof *r.offsets),
+               .rows = calloc(most_points, sizeof *r.rows),
+               .point_capacity = most_points};
+    assert_true(r.points && r.offsets && r.rows);
+    return r;
+}
+
+static void rings_free(rings *r) {
+    free(r->points);
+    free(r->offsets);
+    free(r->rows);
+}
+
+static void add_point(rings *r, double x, double y) {
+    assert_true(r->point_count < r->point_capacity);
+    r->points[2 * r->point_count] = (float)x;
+    r->points[2 * r->point_count++ + 1] = (float)y;
+}
+
+static void end_ring(rings *r, uint32_t row) {
+    r->rows[r->ring_count++] = row;
+    r->offsets[r->ring_count] = (uint32_t)r->point_count;
+}
+
+/* A star of some corners: pointed where they are odd, with a step of 2 that crosses itself. */
+static void add_star(rings *r, double x, double y, double radius, int corners, int step, double angle, uint32_t row) {
+    for (int i = 0; i < corners; i++) {
+        const double a = angle + 6.283185307179586 * i * step / corners;
+        add_point(r, x + radius * cos(a), y + radius * sin(a));
+    }
+    end_ring(r, row);
+}
+
+static double next_number(uint64_t *seed) {
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*seed >> 33) / (double)(1u << 31);
+}
+
+/* Rings of all sizes, some of them crossing themselves, some far larger than the picture. */
+static rings made_rings(uint64_t seed, size_t count, double largest, uint32_t row_count) {
+    rings r = rings_begin(40 * count);
+    for (size_t i = 0; i < count; i++) {
+        const double size = largest * pow(next_number(&seed), 4.0) + 0.3;
+        const double x = 1.4 * SIDE_PX * next_number(&seed) - 0.2 * SIDE_PX;
+        const double y = 1.4 * SIDE_PX * next_number(&seed) - 0.2 * SIDE_PX;
+        const int corners = 3 + (int)(i % 9);
+        add_star(&r, x, y, size, corners, i % 7 == 3 ? 2 : 1, 3.0 * next_number(&seed), (uint32_t)(i % row_count));
+    }
+    return r;
+}
+
+static camber_mesh *mesh_of(const fixture *f, camber_renderer *renderer, const rings *r, uint32_t row_count) {
+    const camber_areas_desc desc = {.points = r->points,
+                                    .point_count = r->point_count,
+                                    .offsets = r->offsets,
+                                    .ring_count = r->ring_count,
+                                    .rows = r->rows};
+    const camber_stroke strokes[4] = {{.width_px = 0}, {.width_px = 3}, {.width_px = 0}, {.width_px = 9}};
+    const camber_tessellation_desc how = {strokes, row_count, CAMBER_METHOD_STRIP, 0, false};
+    camber_polylines *areas = NULL;
+    camber_mesh *mesh = NULL;
+    assert_int_equal(camber_areas_create(f->context, &desc, &areas), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(f->on.device, renderer, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, areas, &how), CAMBER_OK);
+    camber_polylines_destroy(areas);
+    return mesh;
+}
+
+static camber_renderer *drawer(const fixture *f) {
+    return f->on.renderer[CAMBER_FIXTURE_OPENCL];
+}
+
+/* ---- Device and twin ---- */
+
+/* Areas by both rules, lines over some of them, and areas again; all rows of a mesh, in a group and straight. */
+static void test_twin(void **state) {
+    const fixture *f = *state;
+    static const camber_brush_ext nothing[4];
+    static const double pitches[] = {0, 1, 30, 60, 85};
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        rings r = made_rings(seed, seed == 4 ? 3000 : 300, seed == 4 ? 60 : 900, 2);
+        camber_mesh *mesh = mesh_of(f, drawer(f), &r, 2);
+        float rows[6][CAMBER_RASTER_ROW_WORDS] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, 0, 0, 0},
+                                                  {1, 2, 3, 0}, {0, 4, 5, 0},  {0, 0.5f, 0, 0}};
+        const uint32_t of_rows[6] = {1, 0, 0, 2, 3, 3};
+        const camber_brush brushes[4] = {
+            {.a = 0},
+            {.r = 1, .a = 0.5f, .mode = CAMBER_BRUSH_AREA_EVENODD},
+            {.g = 1, .a = 1, .mode = CAMBER_BRUSH_OVER},
+            {.b = 1, .r = 0.5f, .a = 0.8f, .mode = CAMBER_BRUSH_AREA, .group = 1, .group_opacity = 0.7f}};
+        for (int i = 0; i < 6; i++)
+            memcpy(rows[i] + 3, of_rows + i, sizeof *of_rows);
+        const size_t end = mesh->polyline_count;
+        const camber_raster_input inputs[] = {
+            {mesh, 0, end, 0, true}, {mesh, 0, end / 2, 2, false}, {mesh, end / 3, end, 4, true}};
+        camber_raster_scene drawn = {rows[0], 6, brushes, 4, inputs, 3, {0.2f, 0.3f, 0.4f, 1}, false};
+        const camber_raster_area area = {32 * (uint32_t)seed, 64, 300, 333};
+        uint8_t *plain = raster_draw_twice(f, &drawn, area);
+        drawn.brush_ext = nothing;
+        uint8_t *rich = raster_draw_twice(f, &drawn, area);
+        assert_memory_equal(plain, rich, 4 * (size_t)area.width * area.height);
+        camber_free(f->context, plain);
+        camber_free(f->context, rich);
+        for (size_t i = 0; i < sizeof pitches / sizeof *pitches; i++) {
+            raster_tilt(&drawn, pitches[i], SIDE_PX, SIDE_PX);
+            camber_free(f->context, raster_draw_twice(f, &drawn, area));
+        }
+        camber_mesh_destroy(mesh);
+        rings_free(&r);
+    }
+}
+
+/* ---- Pictures ---- */
+
+static picture draw_mesh(camber_renderer *renderer, camber_mesh *mesh, const camber_fill *fill, uint32_t side) {
+    const camber_paint paints[4] = {{.fill = fill}, {.fill = fill}, {.fill = fill}, {.fill = fill}};
+    const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 4};
+    const camber_frame frame = {.width = SIDE_PX,
+                                .height = SIDE_PX,
+                                .background = {1, 1, 1, 1},
+                                .passes = &pass,
+                                .pass_count = 1,
+                                .largest_area_px = side};
+    return picture_draw(renderer, &frame);
+}
+
+static picture draw_rings(const fixture *f, const rings *r, const camber_fill *fill, uint32_t side) {
+    camber_mesh *mesh = mesh_of(f, drawer(f), r, 4);
+    picture p = draw_mesh(drawer(f), mesh, fill, side);
+    camber_mesh_destroy(mesh);
+    return p;
+}
+
+/* Adds how often each ring, clockwise as seen, winds around the samples of a row, by where its edges cross that. */
+static void wind_samples(const rings *r, double y, int *windings) {
+    for (size_t k = 0; k < r->ring_count; k++) {
+        const size_t first = r->offsets[k], count = r->offsets[k + 1] - first;
+        double area = 0;
+        for (size_t i = 0; i < count; i++) {
+            const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1) % count);
+            area += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
+        }
+        for (size_t i = 0; i < count; i++) {
+            const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1) % count);
+            if (((double)a[1] <= y) == ((double)b[1] <= y))
+                continue;
+            const double t = (y - (double)a[1]) / ((double)b[1] - (double)a[1]);
+            const double x = (double)a[0] + t * ((double)b[0] - (double)a[0]);
+            const double sample = ceil(x * SAMPLES - 0.5);
+            const int at = sample < 0 ? 0 : sample > SIDE_PX * SAMPLES ? SIDE_PX * SAMPLES : (int)sample;
+            windings[at] += (b[1] > a[1] ? 1 : -1) * (area < 0 ? -1 : 1);
+        }
+    }
+}
+
+/* The share of each pixel that is inside. */
+static double *sample_rings(const rings *r, bool evenodd) {
+    double *truth = calloc(SIDE_PX * SIDE_PX, sizeof *truth);
+    int *windings = malloc((SIDE_PX * SAMPLES + 1) * sizeof *windings);
+    assert_true(truth && windings);
+    for (int row = 0; row < SIDE_PX * SAMPLES; row++) {
+        int winding = 0;
+        memset(windings, 0, (SIDE_PX * SAMPLES + 1) * sizeof *windings);
+        wind_samples(r, (row + 0.5) / SAMPLES, windings);
+        for (int i = 0; i < SIDE_PX * SAMPLES; i++) {
+            winding += windings[i];
+            if (evenodd ? winding % 2 != 0 : winding != 0)
+                truth[row / SAMPLES * SIDE_PX + i / SAMPLES] += 1.0 / (SAMPLES * SAMPLES);
+        }
+    }
+    free(windings);
+    return truth;
+}
+
+/* Mean and worst error, of 255, over pixels that are not all white. */
+static void judge(const char *what, const picture *p, const double *truth, double most_mean) {
+    double sum = 0, worst = 0;
+    size_t count = 0;
+    for (uint32_t y = 0; y < SIDE_PX; y++)
+        for (uint32_t x = 0; x < SIDE_PX; x++) {
+            const double share = truth[y * SIDE_PX + x];
+            const double off = fabs(255.0 * (1.0 - share) - 255.0 * picture_value(p, x, y, 0));
+            if (share <= 0 && off <= 0)
+                continue;
+            sum += off;
+            worst = off > worst ? off : worst;
+            count++;
+        }
+    printf("# %-36s %.4f of 255 on average, %.1f at most, %zu pixels\n", what, sum / (double)count, worst, count);
+    assert_true(count > 1000 && sum / (double)count <= most_mean);
+}
+
+static const camber_fill BLACK = {.color = {0, 0, 0, 1}};
+
+/* Apart from each other, overlapping each other and themselves, and tiny ones. */
+static void test_truth(void **state) {
+    const fixture *f = *state;
+    camber_fill evenodd = BLACK;
+    evenodd.rule = CAMBER_FILL_EVENODD;
+    rings apart = rings_begin(20000);
+    for (int i = 0; i < 400; i++)
+        add_star(&apart, 12.3 + 25 * (i % 20), 12.7 + 25 * (i / 20), 11, 3 + i % 8, 1, 0.1 * i, 0);
+    rings many = made_rings(5, 60, 200, 1);
+    const rings *all[] = {&apart, &many};
+    static const char *const names[] = {"apart", "overlapping"};
+    for (int i = 0; i < 2; i++)
+        for (int rule = 0; rule < 2; rule++) {
+            picture p = draw_rings(f, all[i], rule ? &evenodd : &BLACK, 0);
+            double *truth = sample_rings(all[i], rule);
+            char what[64];
+            snprintf(what, sizeof what, "%s, by %s", names[i], rule ? "even-odd" : "non-zero");
+            judge(what, &p, truth, i ? 0.5 : 0.15);
+            free(truth);
+            picture_free(&p);
+        }
+    rings_free(&apart);
+    rings_free(&many);
+}
+
+/* Ten thousand squares that meet, turned by any angle: a field of one colour, translucent too. */
+static void test_seams(void **state) {
+    const fixture *f = *state;
+    for (int i = 0; i < 12; i++) {
+        const double angle = 0.13 * i, cosine = cos(angle), sine = sin(angle), step = 7.3;
+        const float alpha = i % 2 ? 0.4f : 1.0f;
+        const camber_fill fill = {.color = {0.2f, 0.5f, 0.3f, alpha}};
+        rings r = rings_begin(40000);
+        for (int k = 0; k < 10000; k++) {
+            for (int corner = 0; corner < 4; corner++) {
+                const double u = step * (k % 100 + (corner == 1 || corner == 2) - 50);
+                const double v = step * (k / 100 + (corner >= 2) - 50);
+                add_point(&r, 250 + u * cosine - v * sine, 250 + u * sine + v * cosine);
+            }
+            end_ring(&r, 0);
+        }
+        picture p = draw_rings(f, &r, &fill, 0);
+        const uint8_t *middle = picture_at(&p, 250, 250);
+        for (uint32_t y = 20; y < SIDE_PX - 20; y++)
+            for (uint32_t x = 20; x < SIDE_PX - 20; x++)
+                if (hypot((double)x - 250, (double)y - 250) < 230)
+                    assert_memory_equal(picture_at(&p, x, y), middle, 4);
+        picture_free(&p);
+        rings_free(&r);
+    }
+}
+
+/* ---- The same bytes ---- */
+
+static void test_cut_pictures(void **state) {
+    const fixture *f = *state;
+    static const uint32_t sides[] = {33, 64, 320, 499};
+    rings r = made_rings(9, 4000, 40, 2);
+    picture whole = draw_rings(f, &r, &BLACK, 0);
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+        picture p = draw_rings(f, &r, &BLACK, sides[i]);
+        picture_assert_same(&whole, &p);
+        picture_free(&p);
+    }
+    static const uint64_t largest[] = {1024 * 1024, 300 * 1024, 140 * 1024};
+    uint32_t most = 0;
+    for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
+        const camber_device_desc desc = {.largest_buffer_bytes = largest[i]};
+        fixture small = {.context = f->context};
+        assert_int_equal(camber_device_create(f->context, &desc, &small.on.device), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                         CAMBER_OK);
+        picture p = draw_rings(&small, &r, &BLACK, 0);
+        const uint32_t slices = camber_raster_slice_count(drawer(&small)->raster);
+        most = slices > most ? slices : most;
+        picture_assert_same(&whole, &p);
+        picture_free(&p);
+        camber_renderer_destroy(drawer(&small));
+        camber_device_destroy(small.on.device);
+    }
+    printf("# %u slices at most\n", most);
+    assert_true(most > 3);
+    picture_free(&whole);
+    rings_free(&r);
+}
+
+/* ---- Cameras ---- */
+
+/* A network of the rings, seen from where a px is a unit and the picture's corner lies at 0, 0. */
+static picture draw_network(const fixture *f, const rings *r, double pitch_deg) {
+    double *points = malloc(2 * (r->point_count + r->ring_count) * sizeof *points);
+    size_t *offsets = malloc((r->ring_count + 1) * sizeof *offsets), count = 0;
+    camber_network_entry *entries = calloc(r->ring_count, sizeof *entries);
+    assert_true(points && offsets && entries);
+    for (size_t k = 0; k < r->ring_count; k++) {
+        double area = 0;
+        const size_t first = r->offsets[k], size = r->offsets[k + 1] - first;
+        for (size_t i = 0; i < size; i++) {
+            const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1) % size);
+            area += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
+        }
+        offsets[k] = count;
+        entries[k] = (camber_network_entry){.polyline = (uint32_t)k, .is_area = true};
+        for (size_t i = 0; i <= size; i++) {
+            const float *p = r->points + 2 * (first + (area < 0 ? size - i : i) % size);
+            points[2 * count] = (double)p[0];
+            points[2 * count++ + 1] = (double)p[1];
+        }
+    }
+    offsets[r->ring_count] = count;
+    const camber_network_desc desc = {.points = points,
+                                      .offsets = offsets,
+                                      .polyline_count = r->ring_count,
+                                      .entries = entries,
+                                      .entry_count = r->ring_count};
+    const camber_camera camera = {.x = 0.5 * SIDE_PX,
+                                  .y = 0.5 * SIDE_PX,
+                                  .scale_px = 1,
+                                  .width = SIDE_PX,
+                                  .height = SIDE_PX,
+                                  .pitch_deg = pitch_deg};
+    const camber_stroke stroke = {.width_px = 0};
+    const camber_tessellation_desc how = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
+    camber_network *network = NULL;
+    camber_mesh *mesh = NULL;
+    assert_int_equal(camber_network_create(f->context, &desc, &network), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(f->on.device, drawer(f), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &how), CAMBER_OK);
+    picture p = draw_mesh(drawer(f), mesh, &BLACK, 0);
+    camber_mesh_destroy(mesh);
+    camber_network_destroy(network);
+    free(entries);
+    free(offsets);
+    free(points);
+    return p;
+}
+
+/* What the camera cuts off must not show: the picture is that of the whole rings, to what rounding to steps does. */
+static void test_cameras(void **state) {
+    const fixture *f = *state;
+    for (uint64_t seed = 20; seed < 26; seed++) {
+        rings r = made_rings(seed, seed % 2 ? 4 : 40, seed % 2 ? 3000 : 200, 1);
+        picture cut = draw_network(f, &r, 0), whole = draw_rings(f, &r, &BLACK, 0);
+        const difference apart = picture_compare(&cut, &whole);
+        printf("# cut by a camera: %.4f of 255 on average, %d at most\n", apart.mean, apart.most);
+        assert_true(apart.mean < 0.02 && apart.most <= 2);
+        picture_free(&cut);
+        picture_free(&whole);
+        rings_free(&r);
+    }
+}
+
+/* With a pitch, far and near: a field that is larger than all that is seen has one colour up to the far plane. */
+static void test_pitched_field(void **state) {
+    const fixture *f = *state;
+    for (int i = 0; i < 4; i++) {
+        rings r = rings_begin(100);
+        add_star(&r, 250, 250, 400000, 40, 1, 0.1 * i, 0);
+        picture p = draw_network(f, &r, 20.0 * (i + 1));
+        const uint8_t black[4] = {0, 0, 0, 255};
+        for (uint32_t y = SIDE_PX / 2; y < SIDE_PX; y++)
+            for (uint32_t x = 0; x < SIDE_PX; x++)
+                assert_memory_equal(picture_at(&p, x, y), black, 4);
+        picture_free(&p);
+        rings_free(&r);
+    }
+}
+
+/* ---- Input ---- */
+
+static void test_input(void **state) {
+    const fixture *f = *state;
+    const float points[] = {10, 10, 90, 10, 90, 90, 10, 90, NAN, 3, 30, 30, 60, 30, 60, 60, 30, 60, 30, 30};
+    const uint32_t offsets[] = {0, 5, 10}, rings_of[] = {0, 2}, wrong[] = {0, 3}, back[] = {0, 5, 4};
+    camber_areas_desc desc = {
+        .points = points, .point_count = 10, .offsets = offsets, .ring_count = 2, .rings = rings_of, .area_count = 1};
+    camber_polylines *areas = NULL;
+    assert_int_equal(camber_areas_create(f->context, &desc, &areas), CAMBER_OK);
+    const camber_polylines_stats stats = camber_polylines_get_stats(areas);
+    assert_int_equal(stats.rings, 2);
+    camber_polylines_destroy(areas);
+    areas = NULL;
+    desc.rings = wrong;
+    assert_int_equal(camber_areas_create(f->context, &desc, &areas), CAMBER_ERROR_INPUT);
+    desc.rings = rings_of;
+    desc.offsets = back;
+    assert_int_equal(camber_areas_create(f->context, &desc, &areas), CAMBER_ERROR_INPUT);
+    assert_null(areas);
+    assert_int_equal(camber_areas_create(f->context, &(camber_areas_desc){0}, &areas), CAMBER_OK);
+    camber_polylines_destroy(areas);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_twin),         cmocka_unit_test(test_truth),   cmocka_unit_test(test_seams),
+        cmocka_unit_test(test_cut_pictures), cmocka_unit_test(test_cameras), cmocka_unit_test(test_pitched_field),
+        cmocka_unit_test(test_input),
+    };
+    return FIXTURE_CL_RUN(tests);
+}

@@ -264,7 +264,7 @@ CAMBER_FN void camber_area_add_edge(camber_tile_state *c, CAMBER_GLOBAL const fl
         camber_area_add_rows(c, &e, first, end);
 }
 
-/* ---- What is inside ---- */
+/* ---- The inside ---- */
 
 /* How much of a pixel is inside, by the sum of its windings. */
 CAMBER_FN float camber_area_inside(float sum, camber_u32 mode) {

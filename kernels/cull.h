@@ -333,9 +333,8 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
 #endif
 }
 
-/* What an area's segment does left of the window still changes how often its ring winds around what is in the window.
- * That part is put as a line along the window's left side, from where the segment crosses that to the height of its
- * end:
+/* Left of the window an area's segment still changes how often its ring winds around what is in the window. That part
+ * is put as a line along the window's left side, from where the segment crosses that to the height of its end:
  *
  *     A1----------+---A2           A1'---+
  *      \          | window          |    |     A1' lies on the left side, as high as A1. Points of the ring left of

@@ -173,7 +173,7 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
     const camber_real x1 = (CAMBER_MORE(s->ax, s->bx) + s->reach - inset) * a_tile - from_x;
     const camber_real y0 = (CAMBER_LESS(s->ay, s->by) - s->reach + inset) * a_tile - from_y;
     const camber_real y1 = (CAMBER_MORE(s->ay, s->by) + s->reach - inset) * a_tile - from_y;
-    /* What lies left of the area still changes the winding of its tiles. */
+    /* An edge left of the area still changes the winding of its tiles. */
     const camber_real far = s->half_width == CAMBER_EDGE_PX ? CAMBER_MORE(x1, none) : x1;
     const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (far >= 0.0f) & (y1 >= 0.0f);
     const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);

@@ -565,9 +565,9 @@ typedef struct camber_image {
 
 #define CAMBER_IMAGE_SIDE_MAX 16384
 
-/* What lies inside of rings, by how often they wind around it: clockwise as seen counts 1, the other way -1. */
+/* A point is inside of rings by how often they wind around it: clockwise as seen counts 1, the other way -1. */
 typedef enum camber_fill_rule {
-    CAMBER_FILL_NONZERO = 0, /* a number of times that is not 0, in sum */
+    CAMBER_FILL_NONZERO = 0, /* a number of times that is not 0 in sum */
     CAMBER_FILL_EVENODD,     /* an odd number of times */
 } camber_fill_rule;
 

@@ -2,6 +2,7 @@
  *
  *     gl_frame.c     areas of a frame, one after the other, waited for and read back
  *     gl_commands.c  the list's commands in one area
+ *     gl_areas.c     areas, which kernels fill
  *     gl_batch.c     polylines in as few draw calls as the driver takes them in
  *     gl_rows.c      the row texture: what the stroke shader knows of rows
  *     gl_atlas.c     the texture of images
@@ -117,6 +118,12 @@ void camber_gl_drop_fence(camber_renderer *renderer, struct camber_flight *fligh
 /* ---- gl_commands.c ---- */
 
 camber_status camber_gl_draw_commands(camber_renderer *renderer, const camber_gl_area *area);
+
+/* ---- gl_areas.c ---- */
+
+/* Draws commands of areas into the layer of colours, on nothing. The layer is bound, as large as the area. */
+camber_status camber_gl_fill_layer(camber_renderer *renderer, const camber_draw_command *first,
+                                   const camber_draw_command *end, const camber_gl_area *area);
 
 /* ---- gl_batch.c ---- */
 

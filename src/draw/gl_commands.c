@@ -143,6 +143,20 @@ static camber_status draw_fill(camber_renderer *renderer, const camber_draw_comm
     return status == CAMBER_OK ? flatten(renderer, -1, kind, color, area) : status;
 }
 
+/* ---- Areas ---- */
+
+/* Draws commands of areas that follow each other. */
+static camber_status draw_areas(camber_renderer *renderer, const camber_draw_command *first,
+                                const camber_draw_command *end, const camber_gl_area *area) {
+    const float whole[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    camber_status status = camber_batch_draw(renderer, 0, area); /* it lies below */
+    if (status == CAMBER_OK)
+        status = camber_target_bind(renderer, CAMBER_TARGET_LAYER, (GLsizei)area->width, (GLsizei)area->height);
+    if (status == CAMBER_OK)
+        status = camber_gl_fill_layer(renderer, first, end, area);
+    return status == CAMBER_OK ? flatten(renderer, CAMBER_TARGET_LAYER, CAMBER_FLATTEN_COLORS, whole, area) : status;
+}
+
 /* ---- Commands ---- */
 
 static camber_status draw_command(camber_renderer *renderer, const camber_draw_command *command,
@@ -159,8 +173,14 @@ static camber_status draw_command(camber_renderer *renderer, const camber_draw_c
 static camber_status draw_commands(camber_renderer *renderer, const camber_draw_command *first,
                                    const camber_draw_command *end, const camber_gl_area *area) {
     camber_status status = CAMBER_OK;
-    for (; first < end && status == CAMBER_OK; first++)
-        status = draw_command(renderer, first, area);
+    for (const camber_draw_command *next; first < end && status == CAMBER_OK; first = next) {
+        for (next = first; next < end && next->composite == CAMBER_COMPOSITE_AREA; next++)
+            continue;
+        if (next > first)
+            status = draw_areas(renderer, first, next, area);
+        else
+            status = draw_command(renderer, next++, area);
+    }
     return status;
 }
 

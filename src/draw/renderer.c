@@ -64,6 +64,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     else
         camber_renderer_drop_flights(renderer, false);
     camber_raster_destroy(renderer->raster);
+    camber_raster_destroy(renderer->areas);
     camber_draw_list_free(&renderer->list);
     camber_free(context, renderer);
 }

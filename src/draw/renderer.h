@@ -30,6 +30,7 @@ struct camber_renderer {
     camber_draw_list list;         /* of the frame that is being drawn */
     /* Draws in OpenCL; GL only brings its pixels into textures then. NULL: GL draws. */
     struct camber_raster *raster;
+    struct camber_raster *areas; /* fills areas where GL draws the rest. NULL: none so far */
     camber_buffer pixels; /* that the rasterizer writes and GL reads */
     camber_gl_drawing gl; /* what GL draws with. Without a surface nothing */
     camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];

@@ -300,6 +300,44 @@ static void test_cut_pictures(void **state) {
     rings_free(&r);
 }
 
+/* ---- GL ---- */
+
+/* Kernels fill areas there, too: what differs is the rounding of their layer, and of a group. */
+static void test_gl(void **state) {
+    const fixture *f = *state;
+    static const uint8_t texels[16] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 100, 100, 0, 128};
+    const camber_image image = {texels, 2, 2, 0};
+    const camber_fill fills[] = {{.color = {0.1f, 0.6f, 0.4f, 0.5f}}, {.color = {0, 0, 0, 1}, .image = &image}};
+    if (!fixture_gl(f))
+        skip();
+    for (int i = 0; i < 4; i++) {
+        rings r = made_rings(40 + (uint64_t)i, 100, 200, 1);
+        picture p[2];
+        for (int gl = 0; gl < 2; gl++) {
+            camber_renderer *renderer = gl ? fixture_gl(f) : drawer(f);
+            camber_mesh *mesh = mesh_of(f, renderer, &r, 1);
+            const camber_paint paint = {.fill = fills + i % 2};
+            const camber_pass passes[] = {
+                {.mesh = mesh, .paints = &paint, .paint_count = 1, .opacity = i < 2 ? 0.0f : 0.6f},
+                {.mesh = mesh, .paints = &paint, .paint_count = 1, .first_polyline = 50}};
+            const camber_frame frame = {.width = SIDE_PX,
+                                        .height = SIDE_PX,
+                                        .background = {1, 1, 1, 1},
+                                        .passes = passes,
+                                        .pass_count = 2,
+                                        .largest_area_px = i == 3 ? 211 : 0};
+            p[gl] = picture_draw(renderer, &frame);
+            camber_mesh_destroy(mesh);
+        }
+        const difference apart = picture_compare(p, p + 1);
+        printf("# GL: %.4f of 255 on average, %d at most\n", apart.mean, apart.most);
+        assert_true(apart.drawn > 1000 && apart.most <= 2);
+        picture_free(p);
+        picture_free(p + 1);
+        rings_free(&r);
+    }
+}
+
 /* ---- Cameras ---- */
 
 /* A network of the rings, seen from where a px is a unit and the picture's corner lies at 0, 0. */
@@ -351,7 +389,7 @@ static picture draw_network(const fixture *f, const rings *r, double pitch_deg) 
     return p;
 }
 
-/* What the camera cuts off must not show: the picture is that of the whole rings, to what rounding to steps does. */
+/* The camera cuts off what must not show: the picture is that of the whole rings, to what rounding to steps does. */
 static void test_cameras(void **state) {
     const fixture *f = *state;
     for (uint64_t seed = 20; seed < 26; seed++) {
@@ -410,7 +448,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_twin),         cmocka_unit_test(test_truth),   cmocka_unit_test(test_seams),
         cmocka_unit_test(test_cut_pictures), cmocka_unit_test(test_cameras), cmocka_unit_test(test_pitched_field),
-        cmocka_unit_test(test_input),
+        cmocka_unit_test(test_input),        cmocka_unit_test(test_gl),
     };
     return FIXTURE_CL_RUN(tests);
 }

@@ -148,9 +148,10 @@ static void test_ways(void **state) {
     static const char *const twice[] = {"name", "A", "name", "B", "highway", "path", NULL};
     static const char *const strange[] = {"", "", "bridge", "", NULL};
     fixture *it = *state;
-    for (int style = 0; style < 3; style++) {
+    for (int style = 0; style < 5; style++) {
         begin(it);
-        it->on.style.wants_polygons = style == 1;
+        it->on.style.wants_polygons = style % 3 == 1;
+        it->on.style.wants_areas = style >= 3;
         if (style == 2)
             use_style(it, nothing, 2);
         WAY(it, street, 10, 11, 12);
@@ -172,7 +173,7 @@ static void test_ways(void **state) {
         WAY(it, street, 22, 21);             /* from the antimeridian */
         WAY(it, street, 21, 20, 10, 11, 12); /* and on */
         const size_t count = finish(it, true);
-        assert_int_equal(count, style == 1 ? 14 : 12);
+        assert_int_equal(count, (style % 3 == 1 ? 14 : 12) + (style >= 3 ? 2 : 0)); /* two areas */
     }
 }
 

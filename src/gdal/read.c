@@ -33,10 +33,13 @@ typedef struct reader {
     camber_features_stats stats; /* counts of this file */
     char damage[512];            /* a message about the first damage */
     size_t read;                 /* features of the layer so far */
-    bool areas_only;             /* the layer is read for what relations make of ways alone */
-    bool boxed;                  /* the layer is read by its index, for a region */
-    bool failed;                 /* OGR reported a failure with the last feature */
-    size_t passed;               /* features of all layers so far */
+    /* OSM's layer of what relations make of ways, which is read along with the lines for its areas. NULL: it is not */
+    OGRLayerH relations;
+    uint32_t relations_index;
+    camber_columns relation_columns;
+    bool boxed;    /* the layer is read by its index, for a region */
+    bool failed;   /* OGR reported a failure with the last feature */
+    size_t passed; /* features of all layers so far */
     double shown_ms;
 } reader;
 
@@ -61,6 +64,28 @@ static camber_status begin_layer(reader *self, int index) {
         return CAMBER_ERROR_ARGUMENT;
     OGR_L_ResetReading(self->layer);
     return CAMBER_OK;
+}
+
+/* Tells the OSM driver what is read: it skips what belongs to its other layers, which is twice as fast. Its features of
+ * all layers come in one stream. */
+static camber_status begin_osm(reader *self, const int *layers, size_t count) {
+    GDALDatasetH handle = self->dataset.handle;
+    char names[64] = "";
+    for (size_t i = 0; i < count; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? "," : "",
+                 OGR_L_GetName(GDALDatasetGetLayer(handle, layers[i])));
+    GDALDatasetReleaseResultSet(
+        handle, GDALDatasetExecuteSQL(handle, CPLSPrintf("SET interest_layers = %s", names), NULL, NULL));
+    if (count < 2)
+        return CAMBER_OK;
+    self->relations = GDALDatasetGetLayer(handle, layers[1]);
+    if (self->desc->where)
+        OGR_L_SetAttributeFilter(self->relations, self->desc->where); /* the lines tell whether it fits */
+    const camber_status status =
+        camber_features_find_layer(self->features, OGR_L_GetName(self->relations), &self->relations_index);
+    return status == CAMBER_OK ? camber_columns_find(&self->relation_columns, self->features,
+                                                     OGR_L_GetLayerDefn(self->relations), false, false)
+                               : status;
 }
 
 /* ---- One feature ---- */
@@ -88,9 +113,15 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
 }
 
+static bool is_relation(const reader *self, OGRFeatureH feature) {
+    return self->relations && OGR_F_GetDefnRef(feature) == OGR_L_GetLayerDefn(self->relations);
+}
+
 static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
+    const bool relation = is_relation(self, feature);
     uint32_t index;
-    camber_status status = camber_columns_class(&self->columns, feature, self->layer_index, kind, &index);
+    camber_status status = camber_columns_class(relation ? &self->relation_columns : &self->columns, feature,
+                                                relation ? self->relations_index : self->layer_index, kind, &index);
     if (status != CAMBER_OK)
         return status;
     if (self->stitcher) {
@@ -133,8 +164,9 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     lines->left_out = !geometry && !failed;
     lines->damaged = failed;
-    const bool area = geometry && camber_columns_is_area(&self->columns, feature, geometry);
-    const bool wanted[CAMBER_GEOMETRY_KINDS] = {!area && !self->areas_only, lines->wants_polygons && !self->areas_only,
+    const bool relation = is_relation(self, feature);
+    const bool area = geometry && !relation && camber_columns_is_area(&self->columns, feature, geometry);
+    const bool wanted[CAMBER_GEOMETRY_KINDS] = {!area && !relation, lines->wants_polygons && !relation,
                                                 lines->wants_areas};
     camber_status status = CAMBER_OK;
     for (int kind = 0; geometry && kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
@@ -317,21 +349,9 @@ static void warn_where(const reader *self) {
                    self->desc->where);
 }
 
-/* The driver then skips what belongs to its other layers: twice as fast. */
-static void begin_interest(const reader *self, int layer) {
-    GDALDatasetH handle = self->dataset.handle;
-    const char *name = OGR_L_GetName(GDALDatasetGetLayer(handle, layer));
-    GDALDatasetResetReading(handle);
-    GDALDatasetReleaseResultSet(
-        handle, GDALDatasetExecuteSQL(handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
-}
-
 static camber_status read_layers(reader *self, const int *layers, size_t count, bool *unsorted) {
     bool any = false;
     for (size_t i = 0; i < count; i++) {
-        if (self->dataset.osm)
-            begin_interest(self, layers[i]);
-        self->areas_only = self->dataset.osm && i > 0;
         camber_status status = begin_layer(self, layers[i]);
         if (status == CAMBER_ERROR_ARGUMENT && count > 1)
             continue;
@@ -414,7 +434,10 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
                                          .wants_areas = style->wants_areas,
                                          .rings.stats = &self->features->stats,
                                          .directed = style->directed};
-    status = read_layers(self, layers, count, unsorted);
+    if (self->dataset.osm)
+        status = begin_osm(self, layers, count);
+    if (status == CAMBER_OK)
+        status = read_layers(self, layers, self->dataset.osm ? 1 : count, unsorted);
     if (status == CAMBER_OK && self->stitcher)
         status = camber_tile_stitcher_finish(self->stitcher, self->features);
     if (status == CAMBER_OK)
@@ -431,6 +454,7 @@ done:
 static void close_reader(reader *self) {
     camber_feature_lines_free(&self->lines);
     camber_tile_stitcher_destroy(self->stitcher);
+    camber_columns_free(&self->relation_columns, self->context);
     camber_columns_free(&self->columns, self->context);
     camber_dataset_close(&self->dataset);
 }

@@ -72,7 +72,7 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
         rings->stats->closed_rings++;
         memcpy(points + 2 * count++, points, 2 * sizeof *points);
     }
-    rings->stats->turned_rings += hole && area * rings->outer_area > 0.0;
+    rings->stats->turned_rings += hole && !rings->any_winding && area * rings->outer_area > 0.0;
     if (hole ? area > 0.0 : area < 0.0)
         camber_ring_turn(points, count);
     return count;

@@ -10,6 +10,7 @@
 /* A reader keeps this while it takes the rings of one area after the other. */
 typedef struct camber_rings {
     camber_features_stats *stats;
+    bool any_winding;  /* the format has no rule how rings wind */
     double outer_area; /* of the last outer ring as it was read. 0: it was left out */
 } camber_rings;
 

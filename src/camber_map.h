@@ -138,13 +138,19 @@ typedef struct camber_features_stats {
     size_t features;         /* read, lines kept */
     size_t polylines;        /* kept, after parts were split, tile pieces joined and lines merged */
     size_t points;           /* kept */
-    size_t skipped_features; /* points, and polygons where no layer of the style wants outlines */
+    size_t skipped_features; /* points, and polygons where no layer of the style draws them */
     size_t damaged_features; /* that came with a failure, or whose geometry does not parse */
     size_t invalid_points;   /* dropped: NaN or infinite */
     size_t clamped_points;   /* moved to latitude 85.051129 */
     size_t antimeridian_splits;
     size_t joined_pieces;    /* vector tiles: pieces of one feature joined at a tile border */
     size_t merged_polylines; /* so many polylines fewer, for lines were merged end to end */
+    /* The next are of areas, where a layer of the style fills them. */
+    size_t closed_rings;   /* did not end where they begin, and were closed */
+    size_t turned_rings;   /* wound the wrong way: holes as their outer ring does, or all rings of a tile's area */
+    size_t empty_rings;    /* left out: fewer than three different points, or all of them on one line */
+    size_t open_relations; /* multipolygons of OpenStreetMap of which ways are missing: rings that do not close are left
+                              out */
 } camber_features_stats;
 
 /* Sums over the files. */
@@ -227,10 +233,10 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
-/* Reads the sources that the style's line layers name, in place of files. Sources of type vector give the tiles that
- * the view sees: their tiles or url name files by a template, TileJSON, MBTiles or PMTiles. Tiles are 512 CSS px wide,
- * and are of the zoom that the view's zoom asks for, within the source's. Sources of type geojson are read whole. A
- * tile that is missing is empty; damage is counted and warned of.
+/* Reads the sources that the style's line and fill layers name, in place of files. Sources of type vector give the
+ * tiles that the view sees: their tiles or url name files by a template, TileJSON, MBTiles or PMTiles. Tiles are 512
+ * CSS px wide, and are of the zoom that the view's zoom asks for, within the source's. Sources of type geojson are read
+ * whole. A tile that is missing is empty; damage is counted and warned of.
  * Lines that the style cannot tell apart become one where they go on almost straight, unless the style names what
  * follows a line's direction.
  * view says which tiles; for another view read into another set. A view that fits is that of the sources' bounds, or

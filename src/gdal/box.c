@@ -162,6 +162,7 @@ static camber_status add(box_reader *self, OGRFeatureH feature) {
         f->feature_count = before.feature_count;
         f->polyline_count = before.polyline_count;
         f->point_count = before.point_count;
+        f->stats = before.stats;
         return CAMBER_OK;
     }
     if (!take(self, number) || !camber_grow(self->context, &self->keys, &self->key_capacity,

@@ -7,7 +7,7 @@
 /* How many features are examined to learn what a layer of no declared type holds. */
 enum { PEEKED_FEATURES = 32 };
 
-static bool holds_lines(OGRwkbGeometryType type, bool wants_polygons) {
+static bool holds_lines(OGRwkbGeometryType type, const camber_style *style) {
     switch (wkbFlatten(type)) {
     case wkbUnknown:
     case wkbLineString:
@@ -24,7 +24,7 @@ static bool holds_lines(OGRwkbGeometryType type, bool wants_polygons) {
     case wkbSurface:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbTriangle: return wants_polygons;
+    case wkbTriangle: return style->wants_polygons || style->wants_areas;
     default: return false;
     }
 }
@@ -94,10 +94,10 @@ static camber_status fail_layer(const camber_dataset *dataset) {
                        dataset->desc->path, count ? names : "(none)");
 }
 
-camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count) {
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style *style, int **layers, size_t *count) {
     GDALDatasetH handle = dataset->handle;
     const int total = GDALDatasetGetLayerCount(handle);
-    int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1), sizeof *chosen);
+    int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1) + 1, sizeof *chosen);
     if (!chosen)
         return CAMBER_ERROR_MEMORY;
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(handle));
@@ -111,9 +111,12 @@ camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons
         one = find_roads(handle);
     else
         for (int i = 0; i < total; i++)
-            if (holds_lines(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), wants_polygons))
+            if (holds_lines(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), style))
                 chosen[found++] = i;
     if (one >= 0)
+        chosen[found++] = one;
+    /* Closed ways are among the lines; what relations make of ways is in a layer of its own. */
+    if (dataset->osm && !dataset->desc->layer && style->wants_areas && (one = find_layer(handle, "multipolygons")) >= 0)
         chosen[found++] = one;
     if (found == 0) {
         camber_free(dataset->context, chosen);

@@ -178,6 +178,32 @@ static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry
     return CAMBER_OK;
 }
 
+static camber_status add_ring(camber_feature_lines *lines, OGRGeometryH geometry, bool hole) {
+    camber_world_lines *world = &lines->world;
+    const int points = OGR_G_GetPointCount(geometry);
+    if (points <= 0) {
+        lines->left_out = true;
+        return CAMBER_OK;
+    }
+    const size_t fetched = (size_t)points, first = world->point_count;
+    if (!fetch(lines, geometry, fetched))
+        return CAMBER_ERROR_MEMORY;
+    lines->raw_points += fetched;
+    for (size_t i = 0; i < fetched; i++)
+        lines->invalid_points += !add_point(lines, lines->raw[i], lines->raw[fetched + i]);
+    double *ring = world->points + 2 * first;
+    size_t count = world->point_count - first;
+    bool crosses = false;
+    if (!world->whole)
+        count = camber_ring_unroll(ring, count, &crosses);
+    world->antimeridian_splits += crosses;
+    count = camber_rings_take(&lines->rings, ring, count, hole);
+    world->point_count = first + count;
+    world->open = count > 0;
+    camber_world_lines_end(world);
+    return CAMBER_OK;
+}
+
 /* ---- Any geometry ---- */
 
 static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
@@ -194,10 +220,13 @@ static camber_status collect_members(camber_feature_lines *lines, OGRGeometryH g
     return CAMBER_OK;
 }
 
-static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH polygon) {
+static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH polygon, camber_geometry_kind kind) {
     const int count = OGR_G_GetGeometryCount(polygon);
     for (int i = 0; i < count; i++) {
-        const camber_status status = add_line(lines, OGR_G_GetGeometryRef(polygon, i), lines->directed ? i == 0 : -1);
+        OGRGeometryH ring = OGR_G_GetGeometryRef(polygon, i);
+        const camber_status status = kind == CAMBER_GEOMETRY_AREA
+                                         ? add_ring(lines, ring, i > 0)
+                                         : add_line(lines, ring, lines->directed ? i == 0 : -1);
         if (status != CAMBER_OK)
             return status;
     }
@@ -230,9 +259,9 @@ static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry,
     case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(lines, geometry, -1) : CAMBER_OK;
     case wkbPolygon:
     case wkbTriangle:
-        if (kind == CAMBER_GEOMETRY_POLYGON)
-            return collect_rings(lines, geometry);
-        lines->left_out |= !lines->wants_polygons;
+        if (kind != CAMBER_GEOMETRY_LINE)
+            return collect_rings(lines, geometry, kind);
+        lines->left_out |= !lines->wants_polygons && !lines->wants_areas;
         return CAMBER_OK;
     case wkbMultiLineString:
     case wkbMultiPolygon:
@@ -246,5 +275,12 @@ static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry,
 camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
                                            camber_geometry_kind kind) {
     camber_world_lines_begin(&lines->world);
+    lines->world.uncut = kind == CAMBER_GEOMETRY_AREA;
     return collect(lines, geometry, kind, 0);
+}
+
+camber_status camber_feature_lines_collect_ring(camber_feature_lines *lines, OGRGeometryH line) {
+    camber_world_lines_begin(&lines->world);
+    lines->world.uncut = true;
+    return add_ring(lines, line, false);
 }

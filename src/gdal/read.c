@@ -33,9 +33,13 @@ typedef struct reader {
     camber_features_stats stats; /* counts of this file */
     char damage[512];            /* a message about the first damage */
     size_t read;                 /* features of the layer so far */
-    bool boxed;                  /* the layer is read by its index, for a region */
-    bool failed;                 /* OGR reported a failure with the last feature */
-    size_t passed;               /* features of all layers so far */
+    /* OSM's layer of what relations make of ways, which is read along with the lines for its areas. NULL: it is not */
+    OGRLayerH relations;
+    uint32_t relations_index;
+    camber_columns relation_columns;
+    bool boxed;    /* the layer is read by its index, for a region */
+    bool failed;   /* OGR reported a failure with the last feature */
+    size_t passed; /* features of all layers so far */
     double shown_ms;
 } reader;
 
@@ -60,6 +64,28 @@ static camber_status begin_layer(reader *self, int index) {
         return CAMBER_ERROR_ARGUMENT;
     OGR_L_ResetReading(self->layer);
     return CAMBER_OK;
+}
+
+/* Tells the OSM driver what is read: it skips what belongs to its other layers, which is twice as fast. Its features of
+ * all layers come in one stream. */
+static camber_status begin_osm(reader *self, const int *layers, size_t count) {
+    GDALDatasetH handle = self->dataset.handle;
+    char names[64] = "";
+    for (size_t i = 0; i < count; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? "," : "",
+                 OGR_L_GetName(GDALDatasetGetLayer(handle, layers[i])));
+    GDALDatasetReleaseResultSet(
+        handle, GDALDatasetExecuteSQL(handle, CPLSPrintf("SET interest_layers = %s", names), NULL, NULL));
+    if (count < 2)
+        return CAMBER_OK;
+    self->relations = GDALDatasetGetLayer(handle, layers[1]);
+    if (self->desc->where)
+        OGR_L_SetAttributeFilter(self->relations, self->desc->where); /* the lines tell whether it fits */
+    const camber_status status =
+        camber_features_find_layer(self->features, OGR_L_GetName(self->relations), &self->relations_index);
+    return status == CAMBER_OK ? camber_columns_find(&self->relation_columns, self->features,
+                                                     OGR_L_GetLayerDefn(self->relations), false, false)
+                               : status;
 }
 
 /* ---- One feature ---- */
@@ -87,13 +113,20 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
 }
 
+static bool is_relation(const reader *self, OGRFeatureH feature) {
+    return self->relations && OGR_F_GetDefnRef(feature) == OGR_L_GetLayerDefn(self->relations);
+}
+
 static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
+    const bool relation = is_relation(self, feature);
     uint32_t index;
-    camber_status status = camber_columns_class(&self->columns, feature, self->layer_index, kind, &index);
+    camber_status status = camber_columns_class(relation ? &self->relation_columns : &self->columns, feature,
+                                                relation ? self->relations_index : self->layer_index, kind, &index);
     if (status != CAMBER_OK)
         return status;
     if (self->stitcher) {
-        camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
+        camber_tile_feature tile = {
+            .class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON, .area = kind == CAMBER_GEOMETRY_AREA};
         find_tile(self, feature, &tile);
         tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
         const camber_tile_lines lines = {self->lines.world.points, self->lines.world.ends,
@@ -110,25 +143,40 @@ static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_g
     return status;
 }
 
+/* Collects what a feature has of a kind. way: its geometry is the ring of an area, which is a line to OGR. */
+static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometry_kind kind, bool way) {
+    camber_feature_lines *lines = &self->lines;
+    if (kind != CAMBER_GEOMETRY_AREA)
+        return camber_feature_lines_collect(lines, geometry, way ? CAMBER_GEOMETRY_LINE : kind);
+    const size_t invalid = lines->invalid_points, clamped = lines->world.clamped_points;
+    const camber_status status =
+        way ? camber_feature_lines_collect_ring(lines, geometry) : camber_feature_lines_collect(lines, geometry, kind);
+    if (lines->wants_polygons) { /* then they were counted with the outlines */
+        lines->invalid_points = invalid;
+        lines->world.clamped_points = clamped;
+    }
+    return status;
+}
+
 /* failed: OGR reported a failure with this feature. */
 static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
     camber_feature_lines *lines = &self->lines;
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     lines->left_out = !geometry && !failed;
     lines->damaged = failed;
-    const bool area = geometry && camber_columns_is_area(&self->columns, feature, geometry);
+    const bool relation = is_relation(self, feature);
+    const bool area = geometry && !relation && camber_columns_is_area(&self->columns, feature, geometry);
+    const bool wanted[CAMBER_GEOMETRY_KINDS] = {!area && !relation, lines->wants_polygons && !relation,
+                                                lines->wants_areas};
     camber_status status = CAMBER_OK;
-    for (int kind = 0; geometry && kind < 2 && status == CAMBER_OK; kind++) {
-        const bool wanted = kind == CAMBER_GEOMETRY_LINE ? !area : lines->wants_polygons;
-        if (!wanted)
+    for (int kind = 0; geometry && kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
+        if (!wanted[kind])
             continue;
-        /* An area's ring is a line to OGR. */
-        const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
-        status = camber_feature_lines_collect(lines, geometry, collected);
+        status = collect(self, geometry, (camber_geometry_kind)kind, area);
         if (status == CAMBER_OK && lines->world.line_count)
             status = add_to_features(self, feature, (camber_geometry_kind)kind);
     }
-    self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons);
+    self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons && !lines->wants_areas);
     self->stats.damaged_features += lines->damaged;
     if (lines->damaged && self->damage[0] == 0)
         snprintf(self->damage, sizeof self->damage, "%s",
@@ -375,23 +423,21 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     const size_t features_before = self->features->feature_count;
     int *layers = NULL;
     size_t count = 0;
-    camber_status status = camber_dataset_layers(&self->dataset, style->wants_polygons, &layers, &count);
+    camber_status status = camber_dataset_layers(&self->dataset, style, &layers, &count);
     if (status == CAMBER_OK && self->dataset.zoom >= 0)
         status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->stitcher);
     if (status != CAMBER_OK)
         goto done;
-    if (self->dataset.osm) {
-        /* The driver then skips what belongs to its other layers: twice as fast. */
-        const char *name = OGR_L_GetName(GDALDatasetGetLayer(self->dataset.handle, layers[0]));
-        GDALDatasetReleaseResultSet(
-            self->dataset.handle,
-            GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
-    }
     self->lines = (camber_feature_lines){.context = context,
                                          .world = {.context = context, .whole = self->stitcher},
                                          .wants_polygons = style->wants_polygons,
+                                         .wants_areas = style->wants_areas,
+                                         .rings.stats = &self->features->stats,
                                          .directed = style->directed};
-    status = read_layers(self, layers, count, unsorted);
+    if (self->dataset.osm)
+        status = begin_osm(self, layers, count);
+    if (status == CAMBER_OK)
+        status = read_layers(self, layers, self->dataset.osm ? 1 : count, unsorted);
     if (status == CAMBER_OK && self->stitcher)
         status = camber_tile_stitcher_finish(self->stitcher, self->features);
     if (status == CAMBER_OK)
@@ -408,6 +454,7 @@ done:
 static void close_reader(reader *self) {
     camber_feature_lines_free(&self->lines);
     camber_tile_stitcher_destroy(self->stitcher);
+    camber_columns_free(&self->relation_columns, self->context);
     camber_columns_free(&self->columns, self->context);
     camber_dataset_close(&self->dataset);
 }
@@ -443,14 +490,18 @@ static camber_status read_once(camber_features *features, const camber_source_de
     self.stats.invalid_points = self.lines.invalid_points;
     self.stats.clamped_points = self.lines.world.clamped_points;
     self.stats.antimeridian_splits = self.lines.world.antimeridian_splits;
+    const int zoom = self.dataset.zoom;
     /* GDAL's memory is freed before the lines are copied. */
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
         status = camber_features_merge_and_weigh(features, polylines, !desc->keep_apart, CAMBER_MERGE_ANY);
     if (status == CAMBER_OK) {
+        if (zoom >= 0)
+            camber_features_pin_borders(features, polylines, zoom);
         add_stats(features, &self);
         warn_of_losses(&self);
+        camber_rings_report(features, desc->path, &stats);
         camber_progress(features->context, "reading", 1);
     } else {
         features->point_count = points;

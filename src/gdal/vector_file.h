@@ -4,6 +4,7 @@
 
 #include "source/features.h"
 #include "source/osm_keys.h"
+#include "source/rings.h"
 #include "source/tile_stitcher.h"
 #include "source/world_lines.h"
 
@@ -24,7 +25,8 @@ typedef struct camber_feature_lines {
     camber_projection_kind projection;
     bool latitude_first;                    /* degrees come as latitude, longitude */
     OGRCoordinateTransformationH transform; /* owned */
-    bool wants_polygons;
+    bool wants_polygons, wants_areas;
+    camber_rings rings;
     bool directed; /* outlines go clockwise as seen, those of holes the other way */
 
     camber_world_lines world; /* the last feature's polylines */
@@ -41,9 +43,11 @@ typedef struct camber_feature_lines {
 
 /* Sets the projection for a layer; srs may be NULL: degrees. name stands in messages. */
 camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name);
-/* Collects the lines of a geometry, or the rings of its polygons. */
+/* Collects the lines of a geometry, or the rings of its polygons; those of areas are as rings.h has them. */
 camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
                                            camber_geometry_kind kind);
+/* Collects a line that is the ring of an area. */
+camber_status camber_feature_lines_collect_ring(camber_feature_lines *lines, OGRGeometryH line);
 void camber_feature_lines_free(camber_feature_lines *lines);
 
 /* ---- dataset.c: an open file ---- */
@@ -77,7 +81,7 @@ void camber_dataset_close(camber_dataset *dataset);
  * none. */
 const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Indices of the layers to read; freed with camber_free. */
-camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style *style, int **layers, size_t *count);
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
 

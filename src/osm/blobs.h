@@ -48,6 +48,6 @@ bool camber_osm_file_unpack(const camber_osm_file *file, size_t blob, camber_osm
 bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group);
 
 /* Fields of a group: the kinds of entities. */
-enum { CAMBER_OSM_NODE = 1, CAMBER_OSM_DENSE = 2, CAMBER_OSM_WAY = 3 };
+enum { CAMBER_OSM_NODE = 1, CAMBER_OSM_DENSE = 2, CAMBER_OSM_WAY = 3, CAMBER_OSM_RELATION = 4 };
 
 #endif

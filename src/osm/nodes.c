@@ -150,15 +150,16 @@ camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm
     return camber_osm_pass_run(&pass, declined);
 }
 
-/* ---- Where the nodes end ---- */
+/* ---- Where nodes and ways end ---- */
 
 typedef struct search {
     const camber_osm_file *file;
-    size_t first; /* blob without nodes, as far as is known */
+    size_t first; /* blob behind those kinds, as far as is known */
+    uint64_t last_kind;
 } search;
 
-/* Whether the first entity of a blob is a node. A blob without any counts as nodes. */
-static bool begins_with_node(const search *self, size_t blob, camber_osm_pass *pass, block *one, bool *begins,
+/* Whether the first entity of a blob is of one of the kinds. A blob without any is. */
+static bool begins_with_kind(const search *self, size_t blob, camber_osm_pass *pass, block *one, bool *begins,
                              camber_osm_failure *failure) {
     camber_osm_entities entities;
     camber_wire group;
@@ -167,7 +168,7 @@ static bool begins_with_node(const search *self, size_t blob, camber_osm_pass *p
         return false;
     if (camber_osm_entities_next(&entities, &group))
         (void)camber_wire_next(&group, &key);
-    *begins = key >> 3 == CAMBER_OSM_NODE || key >> 3 == CAMBER_OSM_DENSE;
+    *begins = key >> 3 >= CAMBER_OSM_NODE && key >> 3 <= self->last_kind;
     return true;
 }
 
@@ -178,7 +179,7 @@ static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *s
     while (self->first < end) {
         const size_t middle = self->first + (end - self->first) / 2;
         bool begins;
-        if (!begins_with_node(self, middle, pass, slot, &begins, failure))
+        if (!begins_with_kind(self, middle, pass, slot, &begins, failure))
             return false;
         if (begins)
             self->first = middle + 1;
@@ -188,8 +189,8 @@ static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *s
     return true;
 }
 
-camber_status camber_osm_nodes_end(const camber_osm_file *file, size_t *blob, bool *declined) {
-    search self = {.file = file};
+static camber_status find_end(const camber_osm_file *file, uint64_t last_kind, size_t *blob, bool *declined) {
+    search self = {.file = file, .last_kind = last_kind};
     const camber_osm_pass_desc pass = {.context = file->context,
                                        .name = file->path,
                                        .part_count = 1,
@@ -201,4 +202,12 @@ camber_status camber_osm_nodes_end(const camber_osm_file *file, size_t *blob, bo
     const camber_status status = camber_osm_pass_run(&pass, declined);
     *blob = self.first;
     return status;
+}
+
+camber_status camber_osm_nodes_end(const camber_osm_file *file, size_t *blob, bool *declined) {
+    return find_end(file, CAMBER_OSM_DENSE, blob, declined);
+}
+
+camber_status camber_osm_ways_end(const camber_osm_file *file, size_t *blob, bool *declined) {
+    return find_end(file, CAMBER_OSM_WAY, blob, declined);
 }

@@ -60,7 +60,7 @@ static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, pa
         last = place;
         put_place(to, place);
     }
-    const bool area = (way->tags & 1) && found > 3 && first == last;
+    const bool area = (way->tags & CAMBER_OSM_WAY_AREA) && found > 3 && first == last;
     const bool drops = area && all->desc->drops_areas;
     *dropped += drops;
     if (drops || found < 2) {
@@ -69,7 +69,7 @@ static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, pa
         to->latitude = before.latitude;
         found = 0;
     }
-    return (camber_osm_way){way->tags / 2 * 2 + area, found};
+    return (camber_osm_way){way->tags & ~(area ? 0u : (uint32_t)CAMBER_OSM_WAY_AREA), found};
 }
 
 static bool pack_run(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {

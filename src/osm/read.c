@@ -3,21 +3,23 @@
  * Input: a path. Output: what GDAL's layer "lines" gives by the rules of gdal/osmconf.ini: the same lines with the same
  * attributes in the same order, to the last bit. The file is read in two passes, and no blob of it twice but a few: the
  * ways first, which lie at its end, then the places of those nodes that ways name. So a node takes eight bytes and a
- * bit, whatever else the file has. A third pass packs the ways with these places, and frees the nodes; a fourth makes
- * world coordinates. Each pass has several threads. */
+ * bit, whatever else the file has. Where areas are wanted, the relations that name ways are read before them. A third
+ * pass packs the ways with these places, and frees the nodes; a fourth makes world coordinates. Each pass has several
+ * threads. */
 #include "osm/osm.h"
 
 #include "osm/nodes.h"
 #include "osm/packed.h"
 #include "source/osm_keys.h"
+#include "source/rings.h"
 #include "source/tile_reader.h"
 #include "source/world_lines.h"
 
 #include <unistd.h>
 
 static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* of the progress */
-/* OGR's name of the layer. */
-static const char LAYER[] = "lines";
+/* OGR's names of the layers. */
+static const char LAYER[] = "lines", RELATION_LAYER[] = "multipolygons";
 
 typedef struct reader {
     camber_context *context;
@@ -26,7 +28,8 @@ typedef struct reader {
     camber_osm_where where;
     camber_osm_ways ways;
     uint32_t layer;
-    uint32_t *classes[2]; /* of each set of tags, as lines and as outlines: index + 1; 0: not needed yet */
+    uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
+    size_t met;                               /* of the relations' ways, so many of those met were added */
     size_t skipped, clamped, splits;
     unsigned threads;
 } reader;
@@ -45,66 +48,122 @@ static unsigned count_threads(const camber_source_desc *desc) {
 /* ---- Ways become lines, on any thread ---- */
 
 typedef struct made_way {
-    uint32_t tags; /* as the way has them, with the area's bit set only where the line is closed */
-    uint32_t line_count;
+    uint32_t tags;        /* as the way has them, with the area's bit set only where the line is closed */
+    uint32_t line_count;  /* as a line, or as an outline; then comes its ring */
+    uint32_t place_count; /* of a relation's way */
+    bool has_ring;
 } made_way;
 
 typedef struct made_run {
     camber_osm_block points, ends, ways; /* pairs of doubles, size_t, made_way */
-    size_t way_count;
+    camber_osm_block places;             /* of relations' ways: uint64_t */
+    size_t way_count, place_count;
     camber_world_lines lines;
+    camber_features_stats stats; /* of its rings */
 } made_run;
 
 static void free_run(camber_context *context, void *slot) {
     made_run *run = slot;
+    camber_free(context, run->places.bytes);
     camber_free(context, run->ways.bytes);
     camber_free(context, run->ends.bytes);
     camber_free(context, run->points.bytes);
 }
 
-/* The lines of a way that was packed. */
-static void make_way(const camber_osm_way *way, camber_osm_unpacking *from, made_run *run) {
-    camber_world_lines *lines = &run->lines;
-    const size_t lines_before = lines->line_count;
+static void add_nodes(const camber_osm_way *way, camber_osm_unpacking *from, camber_world_lines *lines) {
     for (uint32_t i = 0; i < way->node_count; i++) {
         camber_osm_unpack_node(from);
         camber_world_lines_add_degrees(lines, (double)from->longitude / 1.0e7, (double)from->latitude / 1.0e7);
     }
+}
+
+/* Makes a ring of a closed way. counts: what is counted of its points was not counted with an outline. */
+static bool make_ring(const camber_osm_way *way, camber_osm_unpacking *from, made_run *run, bool counts) {
+    camber_world_lines *lines = &run->lines;
+    camber_rings rings = {.stats = &run->stats};
+    const size_t first = lines->point_count, clamped = lines->clamped_points;
+    bool crosses = false;
+    lines->uncut = true;
+    add_nodes(way, from, lines);
+    lines->uncut = false;
+    size_t count = camber_ring_unroll(lines->points + 2 * first, lines->point_count - first, &crosses);
+    count = camber_rings_take(&rings, lines->points + 2 * first, count, false);
+    lines->clamped_points = counts ? lines->clamped_points : clamped;
+    lines->antimeridian_splits += crosses;
+    lines->point_count = first + count;
+    lines->open = count > 0;
     camber_world_lines_end(lines);
-    ((made_way *)(void *)run->ways.bytes)[run->way_count++] =
-        (made_way){way->tags, (uint32_t)(lines->line_count - lines_before)};
+    return count > 0;
+}
+
+static void keep_places(const camber_osm_way *way, camber_osm_unpacking *from, made_run *run) {
+    for (uint32_t i = 0; i < way->node_count; i++) {
+        camber_osm_unpack_node(from);
+        ((uint64_t *)(void *)run->places.bytes)[run->place_count++] =
+            camber_osm_place((int32_t)from->longitude, (int32_t)from->latitude);
+    }
+}
+
+/* The lines of a way that was packed, its ring if it is an area, and its places if it is a relation's. */
+static void make_way(const camber_style *style, const camber_osm_way *way, camber_osm_unpacking *from, made_run *run) {
+    camber_world_lines *lines = &run->lines;
+    const size_t lines_before = lines->line_count;
+    const bool area = way->tags & CAMBER_OSM_WAY_AREA, bare = way->tags & CAMBER_OSM_WAY_BARE;
+    const bool has_lines = !bare && (!area || style->wants_polygons);
+    const camber_osm_unpacking start = *from;
+    made_way made = {.tags = way->tags};
+    if (has_lines) {
+        add_nodes(way, from, lines);
+        camber_world_lines_end(lines);
+    }
+    made.line_count = (uint32_t)(lines->line_count - lines_before);
+    if (area && style->wants_areas) {
+        *from = start;
+        made.has_ring = make_ring(way, from, run, !has_lines);
+    }
+    if (way->tags & CAMBER_OSM_WAY_MEMBER) {
+        *from = start;
+        made.place_count = way->node_count;
+        keep_places(way, from, run);
+    }
+    ((made_way *)(void *)run->ways.bytes)[run->way_count++] = made;
 }
 
 static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
     const camber_osm_ways *ways = &((const reader *)user)->ways;
+    const camber_style *style = ways->features->style;
     const camber_osm_run *from = &ways->runs[part];
     made_run *run = slot;
-    const size_t points = camber_world_lines_most_points(from->node_count),
-                 ends = camber_world_lines_most_ends(from->node_count);
+    size_t points = camber_world_lines_most_points(from->node_count),
+           ends = camber_world_lines_most_ends(from->node_count);
+    if (style->wants_areas) { /* a ring adds its points, and four at most */
+        points += from->node_count + 4 * from->way_count;
+        ends += from->way_count;
+    }
     if (!camber_osm_reserve(pass, &run->points, points * 2 * sizeof(double), failure) ||
         !camber_osm_reserve(pass, &run->ends, ends * sizeof(size_t), failure) ||
-        !camber_osm_reserve(pass, &run->ways, from->way_count * sizeof(made_way), failure))
+        !camber_osm_reserve(pass, &run->ways, from->way_count * sizeof(made_way), failure) ||
+        (ways->relations.count &&
+         !camber_osm_reserve(pass, &run->places, from->node_count * sizeof(uint64_t), failure)))
         return false;
-    run->way_count = 0;
+    run->way_count = run->place_count = 0;
+    run->stats = (camber_features_stats){0};
     run->lines =
         (camber_world_lines){.points = (double *)(void *)run->points.bytes, .ends = (size_t *)(void *)run->ends.bytes};
     camber_osm_unpacking places = camber_osm_unpack_run(ways, from);
     for (const camber_osm_way *way = ways->ways + from->first_way, *end = way + from->way_count; way < end; way++)
-        if (way->node_count)
-            make_way(way, &places, run);
+        if (way->node_count || way->tags & CAMBER_OSM_WAY_MEMBER)
+            make_way(style, way, &places, run);
     return true;
 }
 
 /* ---- Lines become features ---- */
 
-static camber_status find_class(reader *self, uint32_t tags, uint32_t *index) {
-    const bool area = tags & 1;
-    const uint32_t set = tags / 2;
-    uint32_t *known = &self->classes[area][set];
+static camber_status find_class(reader *self, uint32_t set, camber_geometry_kind kind, uint32_t *index) {
+    uint32_t *known = &self->classes[kind][set];
     if (*known == 0) {
         const camber_status status = camber_features_find_class(
-            self->features, self->layer, area ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE,
-            self->ways.values + set * self->features->style->property_count, index);
+            self->features, self->layer, kind, self->ways.values + set * self->features->style->property_count, index);
         if (status != CAMBER_OK)
             return status;
         *known = *index + 1;
@@ -113,15 +172,33 @@ static camber_status find_class(reader *self, uint32_t tags, uint32_t *index) {
     return CAMBER_OK;
 }
 
-static camber_status add_way(reader *self, const made_way *way, const camber_world_lines *lines, size_t *line) {
-    uint32_t index;
-    camber_status status = find_class(self, way->tags, &index);
-    if (status == CAMBER_OK)
-        status = camber_features_add_feature(self->features, index);
-    for (uint32_t i = 0; i < way->line_count && status == CAMBER_OK; i++, ++*line) {
+/* Adds the next lines of a run as one feature. */
+static camber_status add_lines(reader *self, uint32_t class_index, const camber_world_lines *lines, size_t *line,
+                               uint32_t count) {
+    camber_status status = camber_features_add_feature(self->features, class_index);
+    for (uint32_t i = 0; i < count && status == CAMBER_OK; i++, ++*line) {
         const size_t first = *line ? lines->ends[*line - 1] : 0;
         status = camber_features_add_polyline(self->features, lines->points + 2 * first, lines->ends[*line] - first);
     }
+    return status;
+}
+
+/* filled: its ring is drawn; else a relation is in its place. */
+static camber_status add_way(reader *self, const made_way *way, bool filled, const camber_world_lines *lines,
+                             size_t *line) {
+    const camber_geometry_kind kind = way->tags & CAMBER_OSM_WAY_AREA ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
+    const uint32_t set = way->tags / CAMBER_OSM_WAY_BITS;
+    uint32_t index;
+    camber_status status = CAMBER_OK;
+    if (way->line_count)
+        status = find_class(self, set, kind, &index);
+    if (way->line_count && status == CAMBER_OK)
+        status = add_lines(self, index, lines, line, way->line_count);
+    if (way->has_ring && filled && status == CAMBER_OK)
+        status = find_class(self, set, CAMBER_GEOMETRY_AREA, &index);
+    if (way->has_ring && filled && status == CAMBER_OK)
+        return add_lines(self, index, lines, line, 1);
+    *line += way->has_ring;
     return status;
 }
 
@@ -129,14 +206,90 @@ static camber_status add_run(void *user, size_t part, void *slot) {
     reader *self = user;
     const made_run *run = slot;
     const made_way *ways = (const made_way *)(const void *)run->ways.bytes;
+    const uint64_t *places = (const uint64_t *)(const void *)run->places.bytes;
+    camber_osm_relations *relations = &self->ways.relations;
     camber_status status = CAMBER_OK;
     size_t line = 0;
     (void)part;
-    for (size_t i = 0; i < run->way_count && status == CAMBER_OK; i++)
-        if (ways[i].line_count)
-            status = add_way(self, &ways[i], &run->lines, &line);
+    for (size_t i = 0; i < run->way_count && status == CAMBER_OK; i++) {
+        const bool member = ways[i].tags & CAMBER_OSM_WAY_MEMBER;
+        const bool filled = !member || !relations->ways[relations->met[self->met]].is_outer;
+        status = add_way(self, &ways[i], filled, &run->lines, &line);
+        if (!member || status != CAMBER_OK)
+            continue;
+        status = camber_osm_relations_add_places(relations, self->met++, places, ways[i].place_count);
+        places += ways[i].place_count;
+    }
+    self->features->stats.empty_rings += run->stats.empty_rings;
     self->clamped += run->lines.clamped_points;
     self->splits += run->lines.antimeridian_splits;
+    return status;
+}
+
+/* ---- Relations become areas ---- */
+
+/* An area of a relation. */
+typedef struct made_area {
+    camber_osm_assembly assembly;
+    camber_world_lines lines; /* one ring */
+    camber_rings rings;
+    uint32_t class_index;
+    bool added;
+} made_area;
+
+static camber_status add_ring(reader *self, made_area *area, const camber_osm_ring *ring) {
+    camber_world_lines *lines = &area->lines;
+    camber_status status = CAMBER_OK;
+    bool crosses = false;
+    camber_world_lines_begin(lines);
+    if (!camber_world_lines_reserve(lines, ring->count))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = ring->first; i < ring->first + ring->count; i++) {
+        const uint64_t place = area->assembly.places[i];
+        camber_world_lines_add_degrees(lines, (double)(int32_t)(uint32_t)(place >> 32) / 1.0e7,
+                                       (double)(int32_t)(uint32_t)place / 1.0e7);
+    }
+    size_t count = camber_ring_unroll(lines->points, lines->point_count, &crosses);
+    self->splits += crosses;
+    count = camber_rings_take(&area->rings, lines->points, count, ring->role == CAMBER_OSM_ROLE_INNER);
+    if (count && !area->added)
+        status = camber_features_add_feature(self->features, area->class_index);
+    area->added = area->added || count;
+    return count && status == CAMBER_OK ? camber_features_add_polyline(self->features, lines->points, count) : status;
+}
+
+static camber_status add_relation(reader *self, size_t relation, made_area *area) {
+    const uint32_t set = self->ways.relations.items[relation].set;
+    if (set == 0)
+        return CAMBER_OK;
+    area->added = false;
+    area->rings = (camber_rings){.stats = &self->features->stats, .any_winding = true};
+    camber_status status = camber_osm_relations_assemble(&self->ways.relations, relation, &area->assembly);
+    self->features->stats.open_relations += status == CAMBER_OK && area->assembly.open;
+    if (status == CAMBER_OK && area->assembly.ring_count)
+        status = find_class(self, set - 1, CAMBER_GEOMETRY_AREA, &area->class_index);
+    for (size_t i = 0; i < area->assembly.ring_count && status == CAMBER_OK; i++)
+        status = add_ring(self, area, &area->assembly.rings[i]);
+    return status;
+}
+
+/* Makes areas once all ways are lines. They have a layer of their own, as GDAL has it. */
+static camber_status make_areas(reader *self) {
+    camber_osm_ways *ways = &self->ways;
+    made_area area = {.assembly.context = self->context, .lines = {.context = self->context, .uncut = true}};
+    if (ways->relations.count == 0)
+        return CAMBER_OK;
+    camber_free(self->context, ways->packed);
+    ways->packed = NULL;
+    ways->packed_bytes = ways->packed_capacity = 0;
+    if (ways->set_count)
+        memset(self->classes[CAMBER_GEOMETRY_AREA], 0, ways->set_count * sizeof **self->classes);
+    camber_status status = camber_features_find_layer(self->features, RELATION_LAYER, &self->layer);
+    for (size_t i = 0; i < ways->relations.count && status == CAMBER_OK; i++)
+        status = add_relation(self, i, &area);
+    self->clamped += area.lines.clamped_points;
+    camber_world_lines_free(&area.lines);
+    camber_osm_assembly_free(&area.assembly);
     return status;
 }
 
@@ -144,8 +297,8 @@ static camber_status make_lines(reader *self) {
     camber_features *features = self->features;
     camber_osm_ways *ways = &self->ways;
     bool declined;
-    for (int area = 0; area < 2; area++)
-        if (!(self->classes[area] = camber_alloc_zero(self->context, ways->set_count, sizeof **self->classes)))
+    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS; kind++)
+        if (!(self->classes[kind] = camber_alloc_zero(self->context, ways->set_count, sizeof **self->classes)))
             return CAMBER_ERROR_MEMORY;
     const camber_osm_pass_desc pass = {.context = self->context,
                                        .name = self->desc->path,
@@ -158,23 +311,39 @@ static camber_status make_lines(reader *self) {
                                        .free_slot = free_run,
                                        .from = PACKED_SHARE,
                                        .to = 1.0};
-    const camber_osm_pack_desc pack = {self->desc->path, self->threads, !features->style->wants_polygons, NODES_SHARE,
-                                       PACKED_SHARE};
+    const bool drops_areas = !features->style->wants_polygons && !features->style->wants_areas;
+    const camber_osm_pack_desc pack = {self->desc->path, self->threads, drops_areas, NODES_SHARE, PACKED_SHARE};
     camber_status status = camber_osm_pack(ways, &pack, &self->skipped);
     if (status == CAMBER_OK)
         status = camber_features_find_layer(features, LAYER, &self->layer);
-    return status == CAMBER_OK ? camber_osm_pass_run(&pass, &declined) : status;
+    if (status == CAMBER_OK)
+        status = camber_osm_pass_run(&pass, &declined);
+    return status == CAMBER_OK ? make_areas(self) : status;
 }
 
 /* ---- A file ---- */
 
+static camber_status read_relations(reader *self, const camber_osm_file *file, size_t *end, bool *declined) {
+    *end = 0;
+    if (!self->features->style->wants_areas || self->desc->layer)
+        return CAMBER_OK;
+    const camber_status status = camber_osm_ways_end(file, end, declined);
+    if (status != CAMBER_OK || *declined)
+        return status;
+    /* The last blob that begins with ways may go on with relations. */
+    const camber_osm_ways_desc desc = {file, *end ? *end - 1 : 0, *end, self->threads, 0.0, 0.0};
+    return camber_osm_relations_read(&self->ways, &desc, declined);
+}
+
 static camber_status read_places(reader *self, const camber_osm_file *file, bool *declined) {
-    size_t end = 0;
+    size_t end = 0, relations = 0;
     camber_status status = camber_osm_nodes_end(file, &end, declined);
+    if (status == CAMBER_OK && !*declined)
+        status = read_relations(self, file, &relations, declined);
     if (status != CAMBER_OK || *declined)
         return status;
     /* The last blob that begins with nodes may go on with ways. */
-    const camber_osm_ways_desc ways = {file, end ? end - 1 : 0, self->threads, 0.0, WAYS_SHARE};
+    const camber_osm_ways_desc ways = {file, end ? end - 1 : 0, relations, self->threads, 0.0, WAYS_SHARE};
     const camber_osm_nodes_desc nodes = {file, end, self->threads, WAYS_SHARE, NODES_SHARE};
     status = camber_osm_ways_read(&self->ways, &ways, declined);
     if (status == CAMBER_OK && !*declined)
@@ -209,8 +378,8 @@ static camber_status read_lines(reader *self, bool *declined) {
     *declined = *declined || (filters && status == CAMBER_OK && self->features->feature_count == features_before);
     camber_osm_ways_free(&self->ways);
     camber_osm_file_close(&file);
-    for (int area = 0; area < 2; area++)
-        camber_free(self->context, self->classes[area]);
+    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS; kind++)
+        camber_free(self->context, self->classes[kind]);
     return status;
 }
 
@@ -247,6 +416,7 @@ camber_status camber_osm_read(camber_features *features, const camber_source_des
         return status;
     }
     add_stats(&self);
+    camber_rings_report(features, desc->path, &before.stats);
     camber_progress(self.context, "reading", 1);
     return CAMBER_OK;
 }

@@ -1,8 +1,9 @@
-/* Reads the ways of a file.
+/* Reads the ways of a file, and before them the relations that are areas.
  *
  * Input: blobs, and the keys that a style names. Output: for each way with a tag and at least two nodes its set of tags
- * and the ids of its nodes, and the set of all ids. Threads decode blocks: tags become indices of strings, and ways
- * that agree in them share a set. The caller's thread then gives a block's sets to those of the file. */
+ * and the ids of its nodes, and the set of all ids. Ways that relations name are read without tags, too. Threads decode
+ * blocks: tags become indices of strings, and ways that agree in them share a set. The caller's thread then gives a
+ * block's sets to those of the file. */
 #include "osm/ways.h"
 
 #include "source/osm_keys.h"
@@ -11,7 +12,8 @@
 
 /* A run is what one thread makes lines of at a time. */
 enum { RUN_NODES = 16384, FIRST_SLOTS = 1024 };
-enum { WAY_KEYS = 2, WAY_VALUES = 3, WAY_NODES = 8, STRING = 1 };
+enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, STRING = 1 };
+enum { RELATION_ROLES = 8, RELATION_MEMBERS = 9, RELATION_TYPES = 10, MEMBER_WAY = 1 };
 static const uint32_t NO_STRING = UINT32_MAX, NO_PROPERTY = UINT32_MAX;
 
 /* ---- Keys ---- */
@@ -57,10 +59,11 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
     *ways = (camber_osm_ways){
         .context = features->context, .features = features, .plain = true, .where = where, .slot_count = FIRST_SLOTS};
     camber_osm_node_set_init(&ways->nodes, features->context);
-    *declined = style->property_count + areas >= UINT16_MAX - 2 - CAMBER_OSM_WHERE_KEYS;
+    camber_osm_relations_init(&ways->relations, features->context);
+    *declined = style->property_count + areas >= UINT16_MAX - 3 - CAMBER_OSM_WHERE_KEYS;
     if (*declined)
         return CAMBER_OK;
-    if (!(ways->keys = camber_alloc(ways->context, style->property_count + areas + 1 + CAMBER_OSM_WHERE_KEYS,
+    if (!(ways->keys = camber_alloc(ways->context, style->property_count + areas + 2 + CAMBER_OSM_WHERE_KEYS,
                                     sizeof *ways->keys)) ||
         !(ways->slots = camber_alloc_zero(ways->context, ways->slot_count, sizeof *ways->slots)))
         return CAMBER_ERROR_MEMORY;
@@ -75,6 +78,7 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
     for (size_t i = 0; i < areas; i++)
         find_key(ways, camber_osm_area_keys[i])->area = true;
     find_key(ways, "highway")->highway = true;
+    find_key(ways, "type")->type = true;
     *declined = *declined || !find_filter_keys(ways);
     return CAMBER_OK;
 }
@@ -82,6 +86,7 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
 void camber_osm_ways_free(camber_osm_ways *ways) {
     camber_context *context = ways->context;
     camber_osm_node_set_free(&ways->nodes);
+    camber_osm_relations_free(&ways->relations);
     camber_free(context, ways->local);
     camber_free(context, ways->text);
     camber_free(context, ways->slots);
@@ -103,8 +108,10 @@ typedef struct block {
     camber_osm_block slots;   /* uint32_t: a hash table of sets; index + 1 */
     camber_osm_block ways;    /* camber_osm_way, with sets of the block */
     camber_osm_block ids;
+    camber_osm_block members;   /* of relations: camber_osm_member; of ways: their indices among the relations' ways */
+    camber_osm_block relations; /* camber_osm_relation, with sets and members of the block */
     camber_wire table;
-    size_t string_count, set_count, slot_count, way_count, id_bytes;
+    size_t string_count, set_count, slot_count, way_count, id_bytes, member_count, relation_count;
     bool has_ways;
 } block;
 
@@ -114,11 +121,14 @@ typedef struct decoder {
     block *to;
     camber_osm_failure *failure;
     size_t property_count;
+    camber_osm_finger finger; /* among the relations' ways */
 } decoder;
 
 static void free_block(camber_context *context, void *slot) {
     block *one = slot;
     camber_osm_unpacked_free(context, &one->unpacked);
+    camber_free(context, one->relations.bytes);
+    camber_free(context, one->members.bytes);
     camber_free(context, one->ids.bytes);
     camber_free(context, one->ways.bytes);
     camber_free(context, one->slots.bytes);
@@ -226,9 +236,16 @@ static bool find_set(decoder *self, uint32_t *set) {
     return true;
 }
 
-/* Reads the tags of a way: the strings of properties go behind the last set. A key that comes twice has its last
- * value. *passes: the filter lets the way through. */
-static bool read_tags(decoder *self, camber_wire keys, camber_wire values, bool *area, bool *passes) {
+/* The meaning of an entity's tags. */
+typedef struct tag_facts {
+    bool area, passes; /* passes: the filter lets it through */
+    size_t count;
+    uint32_t type; /* a string; NO_STRING: it has none */
+} tag_facts;
+
+/* Reads the tags of a way or a relation: the strings of properties go behind the last set. A key that comes twice has
+ * its last value. */
+static bool read_tags(decoder *self, camber_wire keys, camber_wire values, tag_facts *facts) {
     block *to = self->to;
     const size_t start = to->set_count * self->property_count;
     if (!camber_osm_reserve(self->pass, &to->sets, (start + self->property_count + 1) * sizeof(uint32_t),
@@ -238,7 +255,8 @@ static bool read_tags(decoder *self, camber_wire keys, camber_wire values, bool 
     uint32_t areas = 0, highways = 0;
     camber_osm_text compared[CAMBER_OSM_WHERE_KEYS] = {{0}};
     memset(set, 0xff, self->property_count * sizeof *set);
-    while (keys.at < keys.end) {
+    *facts = (tag_facts){.type = NO_STRING};
+    for (; keys.at < keys.end; facts->count++) {
         const uint64_t key = camber_wire_varint(&keys), value = camber_wire_varint(&values);
         if (keys.bad || values.bad || key >= to->string_count || value >= to->string_count)
             return camber_osm_fail(self->failure, "a tag that does not parse");
@@ -251,11 +269,12 @@ static bool read_tags(decoder *self, camber_wire keys, camber_wire values, bool 
             const camber_wire text = string_at(to, (uint32_t)value);
             compared[known->filter] = (camber_osm_text){(const char *)text.at, (size_t)(text.end - text.at)};
         }
+        facts->type = known->type ? (uint32_t)value : facts->type;
         highways += known->highway;
         areas += known->area && !is_no(to, (uint32_t)value);
     }
-    *area = areas && !highways;
-    *passes = !self->ways->where || camber_osm_where_passes(self->ways->where, compared);
+    facts->area = areas && !highways;
+    facts->passes = !self->ways->where || camber_osm_where_passes(self->ways->where, compared);
     return true;
 }
 
@@ -281,13 +300,32 @@ static bool copy_ids(decoder *self, camber_wire ids, uint64_t count, camber_osm_
     return true;
 }
 
+/* The bits of a way that a relation names; 0: none does. */
+static uint32_t find_member(decoder *self, uint64_t id) {
+    uint32_t index;
+    const bool found = id < (uint64_t)CAMBER_OSM_MOST_ID &&
+                       camber_osm_relations_find(&self->ways->relations, (int64_t)id, &self->finger, &index);
+    return found ? CAMBER_OSM_WAY_MEMBER : 0;
+}
+
+/* Notes the way that was found last. */
+static bool add_member_index(decoder *self) {
+    block *to = self->to;
+    if (!camber_osm_reserve(self->pass, &to->members, (to->member_count + 1) * sizeof(uint32_t), self->failure))
+        return false;
+    ((uint32_t *)(void *)to->members.bytes)[to->member_count++] = self->finger.index;
+    return true;
+}
+
 static bool read_way(decoder *self, camber_wire wire) {
     camber_wire keys = {0}, values = {0}, ids = {0};
-    uint64_t key;
+    uint64_t key, number = 0;
     while (camber_wire_next(&wire, &key)) {
-        if (key == CAMBER_WIRE_KEY(WAY_KEYS, CAMBER_WIRE_BYTES))
+        if (key == CAMBER_WIRE_KEY(ID, CAMBER_WIRE_VARINT))
+            number = camber_wire_varint(&wire);
+        else if (key == CAMBER_WIRE_KEY(KEYS, CAMBER_WIRE_BYTES))
             keys = camber_wire_bytes(&wire);
-        else if (key == CAMBER_WIRE_KEY(WAY_VALUES, CAMBER_WIRE_BYTES))
+        else if (key == CAMBER_WIRE_KEY(VALUES, CAMBER_WIRE_BYTES))
             values = camber_wire_bytes(&wire);
         else if (key == CAMBER_WIRE_KEY(WAY_NODES, CAMBER_WIRE_BYTES))
             ids = camber_wire_bytes(&wire);
@@ -297,25 +335,32 @@ static bool read_way(decoder *self, camber_wire wire) {
     if (wire.bad)
         return camber_osm_fail(self->failure, "a way that does not parse");
     const uint64_t count = camber_wire_count(&ids);
-    if (count < 2 || keys.at == keys.end)
+    uint32_t bits = find_member(self, number);
+    if (count < 2 || (keys.at == keys.end && !bits))
         return true;
-    uint32_t set;
-    bool area = false, passes = false;
-    if (!read_tags(self, keys, values, &area, &passes))
+    uint32_t set = 0;
+    tag_facts facts;
+    if (!read_tags(self, keys, values, &facts))
         return false;
-    if (!passes)
+    const bool bare = keys.at == keys.end || !facts.passes;
+    if (bare && !bits)
         return true;
-    if (!find_set(self, &set))
+    if (!bare && !find_set(self, &set))
         return false;
-    return copy_ids(self, ids, count, (camber_osm_way){2 * set + area, (uint32_t)count});
+    bits |= bare ? CAMBER_OSM_WAY_BARE : facts.area ? CAMBER_OSM_WAY_AREA : 0u;
+    return (!(bits & CAMBER_OSM_WAY_MEMBER) || add_member_index(self)) &&
+           copy_ids(self, ids, count, (camber_osm_way){set * CAMBER_OSM_WAY_BITS | bits, (uint32_t)count});
 }
 
-static bool read_group(decoder *self, camber_wire group, bool nodes_allowed) {
+/* relations_allowed: they were read before, or do not matter. */
+static bool read_group(decoder *self, camber_wire group, bool nodes_allowed, bool relations_allowed) {
     uint64_t key;
     while (camber_wire_next(&group, &key)) {
         const bool node = key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES) ||
                           key == CAMBER_WIRE_KEY(CAMBER_OSM_DENSE, CAMBER_WIRE_BYTES);
         if (node && (!nodes_allowed || self->to->has_ways))
+            return camber_osm_decline(self->failure);
+        if (key == CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES) && !relations_allowed)
             return camber_osm_decline(self->failure);
         if (key != CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES)) {
             camber_wire_skip(&group, key);
@@ -333,26 +378,136 @@ typedef struct reading {
     const camber_osm_ways_desc *desc;
 } reading;
 
+/* Unpacks a blob, and makes the decoder and its block ready for it. */
+static bool begin_block(const reading *all, camber_osm_pass *pass, size_t blob, decoder *self,
+                        camber_osm_entities *entities) {
+    block *to = self->to;
+    self->ways = all->ways;
+    self->pass = pass;
+    self->property_count = all->ways->features->style->property_count;
+    self->finger = (camber_osm_finger){.leaf_id = UINT64_MAX, .id = -2};
+    to->set_count = to->slot_count = to->way_count = to->id_bytes = to->member_count = to->relation_count = 0;
+    to->has_ways = false;
+    return camber_osm_file_unpack(all->desc->file, blob, pass, &to->unpacked, entities, self->failure) &&
+           list_strings(self, entities->strings);
+}
+
 static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
     const reading *all = user;
-    block *to = slot;
-    decoder self = {.ways = all->ways,
-                    .pass = pass,
-                    .to = to,
-                    .failure = failure,
-                    .property_count = all->ways->features->style->property_count};
+    const size_t blob = all->desc->first_blob + part;
+    decoder self = {.to = slot, .failure = failure};
     camber_osm_entities entities;
     camber_wire group;
-    to->set_count = to->slot_count = to->way_count = to->id_bytes = 0;
-    to->has_ways = false;
-    if (!camber_osm_file_unpack(all->desc->file, all->desc->first_blob + part, pass, &to->unpacked, &entities, failure))
+    /* The blob before the first way may have the last nodes, and the one before the first relation relations. */
+    const bool relations = !all->ways->features->style->wants_areas || blob + 1 >= all->desc->end_blob;
+    if (!begin_block(all, pass, blob, &self, &entities))
         return false;
-    if (!list_strings(&self, entities.strings))
-        return false;
-    /* The blob before the first way may have the last nodes. */
     while (camber_osm_entities_next(&entities, &group))
-        if (!read_group(&self, group, part == 0))
+        if (!read_group(&self, group, part == 0, relations))
             return false;
+    return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
+}
+
+/* ---- Relations, on any thread ---- */
+
+static bool is_string(const block *from, uint64_t string, const char *text) {
+    if (string >= from->string_count)
+        return false;
+    const camber_wire is = string_at(from, (uint32_t)string);
+    const size_t length = strlen(text);
+    return (size_t)(is.end - is.at) == length && memcmp(is.at, text, length) == 0;
+}
+
+static camber_osm_role role_of(const block *from, uint64_t string) {
+    if (is_string(from, string, "inner") || is_string(from, string, "enclave"))
+        return CAMBER_OSM_ROLE_INNER;
+    if (is_string(from, string, "outer") || is_string(from, string, "exclave"))
+        return CAMBER_OSM_ROLE_OUTER;
+    return CAMBER_OSM_ROLE_UNKNOWN;
+}
+
+/* Adds the ways among a relation's members to those of the block. */
+static bool read_members(decoder *self, camber_wire roles, camber_wire members, camber_wire types) {
+    block *to = self->to;
+    uint64_t id = 0;
+    while (members.at < members.end) {
+        const uint64_t role = camber_wire_varint(&roles), type = camber_wire_varint(&types);
+        id += (uint64_t)camber_wire_signed(&members);
+        if (roles.bad || types.bad || members.bad)
+            return camber_osm_fail(self->failure, "a relation that does not parse");
+        if (type != MEMBER_WAY)
+            continue;
+        if (id >= (uint64_t)CAMBER_OSM_MOST_ID)
+            return camber_osm_decline(self->failure);
+        if (!camber_osm_reserve(self->pass, &to->members, (to->member_count + 1) * sizeof(camber_osm_member),
+                                self->failure))
+            return false;
+        ((camber_osm_member *)(void *)to->members.bytes)[to->member_count++] =
+            (camber_osm_member){(int64_t)id, role_of(to, role)};
+    }
+    return true;
+}
+
+static bool add_relation(decoder *self, camber_osm_relation relation) {
+    block *to = self->to;
+    if (!camber_osm_reserve(self->pass, &to->relations, (to->relation_count + 1) * sizeof relation, self->failure))
+        return false;
+    ((camber_osm_relation *)(void *)to->relations.bytes)[to->relation_count++] = relation;
+    return true;
+}
+
+static bool read_relation(decoder *self, camber_wire wire) {
+    camber_wire keys = {0}, values = {0}, roles = {0}, members = {0}, types = {0}, *field;
+    uint64_t key;
+    while (camber_wire_next(&wire, &key)) {
+        field = key == CAMBER_WIRE_KEY(KEYS, CAMBER_WIRE_BYTES)               ? &keys
+                : key == CAMBER_WIRE_KEY(VALUES, CAMBER_WIRE_BYTES)           ? &values
+                : key == CAMBER_WIRE_KEY(RELATION_ROLES, CAMBER_WIRE_BYTES)   ? &roles
+                : key == CAMBER_WIRE_KEY(RELATION_MEMBERS, CAMBER_WIRE_BYTES) ? &members
+                : key == CAMBER_WIRE_KEY(RELATION_TYPES, CAMBER_WIRE_BYTES)   ? &types
+                                                                              : NULL;
+        if (field)
+            *field = camber_wire_bytes(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    if (wire.bad)
+        return camber_osm_fail(self->failure, "a relation that does not parse");
+    block *to = self->to;
+    camber_osm_relation relation = {.first_member = to->member_count};
+    tag_facts facts;
+    if (!read_tags(self, keys, values, &facts))
+        return false;
+    relation.is_tagged = facts.count > 1;
+    const bool area = is_string(to, facts.type, "multipolygon") || is_string(to, facts.type, "boundary");
+    if (!area || (relation.is_tagged && !facts.passes))
+        return true;
+    if (!read_members(self, roles, members, types))
+        return false;
+    relation.member_count = (uint32_t)(to->member_count - relation.first_member);
+    if (relation.member_count == 0 || (relation.is_tagged && !find_set(self, &relation.set)))
+        return relation.member_count == 0;
+    return add_relation(self, relation);
+}
+
+static bool read_relations(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
+    const reading *all = user;
+    decoder self = {.to = slot, .failure = failure};
+    camber_osm_entities entities;
+    camber_wire group;
+    uint64_t key;
+    if (!begin_block(all, pass, all->desc->first_blob + part, &self, &entities))
+        return false;
+    while (camber_osm_entities_next(&entities, &group)) {
+        while (camber_wire_next(&group, &key)) {
+            if (key != CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES))
+                camber_wire_skip(&group, key);
+            else if (!read_relation(&self, camber_wire_bytes(&group)))
+                return false;
+        }
+        if (group.bad)
+            return camber_osm_fail(failure, "a group that does not parse");
+    }
     return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
 
@@ -409,9 +564,9 @@ static camber_status grow_table(camber_osm_ways *ways, size_t count) {
 static camber_status add_set(camber_osm_ways *ways, const block *from, const uint32_t *strings, uint32_t *set) {
     const camber_style *style = ways->features->style;
     const size_t count = style->property_count;
-    if (ways->set_count >= UINT32_MAX / 2)
+    if (ways->set_count >= UINT32_MAX / CAMBER_OSM_WAY_BITS)
         return camber_fail(ways->context, CAMBER_ERROR_LIMIT,
-                           "more than 2147483647 different lines; read fewer attributes");
+                           "more than 536870910 different lines; read fewer attributes");
     if (!camber_grow(ways->context, &ways->values, &ways->value_capacity, (ways->set_count + 1) * count,
                      sizeof *ways->values))
         return CAMBER_ERROR_MEMORY;
@@ -465,51 +620,116 @@ static camber_status add_to_run(camber_osm_ways *ways, const camber_osm_way *way
     return CAMBER_OK;
 }
 
+/* Gives the sets of a block to the file; ways->local has their numbers. */
+static camber_status add_sets(camber_osm_ways *ways, const block *from) {
+    const uint32_t *sets = (const uint32_t *)(const void *)from->sets.bytes;
+    if (!camber_grow(ways->context, &ways->local, &ways->local_capacity, from->set_count, sizeof *ways->local))
+        return CAMBER_ERROR_MEMORY;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < from->set_count && status == CAMBER_OK; i++)
+        status = add_set(ways, from, sets + i * ways->features->style->property_count, &ways->local[i]);
+    return status;
+}
+
+/* Notes a way that a relation names. */
+static camber_status add_member(camber_osm_ways *ways, const camber_osm_way *way, uint32_t index) {
+    camber_osm_relations *relations = &ways->relations;
+    if (!camber_grow(ways->context, &relations->met, &relations->met_capacity, relations->met_count + 1,
+                     sizeof *relations->met))
+        return CAMBER_ERROR_MEMORY;
+    relations->met[relations->met_count++] = index;
+    if (!(way->tags & CAMBER_OSM_WAY_BARE))
+        relations->ways[index].set = way->tags / CAMBER_OSM_WAY_BITS + 1;
+    return CAMBER_OK;
+}
+
 static camber_status add_block(void *user, size_t part, void *slot) {
     camber_osm_ways *ways = ((const reading *)user)->ways;
     const block *from = slot;
-    const size_t properties = ways->features->style->property_count, first_id = ways->id_bytes;
-    const uint32_t *sets = (const uint32_t *)(const void *)from->sets.bytes;
+    const size_t first_id = ways->id_bytes;
     const camber_osm_way *added = (const camber_osm_way *)(const void *)from->ways.bytes;
-    size_t used = 0;
+    const uint32_t *members = (const uint32_t *)(const void *)from->members.bytes;
+    size_t used = 0, member = 0;
     (void)part;
     if (from->way_count == 0)
         return CAMBER_OK;
-    if (!camber_grow(ways->context, &ways->local, &ways->local_capacity, from->set_count, sizeof *ways->local) ||
-        !camber_grow(ways->context, &ways->ways, &ways->way_capacity, ways->way_count + from->way_count,
+    if (!camber_grow(ways->context, &ways->ways, &ways->way_capacity, ways->way_count + from->way_count,
                      sizeof *ways->ways) ||
         !camber_grow(ways->context, &ways->ids, &ways->id_capacity, ways->id_bytes + from->id_bytes, 1))
         return CAMBER_ERROR_MEMORY;
     memcpy(ways->ids + first_id, from->ids.bytes, from->id_bytes);
     ways->id_bytes += from->id_bytes;
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < from->set_count && status == CAMBER_OK; i++)
-        status = add_set(ways, from, sets + i * properties, &ways->local[i]);
+    camber_status status = add_sets(ways, from);
     for (size_t i = 0; i < from->way_count && status == CAMBER_OK; i++) {
-        const camber_osm_way way = {2 * ways->local[added[i].tags / 2] + (added[i].tags & 1), added[i].node_count};
+        const uint32_t bits = added[i].tags % CAMBER_OSM_WAY_BITS, local = added[i].tags / CAMBER_OSM_WAY_BITS;
+        const uint32_t set = bits & CAMBER_OSM_WAY_BARE ? 0 : ways->local[local];
+        const camber_osm_way way = {set * CAMBER_OSM_WAY_BITS | bits, added[i].node_count};
         status = add_to_run(ways, &way, first_id + used);
         if (status == CAMBER_OK)
             status = add_ids(ways, from->ids.bytes, from->id_bytes, &way, &used);
+        if (status == CAMBER_OK && bits & CAMBER_OSM_WAY_MEMBER)
+            status = add_member(ways, &way, members[member++]);
         ways->ways[ways->way_count++] = way;
     }
     return status;
 }
 
+static camber_status add_relations(void *user, size_t part, void *slot) {
+    camber_osm_ways *ways = ((const reading *)user)->ways;
+    camber_osm_relations *to = &ways->relations;
+    const block *from = slot;
+    const camber_osm_member *members = (const camber_osm_member *)(const void *)from->members.bytes;
+    const camber_osm_relation *added = (const camber_osm_relation *)(const void *)from->relations.bytes;
+    (void)part;
+    if (from->relation_count == 0)
+        return CAMBER_OK;
+    if (!camber_grow(ways->context, &to->items, &to->capacity, to->count + from->relation_count, sizeof *to->items) ||
+        !camber_grow(ways->context, &to->members, &to->member_capacity, to->member_count + from->member_count,
+                     sizeof *to->members))
+        return CAMBER_ERROR_MEMORY;
+    camber_status status = add_sets(ways, from);
+    for (size_t i = 0; i < from->relation_count && status == CAMBER_OK; i++) {
+        camber_osm_relation relation = added[i];
+        relation.first_member += to->member_count;
+        relation.set = relation.is_tagged ? ways->local[relation.set] + 1 : 0;
+        to->items[to->count++] = relation;
+    }
+    for (size_t i = 0; i < from->member_count && status == CAMBER_OK; i++)
+        status = camber_osm_node_set_add(&to->ids, members[i].way);
+    memcpy(to->members + to->member_count, members, from->member_count * sizeof *members);
+    to->member_count += from->member_count;
+    return status;
+}
+
+/* ---- Both passes ---- */
+
+static camber_osm_pass_desc pass_over(reading *all) {
+    return (camber_osm_pass_desc){.context = all->ways->context,
+                                  .name = all->desc->file->path,
+                                  .part_count = all->desc->file->blob_count - all->desc->first_blob,
+                                  .threads = all->desc->threads,
+                                  .slot_bytes = sizeof(block),
+                                  .user = all,
+                                  .free_slot = free_block,
+                                  .from = all->desc->from,
+                                  .to = all->desc->to};
+}
+
+camber_status camber_osm_relations_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined) {
+    reading all = {ways, desc};
+    camber_osm_pass_desc pass = pass_over(&all);
+    pass.work = read_relations;
+    pass.commit = add_relations;
+    const camber_status status = camber_osm_pass_run(&pass, declined);
+    return status == CAMBER_OK && !*declined ? camber_osm_relations_complete(&ways->relations) : status;
+}
+
 camber_status camber_osm_ways_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined) {
     reading all = {ways, desc};
-    const camber_osm_pass_desc pass = {.context = ways->context,
-                                       .name = desc->file->path,
-                                       .part_count = desc->file->blob_count - desc->first_blob,
-                                       .threads = desc->threads,
-                                       .slot_bytes = sizeof(block),
-                                       .user = &all,
-                                       .work = read_block,
-                                       .commit = add_block,
-                                       .free_slot = free_block,
-                                       .from = desc->from,
-                                       .to = desc->to};
-    camber_status status = camber_osm_pass_run(&pass, declined);
-    if (status == CAMBER_OK && !*declined)
-        status = camber_osm_node_set_complete(&ways->nodes);
-    return status;
+    camber_osm_pass_desc pass = pass_over(&all);
+    pass.work = read_block;
+    pass.commit = add_block;
+    const camber_status status = camber_osm_pass_run(&pass, declined);
+    camber_osm_relations_settle(&ways->relations);
+    return status == CAMBER_OK && !*declined ? camber_osm_node_set_complete(&ways->nodes) : status;
 }

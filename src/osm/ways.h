@@ -1,9 +1,10 @@
-/* The ways of a file: what the style reads of their tags, and the ids of their nodes. */
+/* The ways of a file, and its relations: what the style reads of their tags, and the ids of their nodes or ways. */
 #ifndef CAMBER_OSM_WAYS_H
 #define CAMBER_OSM_WAYS_H
 
 #include "osm/blobs.h"
 #include "osm/node_set.h"
+#include "osm/relations.h"
 #include "osm/where.h"
 #include "source/features.h"
 
@@ -13,11 +14,19 @@ typedef struct camber_osm_key {
     size_t length;
     uint32_t property; /* index into the style's properties; UINT32_MAX: none */
     uint32_t filter;   /* index into the filter's keys; UINT32_MAX: none */
-    bool area, highway;
+    bool area, highway, type;
 } camber_osm_key;
 
+/* Bits of a way. */
+enum {
+    CAMBER_OSM_WAY_AREA = 1,   /* closed, it is an area */
+    CAMBER_OSM_WAY_MEMBER = 2, /* of a relation that is an area */
+    CAMBER_OSM_WAY_BARE = 4,   /* only a member: without tags, or kept out by the filter */
+    CAMBER_OSM_WAY_BITS = 8
+};
+
 typedef struct camber_osm_way {
-    uint32_t tags; /* index into the sets of tags, twice; + 1: closed, it is an area */
+    uint32_t tags; /* index into the sets of tags, times CAMBER_OSM_WAY_BITS; and the bits */
     uint32_t node_count;
 } camber_osm_way;
 
@@ -31,8 +40,9 @@ typedef struct camber_osm_ways {
     camber_features *features;
     camber_osm_key *keys;
     size_t key_count;
-    bool plain;                    /* the style names no key */
-    const camber_osm_where *where; /* NULL: all ways pass */
+    bool plain;                     /* the style names no key */
+    const camber_osm_where *where;  /* NULL: all ways pass */
+    camber_osm_relations relations; /* none unless the style wants areas */
 
     camber_osm_way *ways;
     size_t way_count, way_capacity;
@@ -64,12 +74,16 @@ void camber_osm_ways_free(camber_osm_ways *ways);
 
 typedef struct camber_osm_ways_desc {
     const camber_osm_file *file;
-    size_t first_blob; /* the first that may have a way */
+    size_t first_blob; /* the first that may have a way, or a relation */
+    size_t end_blob;   /* of ways: where relations begin, if the file is in order */
     unsigned threads;
     double from, to; /* of the progress */
 } camber_osm_ways_desc;
 
-/* Reads the ways of a file. *declined: nodes come behind ways, or ids are beyond the bounds. */
+/* Reads the relations of a file that are areas, before its ways. *declined: ids are beyond the bounds. */
+camber_status camber_osm_relations_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
+/* Reads the ways of a file. *declined: nodes come behind ways, ids are beyond the bounds, or relations that matter come
+ * before ways. */
 camber_status camber_osm_ways_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
 
 #endif

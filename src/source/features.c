@@ -134,7 +134,7 @@ static bool is_of_files(const camber_features *features) {
 static bool reads_the_same(const camber_style *one, const camber_style *other) {
     bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
                 one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
-                one->wants_polygons == other->wants_polygons;
+                one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas;
     for (size_t i = 0; same && i < one->property_count; i++)
         same = strcmp(one->properties[i], other->properties[i]) == 0;
     return same;

@@ -1,4 +1,4 @@
-/* Features in memory: lines in world coordinates, attributes as dictionary-coded columns.
+/* Features in memory: lines and areas in world coordinates, attributes as dictionary-coded columns.
  *
  * Features that agree in layer, geometry kind and every kept attribute form one class, so that a style's
  * filters are evaluated once a class and not once a feature: a city of 50,000 ways has a few hundred.
@@ -13,7 +13,21 @@
 typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
+    CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
+    CAMBER_GEOMETRY_KINDS
 } camber_geometry_kind;
+
+/* Sets of kinds, as bits. Layers of lines draw lines and outlines. */
+enum {
+    CAMBER_KIND_LINE = 1 << CAMBER_GEOMETRY_LINE,
+    CAMBER_KIND_POLYGON = 1 << CAMBER_GEOMETRY_POLYGON,
+    CAMBER_KIND_AREA = 1 << CAMBER_GEOMETRY_AREA,
+};
+
+/* The type that a style's filters know a kind by. */
+static inline const char *camber_geometry_type(camber_geometry_kind kind) {
+    return kind == CAMBER_GEOMETRY_LINE ? "LineString" : "Polygon";
+}
 
 typedef struct camber_feature_class {
     uint32_t source; /* index into the style's sources; CAMBER_NO_SOURCE: a file named as input */
@@ -117,15 +131,18 @@ typedef enum camber_merge_rule {
     CAMBER_MERGE_STRAIGHT, /* where two ends go on almost straight, whatever else meets there */
 } camber_merge_rule;
 
-/* Merges the lines of first_polyline and after it, if merges, and weighs their points; counts the time of both. Where
- * the style goes by directions, ANY is DIRECTED. Lines outside the region of the set go. */
+/* Merges the lines of first_polyline and after it, if merges, and not the areas, and weighs their points; counts the
+ * time of both. Where the style goes by directions, ANY is DIRECTED. Lines outside the region of the set go. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule);
 /* Merges lines of first_polyline and after it. */
 camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule);
 /* Sets the importance of the points of first_polyline and of those after it. */
 camber_status camber_features_set_importance(camber_features *features, size_t first_polyline);
-/* Drops the lines of first_polyline and after it that do not touch the region (region.c). */
+/* Whether a line touches the region, or the area whose rings begin with this polyline does. *next: the polyline behind
+ * the line, or behind the area's rings. */
+bool camber_features_touch(const camber_features *features, const camber_region *region, size_t polyline, size_t *next);
+/* Drops the lines and areas of first_polyline and after it that do not touch the region (region.c). */
 camber_status camber_features_confine(camber_features *features, size_t first_polyline, const camber_region *region);
 /* Sorts the features of first_feature and after it, whose lines begin with first_polyline and have neither importance
  * nor progress yet, by their keys; those of one key stay as they were. */
@@ -140,6 +157,9 @@ camber_status camber_features_thin(camber_features *features, float least_import
 static inline size_t camber_features_whole_count(const camber_features *features, size_t polyline) {
     return features->whole_counts ? features->whole_counts[polyline]
                                   : features->offsets[polyline + 1] - features->offsets[polyline];
+}
+static inline camber_geometry_kind camber_features_kind(const camber_features *features, size_t polyline) {
+    return features->classes[features->feature_class[features->polyline_feature[polyline]]].geometry;
 }
 /* Drops classes that no feature has, and numbers the others in the order in which features have them. */
 camber_status camber_features_renumber_classes(camber_features *features);

@@ -3,7 +3,8 @@
  * Input: lines, some of which touch the region, and later those that were asked for. Output: points to ask for. Main
  * idea: three ranks of lines.
  *
- *     rank 0    touches the region, or is merged with a line that does: it is drawn
+ *     rank 0    touches the region, or is merged with a line that does: it is drawn. So are all rings of an area, if
+ *               anything of it lies in the region
  *     rank 1    has a point in common with a line of rank 0, or is merged with a line that does: its weight decides
  *               which points of the other stay
  *     others    were read along with them, and decide nothing
@@ -36,7 +37,9 @@ struct camber_frontier {
     camber_context *context;
     camber_features *features;
     bool merges;
-    size_t taken; /* polylines of the set that were taken in */
+    size_t taken;    /* polylines of the set that were taken in */
+    size_t area_end; /* polyline behind the rings of the area that was looked at last */
+    bool area_touches;
     frontier_line *lines;
     size_t line_count, line_capacity;
     frontier_point *points;
@@ -141,6 +144,20 @@ static bool has_ends(const camber_features *features, size_t polyline, uint32_t 
     return false;
 }
 
+/* Whether the line touches the region, or all rings of its area together do. */
+static bool touches(camber_frontier *f, size_t polyline) {
+    const camber_features *features = f->features;
+    size_t next;
+    if (camber_features_kind(features, polyline) != CAMBER_GEOMETRY_AREA)
+        return camber_features_touch(features, &features->region, polyline, &next);
+    if (polyline < f->area_end)
+        return f->area_touches;
+    while (polyline > 0 && features->polyline_feature[polyline - 1] == features->polyline_feature[polyline])
+        polyline--;
+    f->area_touches = camber_features_touch(features, &features->region, polyline, &f->area_end);
+    return f->area_touches;
+}
+
 static bool take_line(camber_frontier *f, size_t polyline) {
     const camber_features *features = f->features;
     const camber_region *region = &features->region;
@@ -152,10 +169,9 @@ static bool take_line(camber_frontier *f, size_t polyline) {
         return true;
     if (!camber_grow(f->context, &f->lines, &f->line_capacity, f->line_count + 1, sizeof *f->lines))
         return false;
-    const bool touches = inside || camber_region_touches(region, features->points + 2 * begin, end - begin);
     const uint32_t class_index = features->feature_class[features->polyline_feature[polyline]];
-    f->lines[f->line_count++] =
-        (frontier_line){.class_index = class_index, .first_point = (uint32_t)f->point_count, .rank = touches ? 0 : 2};
+    f->lines[f->line_count++] = (frontier_line){
+        .class_index = class_index, .first_point = (uint32_t)f->point_count, .rank = touches(f, polyline) ? 0 : 2};
     const bool ends = has_ends(features, polyline, class_index);
     for (size_t i = begin; i < end; i++)
         if (!camber_region_has_point(region, features->points + 2 * i) &&

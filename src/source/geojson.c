@@ -1,10 +1,11 @@
 /* Reads a GeoJSON source of a style into a set of features.
  *
- * Input: a JSON document and the source's filter. Output: lines, outlines, classes, ids. Damage is counted, not fatal:
- * a line is split where a point is not valid, and what can be read of a feature is kept.
+ * Input: a JSON document and the source's filter. Output: lines, outlines, areas, classes, ids. Damage is counted, not
+ * fatal: a line is split where a point is not valid, and what can be read of a feature is kept.
  */
 #include "source/geojson.h"
 #include "source/mercator.h"
+#include "source/rings.h"
 #include "style/json.h"
 
 #include <math.h>
@@ -24,6 +25,8 @@ typedef struct reader {
     camber_geojson_stats *stats;
     json_t *promote_id;
     bool generate_id;
+    unsigned kinds; /* CAMBER_KIND_*: those that are read */
+    camber_rings rings;
     camber_value *values;
     double *points; /* one line */
     size_t capacity;
@@ -32,7 +35,8 @@ typedef struct reader {
     size_t index;
     bool in_collection;
     const char *damage;
-    bool left_out, added;
+    bool left_out, added; /* added: of the kind being read */
+    camber_geometry_kind kind;
     uint32_t class_index;
 } reader;
 
@@ -88,11 +92,11 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
     return read_value(self, json, id);
 }
 
-/* Finds the feature's class for lines, or for outlines. *drawn: the source's filter lets it pass. */
-static camber_status find_class(reader *self, const json_t *feature, camber_geometry_kind kind, bool *drawn) {
+/* Finds the feature's class of the kind. *drawn: the source's filter lets it pass. */
+static camber_status find_class(reader *self, const json_t *feature, bool *drawn) {
     const camber_style *style = self->features->style;
     const json_t *properties = json_object_get(feature, "properties");
-    camber_feature_class wanted = {.geometry = kind};
+    camber_feature_class wanted = {.geometry = self->kind};
     camber_value id = {0};
     camber_status status = camber_features_find_layer(self->features, "", &wanted.layer);
     for (size_t i = 0; i < style->property_count && status == CAMBER_OK; i++)
@@ -103,10 +107,8 @@ static camber_status find_class(reader *self, const json_t *feature, camber_geom
         status = camber_features_intern_json(self->features, properties, &wanted.all);
     if (status != CAMBER_OK)
         return status;
-    const camber_feature_view view = {.values = self->values,
-                                      .geometry_type = kind == CAMBER_GEOMETRY_POLYGON ? "Polygon" : "LineString",
-                                      .id = id,
-                                      .all = wanted.all};
+    const camber_feature_view view = {
+        .values = self->values, .geometry_type = camber_geometry_type(self->kind), .id = id, .all = wanted.all};
     *drawn = camber_style_source_matches(self->desc->source, &view);
     if (style->wants_id)
         wanted.id = id;
@@ -183,17 +185,20 @@ static void orient_ring(double *points, size_t count, bool hole) {
                             (points[2 * i + 1] - points[1]) * (points[2 * i + 2] - points[0]);
         area += isnan(part) ? 0.0 : part;
     }
-    if ((area < 0.0) == hole)
-        return;
-    for (size_t i = 0; i < count / 2; i++)
-        for (size_t axis = 0; axis < 2; axis++) {
-            double *a = points + 2 * i + axis, *b = points + 2 * (count - 1 - i) + axis, number = *a;
-            *a = *b;
-            *b = number;
-        }
+    if ((area < 0.0) != hole)
+        camber_ring_turn(points, count);
 }
 
-static camber_status read_line(reader *self, const json_t *json, bool ring, bool hole) {
+/* Adds the ring that was read, whose inside is filled. Where outlines are read too, they count what is invalid. */
+static camber_status add_ring(reader *self, size_t count, bool hole) {
+    for (size_t i = 0; i < count && !(self->kinds & CAMBER_KIND_POLYGON); i++)
+        self->stats->invalid_points += isnan(self->points[2 * i]) != 0;
+    count = camber_rings_take(&self->rings, self->points, count, hole);
+    return count ? add_line(self, self->points, count) : CAMBER_OK;
+}
+
+static camber_status read_line(reader *self, const json_t *json, bool hole) {
+    const bool ring = self->kind != CAMBER_GEOMETRY_LINE, area = self->kind == CAMBER_GEOMETRY_AREA;
     const size_t announced = json_array_size(json);
     size_t count = 0;
     if (!camber_grow(self->context, &self->points, &self->capacity, announced + 1, 2 * sizeof *self->points))
@@ -211,41 +216,43 @@ static camber_status read_line(reader *self, const json_t *json, bool ring, bool
     const double *last = self->points + 2 * (count - 1);
     if (ring && (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both are valid */
         note_damage(self, "a ring that is not closed");
-        memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
+        if (!area)
+            memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
     }
+    if (area)
+        return add_ring(self, count, hole);
     if (ring && self->features->style->directed)
         orient_ring(self->points, count, hole);
     return add_parts(self, count);
 }
 
 /* depth: how deep the lines are in the coordinates. hole: all lines of a polygon but the first are holes. */
-static camber_status read_lines(reader *self, const json_t *json, int depth, bool ring, bool hole) {
+static camber_status read_lines(reader *self, const json_t *json, int depth, bool hole) {
     if (!json_is_array(json)) {
         note_damage(self, "coordinates that are no array");
         return CAMBER_OK;
     }
     if (depth == 0)
-        return read_line(self, json, ring, hole);
+        return read_line(self, json, hole);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < json_array_size(json) && status == CAMBER_OK; i++)
-        status = read_lines(self, json_array_get(json, i), depth - 1, ring, depth == 1 && i > 0);
+        status = read_lines(self, json_array_get(json, i), depth - 1, depth == 1 && i > 0);
     return status;
 }
 
-static camber_status read_geometry(reader *self, const json_t *geometry, camber_geometry_kind kind, int depth) {
+static camber_status read_geometry(reader *self, const json_t *geometry, int depth) {
     static const struct {
         const char *name;
-        camber_geometry_kind kind;
         int depth; /* below 0: no lines */
-    } types[] = {{"LineString", CAMBER_GEOMETRY_LINE, 0}, {"MultiLineString", CAMBER_GEOMETRY_LINE, 1},
-                 {"Polygon", CAMBER_GEOMETRY_POLYGON, 1}, {"MultiPolygon", CAMBER_GEOMETRY_POLYGON, 2},
-                 {"Point", CAMBER_GEOMETRY_LINE, -1},     {"MultiPoint", CAMBER_GEOMETRY_LINE, -1}};
+        bool polygon;
+    } types[] = {{"LineString", 0, false},  {"MultiLineString", 1, false}, {"Polygon", 1, true},
+                 {"MultiPolygon", 2, true}, {"Point", -1, false},          {"MultiPoint", -1, false}};
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (type && strcmp(type, "GeometryCollection") == 0 && depth < DEEPEST) {
         const json_t *parts = json_object_get(geometry, "geometries");
         camber_status status = CAMBER_OK;
         for (size_t i = 0; i < json_array_size(parts) && status == CAMBER_OK; i++)
-            status = read_geometry(self, json_array_get(parts, i), kind, depth + 1);
+            status = read_geometry(self, json_array_get(parts, i), depth + 1);
         return status;
     }
     size_t i = 0;
@@ -256,10 +263,9 @@ static camber_status read_geometry(reader *self, const json_t *geometry, camber_
         return CAMBER_OK;
     }
     self->left_out |= types[i].depth < 0;
-    if (types[i].depth < 0 || types[i].kind != kind)
+    if (types[i].depth < 0 || types[i].polygon != (self->kind != CAMBER_GEOMETRY_LINE))
         return CAMBER_OK;
-    return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, kind == CAMBER_GEOMETRY_POLYGON,
-                      false);
+    return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, false);
 }
 
 /* Whether a geometry has lines, or polygons, at all. */
@@ -274,7 +280,7 @@ static bool has_kind(const json_t *geometry, camber_geometry_kind kind, int dept
                 return true;
         return false;
     }
-    return strstr(type, kind == CAMBER_GEOMETRY_POLYGON ? "Polygon" : "LineString") != NULL;
+    return strstr(type, camber_geometry_type(kind)) != NULL;
 }
 
 /* ---- Features ---- */
@@ -291,22 +297,31 @@ static void end_feature(reader *self) {
 }
 
 static camber_status read_feature(reader *self, const json_t *feature, const json_t *geometry) {
+    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
     self->damage = NULL;
     self->left_out = !geometry || json_is_null(geometry);
     camber_status status = CAMBER_OK;
     bool any = self->left_out;
-    for (int kind = 0; kind < 2 && status == CAMBER_OK; kind++) {
+    unsigned unread = 0;
+    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
         bool drawn = false;
-        if (!has_kind(geometry, (camber_geometry_kind)kind, 0))
+        self->kind = (camber_geometry_kind)kind;
+        if (!has_kind(geometry, self->kind, 0))
             continue;
         any = true;
+        if (!(self->kinds >> kind & 1)) {
+            unread |= 1u << kind;
+            continue;
+        }
         self->added = false;
-        status = find_class(self, feature, (camber_geometry_kind)kind, &drawn);
+        status = find_class(self, feature, &drawn);
         if (status == CAMBER_OK && drawn)
-            status = read_geometry(self, geometry, (camber_geometry_kind)kind, 0);
+            status = read_geometry(self, geometry, 0);
     }
+    self->kind = CAMBER_GEOMETRY_LINE;
     if (!any)
-        status = read_geometry(self, geometry, CAMBER_GEOMETRY_LINE, 0); /* the other kind that the geometry may have */
+        status = read_geometry(self, geometry, 0); /* the other kind that the geometry may have */
+    self->left_out |= (unread & CAMBER_KIND_LINE) || (unread & polygons) == polygons;
     end_feature(self);
     return status;
 }
@@ -340,7 +355,11 @@ camber_status camber_geojson_read(camber_features *features, const camber_geojso
                    .desc = desc,
                    .stats = stats,
                    .promote_id = json_is_string(promote) ? promote : NULL,
-                   .generate_id = json_is_true(json_object_get(desc->source->json, "generateId"))};
+                   .generate_id = json_is_true(json_object_get(desc->source->json, "generateId")),
+                   .rings.stats = &features->stats};
+    self.kinds = desc->kinds;
+    if (!desc->kinds)
+        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->style->wants_areas ? CAMBER_KIND_AREA : 0u);
     *stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
     self.values = camber_alloc(features->context, features->style->property_count, sizeof *self.values);
     const camber_status status = self.values ? read_root(&self) : CAMBER_ERROR_MEMORY;

@@ -8,6 +8,7 @@ typedef struct camber_geojson_desc {
     const char *what;                  /* the source, in messages */
     const json_t *root;                /* the document */
     const camber_style_source *source; /* its filter, generateId and promoteId */
+    unsigned kinds;                    /* CAMBER_KIND_*: what is drawn of it. 0: all that the style wants */
 } camber_geojson_desc;
 
 typedef struct camber_geojson_stats {
@@ -18,8 +19,8 @@ typedef struct camber_geojson_stats {
     double bounds[4];        /* x0, y0, x1, y1 of the lines, world coordinates; x0 > x1: none */
 } camber_geojson_stats;
 
-/* Adds the lines and outlines to the set, as features of features->source. Returns CAMBER_ERROR_INPUT (no GeoJSON),
- * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Adds the lines, outlines and areas to the set, as features of features->source. Returns CAMBER_ERROR_INPUT (no
+ * GeoJSON), CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_geojson_read(camber_features *features, const camber_geojson_desc *desc,
                                   camber_geojson_stats *stats);
 

@@ -1,10 +1,12 @@
 /* Reads vector tiles (Mapbox Vector Tile 2) into a set of features.
  *
- * Input: the decompressed bytes of one tile after the other. Output: features, whose lines go to the stitcher, which
- * cuts them at the tiles' borders. Messages are unpacked by protobuf-c into a bounded pool. Damage is counted.
+ * Input: the decompressed bytes of one tile after the other. Output: features, whose lines and rings go to the
+ * stitcher, which cuts them at the tiles' borders. Messages are unpacked by protobuf-c into a bounded pool. Damage is
+ * counted.
  */
 #include "source/mvt.h"
 #include "source/mvt_geometry.h"
+#include "source/rings.h"
 
 #include "vector_tile.pb-c.h"
 
@@ -43,6 +45,7 @@ struct camber_mvt {
     /* The layer being read. */
     camber_tile_address address;
     const tile_layer *layer;
+    unsigned kinds; /* CAMBER_KIND_* */
     char name[256];
     uint32_t layer_index;
     uint32_t *key_properties; /* layer->n_keys; NONE: no property of the style */
@@ -286,6 +289,7 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
     camber_tile_feature stitched = {.column = mvt->address.column,
                                     .row = mvt->address.row,
                                     .outline = kind == CAMBER_GEOMETRY_POLYGON,
+                                    .area = kind == CAMBER_GEOMETRY_AREA,
                                     .progress = {0, 1},
                                     .open_sides = mvt->address.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind};
@@ -316,22 +320,54 @@ static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature,
     return camber_mvt_geometry_read(&mvt->geometry, &commands);
 }
 
+/* Makes areas of a feature's rings. Where the first of them winds the other way, as some makers of tiles have it, so do
+ * all: then holes are those that go clockwise. */
+static void take_rings(camber_mvt *mvt) {
+    camber_mvt_geometry *geometry = &mvt->geometry;
+    camber_features_stats *stats = &mvt->desc.features->stats;
+    camber_rings rings = {.stats = stats};
+    size_t first = 0, points = 0, lines = 0;
+    double sign = 0.0;
+    stats->closed_rings += geometry->closed_rings;
+    for (size_t i = 0; i < geometry->line_count; i++) {
+        double *ring = geometry->points + 2 * first;
+        const double area = camber_ring_area(ring, geometry->ends[i] - first);
+        sign = sign != 0.0 ? sign : area;
+        const size_t count = camber_rings_take(&rings, ring, geometry->ends[i] - first, area * sign < 0.0);
+        stats->turned_rings += count && sign < 0.0;
+        memmove(geometry->points + 2 * points, ring, 2 * count * sizeof *ring);
+        first = geometry->ends[i];
+        points += count;
+        if (count)
+            geometry->ends[lines++] = points;
+    }
+    geometry->line_count = lines;
+    geometry->point_count = points;
+}
+
 static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const tile_feature *feature = camber__tile__feature__unpack(&mvt->pool.allocator, bytes.len, bytes.data);
     if (!feature)
         return judge_failure(mvt, "a feature that does not parse");
     mvt->stats.features++;
-    const bool line = feature->type == 2, polygon = feature->type == 3 && mvt->desc.wants_polygons;
-    if (!line && !polygon) {
-        mvt->stats.skipped_features++;
-        return CAMBER_OK;
+    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
+    const unsigned kinds = mvt->kinds & (feature->type == 2 ? CAMBER_KIND_LINE : feature->type == 3 ? polygons : 0u);
+    mvt->stats.skipped_features += !kinds;
+    camber_status status = CAMBER_OK;
+    const char *damage = NULL;
+    bool kept = false;
+    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
+        if (!(kinds >> kind & 1))
+            continue;
+        status = read_geometry(mvt, feature, (camber_geometry_kind)kind);
+        damage = damage ? damage : mvt->geometry.damage;
+        kept = kept || mvt->geometry.line_count;
+        if (status == CAMBER_OK && kind == CAMBER_GEOMETRY_AREA)
+            take_rings(mvt);
+        if (status == CAMBER_OK && mvt->geometry.line_count)
+            status = add_to_stitcher(mvt, feature, (camber_geometry_kind)kind, &damage);
     }
-    const camber_geometry_kind kind = polygon ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
-    camber_status status = read_geometry(mvt, feature, kind);
-    const char *damage = mvt->geometry.damage;
-    mvt->stats.kept_features += mvt->geometry.line_count > 0;
-    if (status == CAMBER_OK && mvt->geometry.line_count)
-        status = add_to_stitcher(mvt, feature, kind, &damage);
+    mvt->stats.kept_features += kept;
     if (damage)
         note_damage(mvt, damage);
     return status;
@@ -339,11 +375,17 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
 
 /* ---- A layer ---- */
 
-static bool is_wanted(const camber_mvt *mvt) {
-    for (size_t i = 0; i < mvt->desc.layer_count; i++)
-        if (strcmp(mvt->desc.layers[i], mvt->name) == 0)
-            return true;
-    return false;
+/* Finds out what of the layer is wanted. */
+static unsigned wanted_kinds(const camber_mvt *mvt) {
+    const camber_mvt_desc *desc = &mvt->desc;
+    for (size_t i = 0; i < desc->layer_count; i++) {
+        if (strcmp(desc->layers[i], mvt->name) != 0)
+            continue;
+        return desc->layer_kinds ? desc->layer_kinds[i]
+                                 : CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
+                                       (desc->wants_areas ? CAMBER_KIND_AREA : 0u);
+    }
+    return 0;
 }
 
 /* Lists a layer, where none is wanted and the question is which layers there are. */
@@ -381,7 +423,8 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     mvt->layer = layer;
     if (!mvt->desc.layers)
         return list_layer(mvt);
-    if (!is_wanted(mvt))
+    mvt->kinds = wanted_kinds(mvt);
+    if (!mvt->kinds)
         return CAMBER_OK;
     if (layer->extent == 0 || (layer->has_version && (layer->version < 1 || layer->version > 2))) {
         note_damage(mvt, layer->extent ? "of a version that is neither 1 nor 2" : "its extent is 0");

@@ -1,4 +1,4 @@
-/* Reads one vector tile after the other into a set: lines and outlines of the wanted layers, cut at the tiles'
+/* Reads one vector tile after the other into a set: lines, outlines and areas of the wanted layers, cut at the tiles'
  * borders. */
 #ifndef CAMBER_SOURCE_MVT_H
 #define CAMBER_SOURCE_MVT_H
@@ -20,7 +20,8 @@ typedef struct camber_mvt_desc {
     const char *const
         *layers; /* the names of the wanted layers. NULL: none; the layers that the tiles hold are only listed */
     size_t layer_count;
-    bool wants_polygons;
+    const unsigned *layer_kinds; /* layer_count: CAMBER_KIND_*, what is read of each. NULL: as the next two say */
+    bool wants_polygons, wants_areas;
     json_t *promote_id;  /* the property that is the id, as a string, or by layer as an object. NULL: none */
     bool wants_progress; /* mapbox_clip_start and mapbox_clip_end are line-progress at a feature's ends */
     bool plain;          /* CAMBER_PLAIN_PROPERTY is true until a layer is seen to name another property */

@@ -37,9 +37,14 @@ static void note_damage(camber_mvt_geometry *geometry, const char *damage) {
         geometry->damage = damage;
 }
 
+static bool add_first_again(const pen *p) {
+    const double x = p->geometry->points[2 * p->first], y = p->geometry->points[2 * p->first + 1];
+    return add_world_point(p->geometry, x, y);
+}
+
 static bool end_line(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
-    const bool ring = p->commands->kind == CAMBER_GEOMETRY_POLYGON;
+    const bool ring = p->commands->kind != CAMBER_GEOMETRY_LINE;
     const size_t count = geometry->point_count - p->first;
     if (count == 0)
         return true;
@@ -49,6 +54,11 @@ static bool end_line(pen *p) {
         note_damage(geometry, ring ? "a ring of one point" : "a line of one point");
         geometry->point_count = p->first;
         return true;
+    }
+    if (p->commands->kind == CAMBER_GEOMETRY_AREA && !p->closed) {
+        geometry->closed_rings++;
+        if (!add_first_again(p))
+            return false;
     }
     if (!camber_grow(geometry->context, &geometry->ends, &geometry->line_capacity, geometry->line_count + 1,
                      sizeof *geometry->ends))
@@ -63,13 +73,12 @@ static int64_t unzigzag(uint32_t word) {
 
 static bool close_ring(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
-    if (p->commands->kind != CAMBER_GEOMETRY_POLYGON || geometry->point_count == p->first) {
+    if (p->commands->kind == CAMBER_GEOMETRY_LINE || geometry->point_count == p->first) {
         note_damage(geometry, "it closes what is no ring");
         return true;
     }
     p->closed = true;
-    const double x = geometry->points[2 * p->first], y = geometry->points[2 * p->first + 1];
-    return add_world_point(geometry, x, y) && end_line(p);
+    return add_first_again(p) && end_line(p);
 }
 
 /* Reads this many points from words on. */
@@ -93,7 +102,7 @@ static bool run_command(pen *p, uint32_t command, const uint32_t *words, size_t 
 }
 
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands) {
-    geometry->point_count = geometry->line_count = 0;
+    geometry->point_count = geometry->line_count = geometry->closed_rings = 0;
     geometry->damage = NULL;
     pen p = {.geometry = geometry, .commands = commands};
     bool fits = true;

@@ -10,7 +10,8 @@ typedef struct camber_mvt_geometry {
     double *points; /* world coordinates */
     size_t *ends;
     size_t point_count, point_capacity, line_count, line_capacity;
-    const char *damage; /* NULL: none. The lines are those that can be read */
+    size_t closed_rings; /* of areas, which were not closed */
+    const char *damage;  /* NULL: none. The lines are those that can be read */
 } camber_mvt_geometry;
 
 typedef struct camber_mvt_commands {

@@ -77,6 +77,47 @@ bool camber_region_touches(const camber_region *region, const double *points, si
     return part_touches(&parts[0], points, count) || (part_count > 1 && part_touches(&parts[1], points, count));
 }
 
+/* ---- Areas ---- */
+
+/* How often a ring winds around a place that it does not touch. */
+static int winding_of(const double *points, size_t count, double x, double y) {
+    int winding = 0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double *p = points + 2 * i, *q = p + 2;
+        if ((p[1] > y) == (q[1] > y) || !(x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])))
+            continue;
+        winding += q[1] > p[1] ? 1 : -1;
+    }
+    return winding;
+}
+
+static bool box_meets_area(const camber_region *box, const double *points, const size_t *offsets, size_t ring_count) {
+    int winding = 0;
+    for (size_t i = 0; i < ring_count; i++) {
+        const double *ring = points + 2 * offsets[i];
+        const size_t count = offsets[i + 1] - offsets[i];
+        if (part_touches(box, ring, count))
+            return true;
+        winding += winding_of(ring, count, 0.5 * (box->x0 + box->x1), 0.5 * (box->y0 + box->y1));
+    }
+    return winding != 0;
+}
+
+bool camber_region_meets_area(const camber_region *region, const double *points, const size_t *offsets,
+                              size_t ring_count) {
+    double west = INFINITY, east = -INFINITY;
+    for (size_t i = offsets[0]; i < offsets[ring_count]; i++) {
+        west = fmin(west, points[2 * i]);
+        east = fmax(east, points[2 * i]);
+    }
+    for (double world = ceil(region->x0 - east); world <= floor(region->x1 - west); world += 1.0) {
+        const camber_region box = {region->x0 - world, region->y0, region->x1 - world, region->y1};
+        if (box_meets_area(&box, points, offsets, ring_count))
+            return true;
+    }
+    return false;
+}
+
 /* ---- Confining a set ---- */
 
 typedef struct confining {
@@ -109,6 +150,18 @@ static void keep_polyline(confining *self, size_t polyline) {
     f->offsets[++self->polylines] = self->points;
 }
 
+bool camber_features_touch(const camber_features *features, const camber_region *region, size_t polyline,
+                           size_t *next) {
+    const size_t *offsets = features->offsets + polyline;
+    *next = polyline + 1;
+    if (camber_features_kind(features, polyline) != CAMBER_GEOMETRY_AREA)
+        return camber_region_touches(region, features->points + 2 * offsets[0], offsets[1] - offsets[0]);
+    while (*next < features->polyline_count &&
+           features->polyline_feature[*next] == features->polyline_feature[polyline])
+        ++*next;
+    return camber_region_meets_area(region, features->points, offsets, *next - polyline);
+}
+
 camber_status camber_features_confine(camber_features *features, size_t first_polyline, const camber_region *region) {
     if (first_polyline == features->polyline_count)
         return camber_features_renumber_classes(features);
@@ -124,9 +177,9 @@ camber_status camber_features_confine(camber_features *features, size_t first_po
         return CAMBER_ERROR_MEMORY;
     if (first_feature)
         memcpy(self.feature_class, features->feature_class, first_feature * sizeof *self.feature_class);
-    for (size_t p = first_polyline; p < end; p++) {
-        const size_t begin = features->offsets[p];
-        if (camber_region_touches(region, features->points + 2 * begin, features->offsets[p + 1] - begin))
+    for (size_t p = first_polyline, next; p < end; p = next) {
+        const bool stays = camber_features_touch(features, region, p, &next);
+        for (; p < next && stays; p++)
             keep_polyline(&self, p);
     }
     camber_free(features->context, features->feature_class);

@@ -14,5 +14,9 @@ size_t camber_region_parts(const camber_region *region, camber_region parts[2]);
 bool camber_region_has_point(const camber_region *region, const double *point);
 /* Whether a polyline has a point in common with the region in any copy of the world. points: count pairs. */
 bool camber_region_touches(const camber_region *region, const double *points, size_t count);
+/* Whether an area has something in the region: a ring touches it, or the rings together wind around all of it. Rings
+ * may lie beyond the edges of the world. Ring i has the points [offsets[i], offsets[i + 1]). */
+bool camber_region_meets_area(const camber_region *region, const double *points, const size_t *offsets,
+                              size_t ring_count);
 
 #endif

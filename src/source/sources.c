@@ -1,4 +1,4 @@
-/* Opens the sources that a style's line layers name, and reads them.
+/* Opens the sources that a style's line and fill layers name, and reads them.
  *
  * Input: the style, the folder that its relative paths start from, and the quadrangle that the view sees. Output:
  * features. GeoJSON is read when it is opened; tiles are read for the view, at the zoom that it has.
@@ -6,6 +6,7 @@
 #include "source/sources.h"
 #include "source/geojson.h"
 #include "source/mercator.h"
+#include "source/rings.h"
 #include "source/tile_reader.h"
 #include "source/url.h"
 #include "style/json.h"
@@ -35,8 +36,27 @@ struct camber_sources {
     size_t count;
 };
 
+/* The kinds of features that a layer draws: CAMBER_KIND_*. Besides backgrounds and lines there are fills alone. */
+static unsigned kinds_of(const camber_style_layer *layer) {
+    if (layer->kind == CAMBER_LAYER_BACKGROUND)
+        return 0;
+    return layer->kind == CAMBER_LAYER_LINE ? CAMBER_KIND_LINE | CAMBER_KIND_POLYGON : CAMBER_KIND_AREA;
+}
+
 static bool is_drawn_from(const camber_style_layer *layer, uint32_t index) {
-    return layer->kind == CAMBER_LAYER_LINE && layer->visible && layer->source_index == index;
+    return kinds_of(layer) && layer->visible && layer->source_index == index;
+}
+
+/* The kinds of features that the style draws of a source. source_layer NULL: of all of it. */
+static unsigned kinds_from(const camber_style *style, uint32_t index, const char *source_layer) {
+    unsigned kinds = 0;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = &style->layers[i];
+        if (is_drawn_from(layer, index) &&
+            (!source_layer || (layer->source_layer && strcmp(layer->source_layer, source_layer) == 0)))
+            kinds |= kinds_of(layer);
+    }
+    return kinds;
 }
 
 static bool is_wanted(const camber_style *style, uint32_t index) {
@@ -103,6 +123,7 @@ static camber_status fail_damaged(const camber_sources *sources, const char *wha
 
 static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_context *context = sources->context;
+    const camber_features_stats before = sources->features->stats;
     const size_t features_before = sources->features->feature_count;
     const json_t *data = json_object_get(one->style->json, "data");
     json_t *loaded = NULL;
@@ -120,7 +141,10 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
                              one->pointer);
     }
     camber_geojson_stats stats = {0};
-    const camber_geojson_desc desc = {.what = one->what, .root = loaded ? loaded : data, .source = one->style};
+    const camber_geojson_desc desc = {.what = one->what,
+                                      .root = loaded ? loaded : data,
+                                      .source = one->style,
+                                      .kinds = kinds_from(sources->features->style, one->index, NULL)};
     if (status == CAMBER_OK)
         status = camber_geojson_read(sources->features, &desc, &stats);
     json_decref(loaded);
@@ -134,6 +158,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     sources->features->stats.invalid_points += stats.invalid_points;
     warn_of_losses(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
     warn_invalid(sources, one->what, stats.invalid_points);
+    camber_rings_report(sources->features, one->what, &before);
     return camber_features_add_attribution(sources->features,
                                            json_string_value(json_object_get(one->style->json, "attribution")));
 }
@@ -343,6 +368,7 @@ static camber_status read_addresses(camber_sources *sources, const source *one, 
     camber_features *features = sources->features;
     camber_tile_result result;
     const size_t first_polyline = features->polyline_count;
+    const camber_features_stats before = features->stats;
     features->source = one->index;
     camber_status status = camber_features_read_tiles(features, reading, &result);
     if (status == CAMBER_OK && result.found > 0 && result.lost == result.found)
@@ -353,6 +379,8 @@ static camber_status read_addresses(camber_sources *sources, const source *one, 
         status = camber_features_add_attribution(features, one->set->attribution);
     if (status != CAMBER_OK)
         return status;
+    camber_features_pin_borders(features, first_polyline, reading->zoom);
+    camber_rings_report(features, one->what, &before);
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
     warn_of_losses(sources, one->what, result.stats.damaged_features, result.stats.damage,
@@ -374,7 +402,8 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
     camber_tile_reading reading = {.set = one->set, .zoom = zoom};
     camber_status status = CAMBER_ERROR_MEMORY;
     const char **names = camber_alloc(sources->context, style->layer_count, sizeof *names);
-    if (names)
+    unsigned *kinds = camber_alloc(sources->context, style->layer_count, sizeof *kinds);
+    if (names && kinds)
         status = camber_tile_cover_list(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &addresses,
                                         &reading.address_count);
     if (status == CAMBER_OK)
@@ -384,12 +413,15 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
         reading.mvt = (camber_mvt_desc){.features = sources->features,
                                         .layers = names,
                                         .layer_count = list_layers(style, one->index, names),
-                                        .wants_polygons = true,
+                                        .layer_kinds = kinds,
                                         .wants_progress = style->directed,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
+        for (size_t i = 0; i < reading.mvt.layer_count; i++)
+            kinds[i] = kinds_from(style, one->index, names[i]);
         status = read_addresses(sources, one, &reading);
     }
     camber_free(sources->context, addresses);
+    camber_free(sources->context, kinds);
     camber_free(sources->context, names);
     return status;
 }

@@ -1,4 +1,5 @@
-/* The sources that a style's line layers name: GeoJSON is read when it is opened, tiles as a view sees them. */
+/* The sources that a style's line and fill layers name: GeoJSON is read when it is opened, tiles as a view sees
+ * them. */
 #ifndef CAMBER_SOURCE_SOURCES_H
 #define CAMBER_SOURCE_SOURCES_H
 

@@ -92,28 +92,24 @@ static camber_status find_feature(camber_tile_stitcher *stitcher, const camber_t
 
 /* ---- Cutting at the border ---- */
 
-typedef struct tile_box {
-    double low[2], high[2];
-} tile_box;
-
 typedef struct tile_cut {
     camber_tile_stitcher *stitcher;
-    tile_box box;
+    camber_tile_box box;
     camber_cut_line line; /* the line under construction while open; its tile and feature hold for all lines */
     bool open;
     const double *progress; /* NULL: none */
     double length, done;    /* the line's length, and its length before the segment */
 } tile_cut;
 
-static bool on_border(const tile_box *box, const double *point) {
+static bool on_border(const camber_tile_box *box, const double *point) {
     return point[0] == box->low[0] || point[0] == box->high[0] || point[1] == box->low[1] || point[1] == box->high[1];
 }
 
-static bool inside(const tile_box *box, const double *point) {
+static bool inside(const camber_tile_box *box, const double *point) {
     return point[0] >= box->low[0] && point[0] <= box->high[0] && point[1] >= box->low[1] && point[1] <= box->high[1];
 }
 
-static bool along_border(const tile_box *box, const double *p, const double *q) {
+static bool along_border(const camber_tile_box *box, const double *p, const double *q) {
     for (int axis = 0; axis < 2; axis++)
         if (p[axis] == q[axis] && (p[axis] == box->low[axis] || p[axis] == box->high[axis]))
             return true;
@@ -122,7 +118,7 @@ static bool along_border(const tile_box *box, const double *p, const double *q) 
 
 /* Clips the segment p q to the box (Liang and Barsky) and puts cut ends exactly on the border. false: nothing of it
  * is inside, or one point only. */
-static bool clip_segment(const tile_box *box, const double *p, const double *q, double ends[4], bool cut[2]) {
+static bool clip_segment(const camber_tile_box *box, const double *p, const double *q, double ends[4], bool cut[2]) {
     double t[2] = {0, 1};
     int axis_of[2] = {-1, -1};
     double edge_of[2] = {0, 0};
@@ -162,12 +158,23 @@ static bool clip_segment(const tile_box *box, const double *p, const double *q, 
     return ends[0] != ends[2] || ends[1] != ends[3];
 }
 
-static bool add_point(camber_tile_stitcher *stitcher, const double *point) {
+bool camber_tile_stitcher_add_point(camber_tile_stitcher *stitcher, const double *point) {
     if (!camber_grow(stitcher->context, &stitcher->points, &stitcher->point_capacity, stitcher->point_count + 1,
                      2 * sizeof *stitcher->points))
         return false;
     memcpy(stitcher->points + 2 * stitcher->point_count++, point, 2 * sizeof *point);
     return true;
+}
+
+camber_status camber_tile_stitcher_add_line(camber_tile_stitcher *stitcher, const camber_cut_line *line) {
+    if (stitcher->line_count >= UINT32_MAX / 2 - 1)
+        return camber_fail(stitcher->context, CAMBER_ERROR_LIMIT,
+                           "more than 2147483646 pieces in tiles; select fewer with an attribute filter");
+    if (!camber_grow(stitcher->context, &stitcher->lines, &stitcher->line_capacity, stitcher->line_count + 1,
+                     sizeof *stitcher->lines))
+        return CAMBER_ERROR_MEMORY;
+    stitcher->lines[stitcher->line_count++] = *line;
+    return CAMBER_OK;
 }
 
 static camber_status close_line(tile_cut *cut, bool is_cut) {
@@ -180,14 +187,7 @@ static camber_status close_line(tile_cut *cut, bool is_cut) {
     line->cut[1] = is_cut;
     line->border[0] = on_border(&cut->box, stitcher->points + 2 * line->first);
     line->border[1] = on_border(&cut->box, stitcher->points + 2 * (stitcher->point_count - 1));
-    if (stitcher->line_count >= UINT32_MAX / 2 - 1)
-        return camber_fail(stitcher->context, CAMBER_ERROR_LIMIT,
-                           "more than 2147483646 pieces in tiles; select fewer with an attribute filter");
-    if (!camber_grow(stitcher->context, &stitcher->lines, &stitcher->line_capacity, stitcher->line_count + 1,
-                     sizeof *stitcher->lines))
-        return CAMBER_ERROR_MEMORY;
-    stitcher->lines[stitcher->line_count++] = *line;
-    return CAMBER_OK;
+    return camber_tile_stitcher_add_line(stitcher, line);
 }
 
 static camber_status open_line(tile_cut *cut, const double *point, bool is_cut, bool along) {
@@ -195,7 +195,7 @@ static camber_status open_line(tile_cut *cut, const double *point, bool is_cut, 
     cut->line.first = cut->stitcher->point_count;
     cut->line.cut[0] = is_cut;
     cut->line.along_border = along;
-    return add_point(cut->stitcher, point) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return camber_tile_stitcher_add_point(cut->stitcher, point) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 static float progress_at(const tile_cut *cut, const double *p, const double *at) {
@@ -205,7 +205,7 @@ static float progress_at(const tile_cut *cut, const double *p, const double *at)
 
 static camber_status cut_segment(tile_cut *cut, const double *p, const double *q, bool outline) {
     if (camber_tile_stitcher_same(p, q))
-        return cut->open && !add_point(cut->stitcher, q) ? CAMBER_ERROR_MEMORY : CAMBER_OK;
+        return cut->open && !camber_tile_stitcher_add_point(cut->stitcher, q) ? CAMBER_ERROR_MEMORY : CAMBER_OK;
     double ends[4];
     bool is_cut[2];
     if (!clip_segment(&cut->box, p, q, ends, is_cut))
@@ -223,7 +223,7 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
     }
     if (cut->progress)
         cut->line.progress[1] = progress_at(cut, p, ends + 2);
-    if (status == CAMBER_OK && !add_point(cut->stitcher, ends + 2))
+    if (status == CAMBER_OK && !camber_tile_stitcher_add_point(cut->stitcher, ends + 2))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK && is_cut[1])
         status = close_line(cut, true);
@@ -242,7 +242,7 @@ static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_lin
     for (size_t i = 1; i < head->count; i++) {
         double point[2];
         memcpy(point, stitcher->points + 2 * (head->first + i), sizeof point);
-        if (!add_point(stitcher, point))
+        if (!camber_tile_stitcher_add_point(stitcher, point))
             return CAMBER_ERROR_MEMORY;
     }
     tail->count += head->count - 1;
@@ -275,7 +275,7 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
         /* A dot: all points are one. */
         status = open_line(cut, points, false, false);
         for (size_t i = 1; i < count && status == CAMBER_OK; i++)
-            status = add_point(stitcher, points) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+            status = camber_tile_stitcher_add_point(stitcher, points) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     }
     if (status == CAMBER_OK)
         status = close_line(cut, false);
@@ -284,14 +284,14 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
     return status;
 }
 
-/* The box that lines are cut to: a whole tile more at open sides, where the buffer is kept. */
-static tile_box box_of(const camber_tile_feature *feature) {
+/* The box that lines are cut to: a whole tile more at open sides, where the buffer is kept. Areas lose theirs. */
+static camber_tile_box box_of(const camber_tile_feature *feature) {
     const double column = feature->column, row = feature->row;
-    const unsigned open = feature->open_sides;
-    return (tile_box){{(column - (open & CAMBER_SIDE_WEST ? 1 : 0)) * CAMBER_TILE_UNITS,
-                       (row - (open & CAMBER_SIDE_NORTH ? 1 : 0)) * CAMBER_TILE_UNITS},
-                      {(column + (open & CAMBER_SIDE_EAST ? 2 : 1)) * CAMBER_TILE_UNITS,
-                       (row + (open & CAMBER_SIDE_SOUTH ? 2 : 1)) * CAMBER_TILE_UNITS}};
+    const unsigned open = feature->area ? 0 : feature->open_sides;
+    return (camber_tile_box){{(column - (open & CAMBER_SIDE_WEST ? 1 : 0)) * CAMBER_TILE_UNITS,
+                              (row - (open & CAMBER_SIDE_NORTH ? 1 : 0)) * CAMBER_TILE_UNITS},
+                             {(column + (open & CAMBER_SIDE_EAST ? 2 : 1)) * CAMBER_TILE_UNITS,
+                              (row + (open & CAMBER_SIDE_SOUTH ? 2 : 1)) * CAMBER_TILE_UNITS}};
 }
 
 camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
@@ -316,7 +316,8 @@ camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const cam
             stitcher->scratch[k] = fabs(unit - near) <= SNAP ? near : unit;
         }
         if (count)
-            status = cut_line(&cut, stitcher->scratch, count, feature->outline);
+            status = feature->area ? camber_tile_stitcher_add_ring(stitcher, &cut.line, &cut.box, count)
+                                   : cut_line(&cut, stitcher->scratch, count, feature->outline);
         first = lines->ends[i];
     }
     return status;

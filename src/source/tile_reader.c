@@ -5,6 +5,7 @@
  * chosen by the names that common schemas give to it.
  */
 #include "source/tile_reader.h"
+#include "source/rings.h"
 
 #include <stdio.h>
 #include <strings.h>
@@ -289,6 +290,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                                  .layers = self->layers,
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
+                                                 .wants_areas = style->wants_areas,
                                                  .plain = wants_plain(style)}};
     return camber_features_read_tiles(self->features, &reading, result);
 }
@@ -350,6 +352,8 @@ camber_status camber_features_read_tile_file(camber_features *features, const ca
         camber_features_reset(features, &before);
         return status;
     }
+    camber_features_pin_borders(features, before.polyline_count, self.zoom);
+    camber_rings_report(features, desc->path, &before.stats);
     add_stats(features, &result.stats);
     warn_of_losses(&self, &result.stats);
     camber_progress(features->context, "reading", 1);

@@ -1,5 +1,5 @@
 /* The stitcher joins features that vector tiles cut: tile_cut.c cuts their lines at the tiles' borders, exactly, and
- * tile_join.c joins them across the borders.
+ * tile_join.c joins them across the borders. Areas are cut by tile_area.c, and their pieces stay apart.
  */
 #ifndef CAMBER_SOURCE_TILE_STITCHER_H
 #define CAMBER_SOURCE_TILE_STITCHER_H
@@ -15,6 +15,7 @@ typedef struct camber_tile_feature {
     uint32_t column, row; /* tile, from the north-west; a column beyond the last is one of the next world */
     uint32_t class_index;
     bool outline; /* of a polygon: lines along the border were made by the tile and are left out */
+    bool area;    /* its lines are rings as rings.h has them: each is cut to the tile, at open sides too */
     bool has_id;
     uint64_t id; /* the same in every tile */
     bool has_progress;
@@ -35,6 +36,9 @@ void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher);
 /* Cuts the lines at the tile's border and keeps what lies inside. */
 camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
                                        const camber_tile_lines *lines);
+/* Makes the points of areas that lie on the borders of tiles ones that always stay, so that pieces go on meeting there
+ * when they are simplified. For the polylines of first_polyline and after it, once they are weighed. */
+void camber_features_pin_borders(camber_features *features, size_t first_polyline, int zoom);
 /* Joins the lines and adds them to the set. Where the style is directed, an end is joined only to a start. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
 
@@ -44,6 +48,7 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
  * this or to half or double as much, and a double holds them exactly at all zooms. */
 #define CAMBER_TILE_UNITS 4096.0
 
+/* A line, or a ring of an area. */
 typedef struct camber_cut_line {
     size_t first, count; /* its points; count 0: the line is not there any more */
     uint32_t feature;    /* index into features */
@@ -77,6 +82,17 @@ struct camber_tile_stitcher {
     double *scratch; /* one polyline */
     size_t scratch_capacity;
 };
+
+typedef struct camber_tile_box {
+    double low[2], high[2];
+} camber_tile_box;
+
+/* Returns false where memory is out. */
+bool camber_tile_stitcher_add_point(camber_tile_stitcher *stitcher, const double *point);
+camber_status camber_tile_stitcher_add_line(camber_tile_stitcher *stitcher, const camber_cut_line *line);
+/* Cuts the ring of so many points in scratch to the box, and adds what is left as a line like this one. */
+camber_status camber_tile_stitcher_add_ring(camber_tile_stitcher *stitcher, const camber_cut_line *like,
+                                            const camber_tile_box *box, size_t count);
 
 static inline bool camber_tile_stitcher_same(const double *p, const double *q) {
     return p[0] == q[0] && p[1] == q[1];

@@ -79,7 +79,7 @@ static void cross_antimeridian(camber_world_lines *lines, double x, double y) {
 }
 
 static void add(camber_world_lines *lines, double x, double y) {
-    if (lines->open && !lines->whole && fabs(x - lines->x) > 0.5)
+    if (lines->open && !lines->whole && !lines->uncut && fabs(x - lines->x) > 0.5)
         cross_antimeridian(lines, x, y);
     push(lines, x, y);
     lines->x = x;

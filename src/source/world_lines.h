@@ -9,6 +9,7 @@ typedef struct camber_world_lines {
     camber_context *context;
     /* of tiles: coordinates stay where they are, beyond the world's edges too; they are cut later */
     bool whole;
+    bool uncut;     /* of areas: lines are not split at the antimeridian */
     double *points; /* pairs of x and y */
     size_t point_count, point_capacity;
     size_t *ends; /* line i ends before point ends[i] */

@@ -127,6 +127,7 @@ struct camber_style {
     bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool accumulates; /* a line layer's lines are seen through each other, their ends too */
     bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
+    bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
 };
 
 /* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */

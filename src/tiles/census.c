@@ -1,8 +1,9 @@
-/* Takes the census of a zoom: which tiles lines touch, before anything is drawn.
+/* Takes the census of a zoom: which tiles lines touch and areas cover, before anything is drawn.
  *
  * Input: features and a zoom's plan. Output: metatiles of tiles along the Hilbert curve, each with the tiles that a
  * line comes near, and the polylines that it is drawn of. Main idea: walk the points that the zoom draws, in tiles as
- * units, and mark the tiles that a segment touches, grown by how far its stroke reaches. Threads walk ranges of
+ * units, and mark the tiles that a segment touches, grown by how far its stroke reaches. Tiles that lie inside of an
+ * area's ring are marked too. Threads walk ranges of
  * polylines; each has a table of metatiles, and the tables are put together in order, so the result does not depend on
  * the threads.
  *
@@ -33,6 +34,13 @@ typedef struct found_metatile {
     uint64_t tiles, points;
 } found_metatile;
 
+/* Where a ring crosses the middle of a row of tiles, at x in tiles: downwards 1, upwards -1. */
+typedef struct crossing {
+    int64_t row;
+    double x;
+    int winding;
+} crossing;
+
 /* The share of one thread. */
 typedef struct share {
     camber_context *context;
@@ -46,6 +54,8 @@ typedef struct share {
     size_t slot_count;
     metatile_pair *pairs; /* in the order of polylines */
     size_t pair_count, pair_capacity;
+    crossing *crossings; /* of the ring */
+    size_t crossing_count, crossing_capacity;
     uint32_t polyline;
     size_t metatile; /* the one that was marked last; metatile_count: none yet */
 } share;
@@ -176,11 +186,52 @@ static bool count_point(share *s, tile_point at) {
     return true;
 }
 
+/* ---- Inside of areas ---- */
+
+/* Notes where a ring's segment crosses the middles of rows of tiles. */
+static bool add_crossings(share *s, tile_point a, tile_point b) {
+    const tile_point top = a.y <= b.y ? a : b, bottom = a.y <= b.y ? b : a;
+    const int64_t first = clamp(top.y + 0.5, 0, s->tiles), end = clamp(bottom.y + 0.5, 0, s->tiles);
+    if (!camber_grow(s->context, &s->crossings, &s->crossing_capacity, s->crossing_count + (size_t)(end - first),
+                     sizeof *s->crossings))
+        return false;
+    for (int64_t row = first; row < end; row++) {
+        const double part = ((double)row + 0.5 - top.y) / (bottom.y - top.y);
+        s->crossings[s->crossing_count++] = (crossing){row, top.x + (bottom.x - top.x) * part, a.y <= b.y ? 1 : -1};
+    }
+    return true;
+}
+
+static int compare_crossings(const void *left, const void *right) {
+    const crossing *a = left, *b = right;
+    if (a->row != b->row)
+        return a->row < b->row ? -1 : 1;
+    return a->x < b->x ? -1 : a->x > b->x;
+}
+
+/* Marks the tiles whose middles the ring winds around. Those that its segments touch are marked already, so the middle
+ * of a tile speaks for all of it. A hole is marked too: a tile inside it is drawn of the hole and its outer ring. */
+static bool mark_inside(share *s) {
+    int winding = 0;
+    if (s->crossing_count)
+        qsort(s->crossings, s->crossing_count, sizeof *s->crossings, compare_crossings);
+    for (size_t i = 0; i + 1 < s->crossing_count; i++) {
+        const crossing *from = s->crossings + i, *to = from + 1;
+        winding = from->row == to->row ? winding + from->winding : 0;
+        const double first = ceil(from->x - 0.5), last = floor(to->x - 0.5);
+        if (winding != 0 && first <= last && !mark_row(s, from->row, first, last))
+            return false;
+    }
+    s->crossing_count = 0;
+    return true;
+}
+
 static bool mark_polyline(share *s, size_t polyline) {
     const camber_features *features = s->plan->features;
     const double reach_px = (double)camber_zoom_plan_reach(s->plan, polyline), scale = (double)s->tiles;
     const double reach = reach_px / (s->plan->view.scale_px / scale);
     const size_t first = features->offsets[polyline], end = features->offsets[polyline + 1];
+    const bool area = camber_features_kind(features, polyline) == CAMBER_GEOMETRY_AREA;
     tile_point before = {0};
     if (reach_px < 0.0)
         return true;
@@ -191,11 +242,12 @@ static bool mark_polyline(share *s, size_t polyline) {
         const tile_point at = {features->points[2 * i] * scale, features->points[2 * i + 1] * scale};
         if (!isfinite(at.x) || !isfinite(at.y))
             continue;
-        if (!count_point(s, at) || !mark_segment(s, i > first ? before : at, at, reach))
+        if (!count_point(s, at) || !mark_segment(s, i > first ? before : at, at, reach) ||
+            (area && i > first && !add_crossings(s, before, at)))
             return false;
         before = at;
     }
-    return true;
+    return mark_inside(s);
 }
 
 /* ---- The threads ---- */
@@ -317,6 +369,7 @@ camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_
         camber_free(workers->contexts[i], task.shares[i].metatiles);
         camber_free(workers->contexts[i], task.shares[i].slots);
         camber_free(workers->contexts[i], task.shares[i].pairs);
+        camber_free(workers->contexts[i], task.shares[i].crossings);
     }
     camber_free(workers->context, task.shares);
     return status;

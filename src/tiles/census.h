@@ -1,4 +1,4 @@
-/* Which tiles of a zoom lines touch, and which lines each metatile of tiles is drawn of. */
+/* Which tiles of a zoom lines touch and areas cover, and which of them each metatile of tiles is drawn of. */
 #ifndef CAMBER_TILES_CENSUS_H
 #define CAMBER_TILES_CENSUS_H
 
@@ -11,7 +11,7 @@ enum { CAMBER_METATILE_SIDE_MOST = 8 };
 
 typedef struct camber_metatile {
     uint32_t column, row; /* in metatiles */
-    uint64_t tiles;       /* bit side * row + column of each tile that a line touches */
+    uint64_t tiles;       /* bit side * row + column of each tile that a line touches, or that lies in an area */
     uint64_t points;      /* drawn points that lie in it, about */
     size_t first, end;    /* of the census's polylines */
 } camber_metatile;

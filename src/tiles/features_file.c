@@ -6,7 +6,8 @@
  *
  *     header | JSON: layers, classes | numbers by feature | numbers by polyline | blocks of points | checksum
  *
- * A block has the points of some polylines, then their importance. A reader holds one block at a time. */
+ * A block has the points of some polylines, then their importance. All polylines of a feature lie in one block, for the
+ * rings of an area are taken together. A reader holds one block at a time. */
 #define _FILE_OFFSET_BITS 64
 #define _XOPEN_SOURCE 700
 
@@ -22,7 +23,7 @@
 #include <unistd.h>
 
 enum { BLOCK_POLYLINES = 1 << 14 };
-#define MAGIC UINT64_C(0x31746165666d6163)
+#define MAGIC UINT64_C(0x32746165666d6163)
 
 typedef struct header {
     uint64_t magic, input, json_bytes, feature_count, polyline_count, point_count, has_progress;
@@ -127,12 +128,13 @@ static json_t *make_json(const camber_features *features) {
 static camber_status take_class(camber_features *features, const json_t *json, camber_value *values, size_t number) {
     enum { BEFORE = 5 };
     const size_t count = features->style->property_count;
+    const json_int_t kind = json_integer_value(json_array_get(json, 2));
     camber_feature_class class = {.layer = (uint32_t)json_integer_value(json_array_get(json, 1)),
-                                  .geometry = json_integer_value(json_array_get(json, 2)) ? CAMBER_GEOMETRY_POLYGON
-                                                                                          : CAMBER_GEOMETRY_LINE};
+                                  .geometry = (camber_geometry_kind)kind};
     camber_value all;
     uint32_t index = 0;
-    if (json_array_size(json) != BEFORE + count || class.layer >= features->layer_count)
+    if (json_array_size(json) != BEFORE + count || class.layer >= features->layer_count || kind < 0 ||
+        kind >= CAMBER_GEOMETRY_KINDS)
         return CAMBER_ERROR_INPUT;
     camber_status status = take_value(features, json_array_get(json, 3), &class.id);
     if (status == CAMBER_OK)
@@ -169,6 +171,14 @@ static camber_status take_json(camber_features *features, const json_t *json) {
     return status;
 }
 
+/* Returns the polyline behind a block that begins with this one. */
+static size_t end_of_block(const uint32_t *polyline_feature, size_t first, size_t count) {
+    size_t end = count - first < BLOCK_POLYLINES ? count : first + BLOCK_POLYLINES;
+    while (end < count && polyline_feature[end] == polyline_feature[end - 1])
+        end++;
+    return end;
+}
+
 /* ---- Writing ---- */
 
 static camber_status put(stream *to, const void *bytes, size_t size_bytes) {
@@ -192,7 +202,7 @@ static camber_status put_polylines(stream *to, const camber_features *f) {
     if (status == CAMBER_OK && f->progress)
         status = put(to, f->progress, 2 * count * sizeof *f->progress);
     for (size_t first = 0, end; first < count && status == CAMBER_OK; first = end) {
-        end = count - first < BLOCK_POLYLINES ? count : first + BLOCK_POLYLINES;
+        end = end_of_block(f->polyline_feature, first, count);
         const size_t begin = f->offsets[first], points = f->offsets[end] - begin;
         status = put(to, f->points + 2 * begin, 2 * points * sizeof *f->points);
         if (status == CAMBER_OK)
@@ -304,24 +314,11 @@ static bool makes_sense(const loading *l, const header *head) {
     return good;
 }
 
-/* The region has all boxes: most lines that lie in none do not touch it. */
-static bool is_wanted(const loading *l, const double *points, size_t count) {
-    const camber_features *f = l->features;
-    if (f->has_region && !camber_region_touches(&f->region, points, count))
-        return false;
-    for (size_t i = 0; i < l->box_count && l->box_count > 1; i++)
-        if (camber_region_touches(l->boxes + i, points, count))
-            return true;
-    return l->box_count < 2;
-}
-
 /* Takes a polyline of the block that begins with a point. */
 static bool take_polyline(loading *l, size_t polyline, uint64_t begin) {
     camber_features *f = l->features;
     const size_t first = (size_t)(l->offsets[polyline] - begin);
     const size_t count = (size_t)(l->offsets[polyline + 1] - l->offsets[polyline]), n = f->polyline_count;
-    if (!is_wanted(l, l->points + 2 * first, count))
-        return true;
     if (!camber_grow(f->context, &f->points, &f->point_capacity, f->point_count + count, 2 * sizeof *f->points) ||
         !camber_grow(f->context, &f->importance, &f->importance_capacity, f->point_count + count,
                      sizeof *f->importance))
@@ -338,11 +335,43 @@ static bool take_polyline(loading *l, size_t polyline, uint64_t begin) {
     return true;
 }
 
+/* Whether the line is wanted that the set has from this polyline on, or the area. The region has all boxes: most that
+ * lie in none do not touch it. */
+static bool is_wanted(const loading *l, size_t polyline) {
+    const camber_features *f = l->features;
+    size_t next;
+    if (f->has_region && !camber_features_touch(f, &f->region, polyline, &next))
+        return false;
+    for (size_t i = 0; i < l->box_count && l->box_count > 1; i++)
+        if (camber_features_touch(f, l->boxes + i, polyline, &next))
+            return true;
+    return l->box_count < 2;
+}
+
+/* Takes what is wanted of a block: the rings of an area together, or none of them. */
+static bool take_block(loading *l, size_t first, size_t end) {
+    camber_features *f = l->features;
+    const uint64_t begin = l->offsets[first];
+    for (size_t p = first; p < end;) {
+        const size_t before = f->polyline_count, feature = l->polyline_feature[p];
+        const bool area = f->classes[f->feature_class[feature]].geometry == CAMBER_GEOMETRY_AREA;
+        do {
+            if (!take_polyline(l, p++, begin))
+                return false;
+        } while (area && p < end && l->polyline_feature[p] == feature);
+        if (is_wanted(l, before))
+            continue;
+        f->point_count = f->offsets[before];
+        f->polyline_count = before;
+    }
+    return true;
+}
+
 static camber_status get_blocks(loading *l, size_t polylines) {
     camber_context *context = l->from->context;
     camber_status status = CAMBER_OK;
     for (size_t first = 0, end; first < polylines && status == CAMBER_OK; first = end) {
-        end = polylines - first < BLOCK_POLYLINES ? polylines : first + BLOCK_POLYLINES;
+        end = end_of_block(l->polyline_feature, first, polylines);
         const uint64_t points = l->offsets[end] - l->offsets[first];
         if (points > l->from->size_bytes / (2 * sizeof *l->points))
             return fail_damaged(l->from);
@@ -352,9 +381,8 @@ static camber_status get_blocks(loading *l, size_t polylines) {
         status = get(l->from, l->points, points * 2 * sizeof *l->points);
         if (status == CAMBER_OK)
             status = get(l->from, l->importance, points * sizeof *l->importance);
-        for (size_t p = first; p < end && status == CAMBER_OK; p++)
-            if (!take_polyline(l, p, l->offsets[first]))
-                status = CAMBER_ERROR_MEMORY;
+        if (status == CAMBER_OK && !take_block(l, first, end))
+            status = CAMBER_ERROR_MEMORY;
     }
     return status;
 }

@@ -3,6 +3,8 @@
 #include "file_reading.h"
 
 #include "osm/osm.h"
+#include "source/mercator.h"
+#include "source/rings.h"
 
 #include "pbf_file.h"
 
@@ -16,6 +18,7 @@ typedef struct fixture {
     const char *where;
     pbf_file file;
     pbf_block block;
+    int64_t way_count; /* no two ways have one id */
 } fixture;
 
 static void use_style(fixture *it, char **properties, size_t count) {
@@ -108,6 +111,58 @@ static void test_real_files(void **state) {
     }
 }
 
+/* The areas of a set: their number, that of their rings, and the sum of these in squares of the world, twice. */
+typedef struct area_sum {
+    size_t features, rings;
+    double area;
+} area_sum;
+
+static area_sum sum_areas(const camber_features *set) {
+    area_sum sum = {0};
+    for (size_t p = 0; p < set->polyline_count; p++) {
+        const double *first = set->points + 2 * set->offsets[p];
+        if (camber_features_kind(set, p) != CAMBER_GEOMETRY_AREA)
+            continue;
+        sum.features += p == 0 || set->polyline_feature[p] != set->polyline_feature[p - 1];
+        sum.rings++;
+        sum.area += camber_ring_area(first, set->offsets[p + 1] - set->offsets[p]);
+    }
+    return sum;
+}
+
+/* Areas of closed ways and of relations: about as GDAL has them, which puts some more together where ways are missing,
+ * and gives up others. */
+static void test_real_areas(void **state) {
+    static const char *const names[] = {"liechtenstein-latest.osm.pbf", "nyc.osm.pbf", "Helsinki-1327152.osm.pbf",
+                                        "porto_portugal.osm.pbf"};
+    fixture *it = *state;
+    const char *data = getenv("CAMBER_DATA");
+    if (!data) {
+        print_message("CAMBER_DATA is not set: real files are not read\n");
+        skip();
+    }
+    it->on.style.wants_areas = true;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[1024], behind[1200];
+        camber_status status;
+        snprintf(path, sizeof path, "%s/data/%s", data, names[i]);
+        snprintf(behind, sizeof behind, "/vsisubfile/0_%d,%s", 1 << 30, path);
+        camber_features *features = read_file(it, (camber_source_desc){.path = path}, &status);
+        expect_ok(&it->on, status);
+        const area_sum own = sum_areas(features);
+        camber_features_destroy(features);
+        features = read_file(it, (camber_source_desc){.path = behind}, &status);
+        expect_ok(&it->on, status);
+        const area_sum gdals = sum_areas(features);
+        camber_features_destroy(features);
+        print_message("%s: %zu areas of %zu rings; GDAL: %zu of %zu, of which it is %.4f\n", names[i], own.features,
+                      own.rings, gdals.features, gdals.rings, own.area / gdals.area);
+        assert_true(own.features * 100 > gdals.features * 99 && own.features * 99 < gdals.features * 100);
+        assert_true(own.rings * 100 > gdals.rings * 99 && own.rings * 99 < gdals.rings * 100);
+        assert_true(own.area > 0.99 * gdals.area && own.area < 1.05 * gdals.area);
+    }
+}
+
 /* ---- Small files ---- */
 
 /* Nodes 10 to 15 in a row; 16 at the north pole; 20 and 21 on both sides of the antimeridian. */
@@ -127,7 +182,7 @@ static void begin(fixture *it) {
 }
 
 static void add_way(fixture *it, const char *const *tags, size_t count, const int64_t *ids) {
-    pbf_way(&it->block, tags, ids, count);
+    pbf_way(&it->block, 1000 + it->way_count++, tags, ids, count);
 }
 #define WAY(it, tags, ...)                                                                                             \
     add_way(it, tags, sizeof(int64_t[]){__VA_ARGS__} / sizeof(int64_t), (const int64_t[]){__VA_ARGS__})
@@ -148,9 +203,10 @@ static void test_ways(void **state) {
     static const char *const twice[] = {"name", "A", "name", "B", "highway", "path", NULL};
     static const char *const strange[] = {"", "", "bridge", "", NULL};
     fixture *it = *state;
-    for (int style = 0; style < 3; style++) {
+    for (int style = 0; style < 5; style++) {
         begin(it);
-        it->on.style.wants_polygons = style == 1;
+        it->on.style.wants_polygons = style % 3 == 1;
+        it->on.style.wants_areas = style >= 3;
         if (style == 2)
             use_style(it, nothing, 2);
         WAY(it, street, 10, 11, 12);
@@ -172,7 +228,7 @@ static void test_ways(void **state) {
         WAY(it, street, 22, 21);             /* from the antimeridian */
         WAY(it, street, 21, 20, 10, 11, 12); /* and on */
         const size_t count = finish(it, true);
-        assert_int_equal(count, style == 1 ? 14 : 12);
+        assert_int_equal(count, (style % 3 == 1 ? 14 : 12) + (style >= 3 ? 2 : 0)); /* two areas */
     }
 }
 
@@ -279,6 +335,145 @@ static void test_filters(void **state) {
     assert_int_equal(it->on.warnings, 1);
 }
 
+/* ---- Relations ---- */
+
+/* A grid of nodes, 100 x + y, a hundredth of a degree apart. */
+static void begin_grid(fixture *it) {
+    pbf_node grid[100];
+    for (int i = 0; i < 100; i++)
+        grid[i] = (pbf_node){i / 10 * 100 + i % 10, 10000000 + i / 10 * 100000, 20000000 + i % 10 * 100000};
+    pbf_header(&it->file, "DenseNodes");
+    pbf_dense(&it->block, grid, 100);
+    pbf_end_block(&it->file, &it->block);
+}
+
+static void grid_way(fixture *it, int64_t id, const char *const *tags, size_t count, const int64_t *ids) {
+    pbf_way(&it->block, id, tags, ids, count);
+}
+#define GRID_WAY(it, id, tags, ...)                                                                                    \
+    grid_way(it, id, tags, sizeof(int64_t[]){__VA_ARGS__} / sizeof(int64_t), (const int64_t[]){__VA_ARGS__})
+#define RELATION(it, tags, ...)                                                                                        \
+    pbf_relation(&(it)->block, tags, (const pbf_member[]){__VA_ARGS__},                                                \
+                 sizeof(pbf_member[]){__VA_ARGS__} / sizeof(pbf_member))
+
+/* The areas of all rings in squares of the grid, a feature in brackets; areas alone. */
+static void list_areas(const camber_features *set, char *text, size_t size) {
+    size_t used = 0;
+    double shape[4] = {0};
+    camber_mercator_project(1.0, 2.0, &shape[0], &shape[1]);
+    camber_mercator_project(1.01, 2.01, &shape[2], &shape[3]);
+    const double square = (shape[2] - shape[0]) * (shape[1] - shape[3]);
+    text[0] = 0;
+    for (size_t p = 0; p < set->polyline_count; p++) {
+        if (camber_features_kind(set, p) != CAMBER_GEOMETRY_AREA)
+            continue;
+        const bool follows = p > 0 && set->polyline_feature[p] == set->polyline_feature[p - 1];
+        double area = 0.0;
+        for (size_t i = set->offsets[p]; i + 1 < set->offsets[p + 1]; i++) {
+            const double *q = set->points + 2 * i, *o = set->points + 2 * set->offsets[p];
+            area += 0.5 * ((q[0] - o[0]) * (q[3] - o[1]) - (q[2] - o[0]) * (q[1] - o[1]));
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%+.1f", follows ? "" : " ", area / square);
+        assert_true(used < size);
+    }
+}
+
+/* Writes the file, and reads it with areas by several threads. */
+static void expect_areas(fixture *it, const char *areas, size_t open) {
+    static const uint32_t threads[] = {1, 3};
+    if (it->block.groups.size)
+        pbf_end_block(&it->file, &it->block);
+    write_file(&it->on, "file", it->file.bytes, it->file.size);
+    for (size_t i = 0; i < 2; i++) {
+        char got[256];
+        bool declined;
+        camber_features *features;
+        assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
+        const camber_source_desc desc = {.path = it->on.path, .where = it->where, .threads = threads[i]};
+        expect_ok(&it->on, camber_osm_read(features, &desc, &declined));
+        assert_false(declined);
+        list_areas(features, got, sizeof got);
+        assert_string_equal(got, areas);
+        assert_int_equal(features->stats.open_relations, open);
+        assert_int_equal(features->stats.turned_rings, 0);
+        camber_features_destroy(features);
+    }
+}
+
+static const char *const wood[] = {"type", "multipolygon", "natural", "wood", NULL};
+
+static void test_relations(void **state) {
+    static const char *const bare[] = {"type", "multipolygon", NULL},
+                             *const admin[] = {"type", "boundary", "x", "y", NULL},
+                             *const route[] = {"type", "route", "x", "y", NULL};
+    fixture *it = *state;
+    it->on.style.wants_areas = true;
+    begin_grid(it);
+    GRID_WAY(it, 1, NULL, 0, 500, 505); /* two halves of a square of 5 x 5, one of them turned */
+    GRID_WAY(it, 2, NULL, 0, 5, 505);
+    GRID_WAY(it, 3, street, 101, 102, 202, 201, 101); /* a hole, with a line of its own */
+    GRID_WAY(it, 4, house, 600, 700, 701, 601, 600);  /* an area of its own */
+    GRID_WAY(it, 5, NULL, 303, 403, 404, 304, 303);
+    GRID_WAY(it, 6, NULL, 800, 900, 901);
+    /* Relations in a block of their own. */
+    pbf_end_block(&it->file, &it->block);
+    RELATION(it, wood, {1, "outer"}, {2, "outer"}, {3, "inner"});
+    RELATION(it, admin, {1, ""}, {5, ""}, {2, ""}, {4, ""}); /* roles by what lies in what */
+    RELATION(it, wood, {6, "outer"});                        /* it does not close */
+    RELATION(it, wood, {6, "outer"}, {5, "outer"});          /* one ring of two */
+    RELATION(it, wood, {5, "outer"}, {77, "outer"});         /* a way that the file does not have */
+    RELATION(it, route, {5, ""});
+    RELATION(it, bare, {5, "outer"}); /* no tags anywhere */
+    expect_areas(it, " +1.0 +25.0-1.0 +25.0+1.0-1.0 +1.0 +1.0", 3);
+    it->where = "natural = 'wood'";
+    expect_areas(it, " +25.0-1.0 +1.0 +1.0", 3);
+    it->where = NULL;
+    /* With other rings that touch: two holes and the outer ring at one node, in one block with the ways. */
+    begin_grid(it);
+    GRID_WAY(it, 1, NULL, 0, 400, 404, 4, 0);
+    GRID_WAY(it, 2, NULL, 101, 201, 202);
+    GRID_WAY(it, 3, NULL, 202, 102, 101);
+    GRID_WAY(it, 4, NULL, 202, 302, 303);
+    GRID_WAY(it, 5, NULL, 303, 203, 202);
+    RELATION(it, wood, {2, "inner"}, {4, "inner"}, {1, "outer"}, {5, "inner"}, {3, "inner"});
+    RELATION(it, wood, {2, ""}, {4, ""}, {1, ""}, {5, ""}, {3, ""});
+    RELATION(it, wood, {2, "inner"}, {3, "outer"}, {1, "outer"}); /* a ring of two roles */
+    expect_areas(it, " +16.0-1.0-1.0 +16.0-1.0-1.0 +16.0-1.0", 0);
+}
+
+/* An old relation: its outer ways have the tags, and are not filled by themselves. */
+static void test_old_relations(void **state) {
+    static const char *const bare[] = {"type", "multipolygon", NULL};
+    fixture *it = *state;
+    it->on.style.wants_areas = true;
+    for (int outlines = 0; outlines < 2; outlines++) {
+        it->on.style.wants_polygons = outlines;
+        begin_grid(it);
+        GRID_WAY(it, 1, house, 0, 500, 505, 5, 0);
+        GRID_WAY(it, 2, NULL, 101, 102, 202, 201, 101);
+        GRID_WAY(it, 3, house, 600, 700, 701, 601, 600);
+        RELATION(it, bare, {1, "outer"}, {2, "inner"});
+        expect_areas(it, " +1.0 +25.0-1.0", 0);
+    }
+    /* Relations that lie before ways where nobody looks for them are GDAL's. */
+    begin_grid(it);
+    GRID_WAY(it, 1, house, 0, 500, 505, 5, 0);
+    RELATION(it, wood, {1, "outer"});
+    pbf_end_block(&it->file, &it->block);
+    GRID_WAY(it, 2, street, 0, 500);
+    pbf_end_block(&it->file, &it->block);
+    write_file(&it->on, "file", it->file.bytes, it->file.size);
+    for (int areas = 0; areas < 2; areas++) {
+        bool declined = false;
+        camber_features *features;
+        it->on.style.wants_areas = areas;
+        assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
+        expect_ok(&it->on, camber_osm_read(features, &(camber_source_desc){.path = it->on.path}, &declined));
+        assert_int_equal(declined, areas);
+        camber_features_destroy(features);
+    }
+}
+
 static void test_no_lines(void **state) {
     fixture *it = *state;
     begin(it);
@@ -372,6 +567,29 @@ static void test_flipped_blocks(void **state) {
     }
 }
 
+/* The same with a relation. */
+static void test_damaged_relations(void **state) {
+    fixture *it = *state;
+    it->on.style.wants_areas = true;
+    begin_grid(it);
+    const size_t head = it->file.size;
+    pbf_bytes content = {.size = 0};
+    GRID_WAY(it, 1, NULL, 0, 500, 505);
+    GRID_WAY(it, 2, street, 0, 5, 505);
+    RELATION(it, wood, {1, "outer"}, {2, ""});
+    pbf_message(&content, 1, &it->block.strings);
+    pbf_put(&content, it->block.groups.bytes, it->block.groups.size);
+    it->block = (pbf_block){.string_count = 0};
+    for (size_t bit = 0; bit < 8 * content.size; bit++) {
+        content.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
+        pbf_content(&it->file, "OSMData", &content, 0);
+        write_file(&it->on, "file", it->file.bytes, it->file.size);
+        (void)read_damaged(it, 2);
+        it->file.size = head;
+        content.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
+    }
+}
+
 static void expect_refused(fixture *it, const char *words) {
     write_file(&it->on, "file", it->file.bytes, it->file.size);
     assert_int_equal(read_damaged(it, 2), CAMBER_ERROR_INPUT);
@@ -444,14 +662,18 @@ static void test_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_real_files, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_real_areas, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_ways, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_nodes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_declined, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_filters, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_relations, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_old_relations, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_no_lines, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_cut, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_flipped_bits, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_flipped_blocks, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_damaged_relations, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_wrong_blobs, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_memory, set_up, tear_down),
     };

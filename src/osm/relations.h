@@ -1,0 +1,58 @@
+/* The relations of a file that are areas: multipolygons and boundaries, and the ways that they name. */
+#ifndef CAMBER_OSM_RELATIONS_H
+#define CAMBER_OSM_RELATIONS_H
+
+#include "osm/assemble.h"
+#include "osm/node_set.h"
+
+typedef struct camber_osm_member {
+    int64_t way; /* its id */
+    camber_osm_role role;
+} camber_osm_member;
+
+typedef struct camber_osm_relation {
+    uint32_t set;   /* index into the sets of tags, + 1; 0: none */
+    bool is_tagged; /* it has tags besides its type; else those of its first outer way with tags are its own */
+    uint32_t member_count;
+    size_t first_member;
+} camber_osm_relation;
+
+/* A way that a relation names, once it was met. */
+typedef struct camber_osm_member_way {
+    size_t first_place;
+    uint32_t place_count; /* 0: it is not there */
+    uint32_t set;         /* its own set of tags, + 1; 0: it has none */
+    bool is_outer;        /* a relation has its tags, and is filled in its place */
+} camber_osm_member_way;
+
+typedef struct camber_osm_relations {
+    camber_context *context;
+    camber_osm_relation *items;
+    size_t count, capacity;
+    camber_osm_member *members;
+    size_t member_count, member_capacity;
+    camber_osm_node_set ids;     /* of the ways */
+    camber_osm_member_way *ways; /* by the index of their id; NULL: there are no relations */
+    uint32_t *met;               /* the ways that the file has, in its order: indices */
+    size_t met_count, met_capacity;
+    uint64_t *places; /* of their nodes */
+    size_t place_count, place_capacity;
+} camber_osm_relations;
+
+void camber_osm_relations_init(camber_osm_relations *relations, camber_context *context);
+void camber_osm_relations_free(camber_osm_relations *relations);
+/* No relation is added from now on. */
+camber_status camber_osm_relations_complete(camber_osm_relations *relations);
+/* All ways were met: relations without tags get those of ways. */
+void camber_osm_relations_settle(camber_osm_relations *relations);
+/* Finds the index of a way. false: no relation names it. */
+bool camber_osm_relations_find(const camber_osm_relations *relations, int64_t way, camber_osm_finger *finger,
+                               uint32_t *index);
+/* Keeps the places of the next way that was met. */
+camber_status camber_osm_relations_add_places(camber_osm_relations *relations, size_t met, const uint64_t *places,
+                                              uint32_t count);
+/* Puts the rings of a relation together; it may have none. assembly->open: the file lacks some of it. */
+camber_status camber_osm_relations_assemble(const camber_osm_relations *relations, size_t relation,
+                                            camber_osm_assembly *assembly);
+
+#endif

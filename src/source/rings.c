@@ -1,0 +1,132 @@
+/* Makes rings of areas what fill layers draw.
+ *
+ * Input: a ring as a format has it, open or closed, wound either way. Output: a closed ring, wound by its role, or
+ * nothing where it has no area. All of it is counted. Rings that cross themselves stay as they are. */
+#include "source/rings.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool same(const double *p, const double *q) {
+    return p[0] == q[0] && p[1] == q[1];
+}
+
+/* Twice the area of the triangle of three points. */
+static double cross(const double *origin, const double *p, const double *q) {
+    return (p[0] - origin[0]) * (q[1] - origin[1]) - (p[1] - origin[1]) * (q[0] - origin[0]);
+}
+
+double camber_ring_area(const double *points, size_t count) {
+    double area = 0.0;
+    for (size_t i = 1; i + 1 < count; i++)
+        area += cross(points, points + 2 * i, points + 2 * i + 2);
+    return area;
+}
+
+void camber_ring_turn(double *points, size_t count) {
+    for (size_t i = 0; i < count / 2; i++) {
+        double *a = points + 2 * i, *b = points + 2 * (count - 1 - i), kept[2];
+        memcpy(kept, a, sizeof kept);
+        memcpy(a, b, sizeof kept);
+        memcpy(b, kept, sizeof kept);
+    }
+}
+
+bool camber_ring_is_flat(const double *points, size_t count) {
+    const double *far = points;
+    double most = 0.0;
+    for (size_t i = 1; i < count; i++) {
+        const double dx = points[2 * i] - points[0], dy = points[2 * i + 1] - points[1], squared = dx * dx + dy * dy;
+        far = squared > most ? points + 2 * i : far;
+        most = fmax(most, squared);
+    }
+    for (size_t i = 1; i < count; i++)
+        if (cross(points, far, points + 2 * i) != 0.0)
+            return false;
+    return true;
+}
+
+static size_t drop_invalid(double *points, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(points[2 * i]) || !isfinite(points[2 * i + 1]))
+            continue;
+        points[2 * kept] = points[2 * i];
+        points[2 * kept + 1] = points[2 * i + 1];
+        kept++;
+    }
+    return kept;
+}
+
+size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool hole) {
+    count = drop_invalid(points, count);
+    const bool flat = camber_ring_is_flat(points, count);
+    const double area = camber_ring_area(points, count);
+    if (!hole)
+        rings->outer_area = flat ? 0.0 : area != 0.0 ? area : 1.0;
+    if (flat || (hole && rings->outer_area == 0.0)) {
+        rings->stats->empty_rings++;
+        return 0;
+    }
+    if (!same(points, points + 2 * (count - 1))) {
+        rings->stats->closed_rings++;
+        memcpy(points + 2 * count++, points, 2 * sizeof *points);
+    }
+    rings->stats->turned_rings += hole && !rings->any_winding && area * rings->outer_area > 0.0;
+    if (hole ? area > 0.0 : area < 0.0)
+        camber_ring_turn(points, count);
+    return count;
+}
+
+/* ---- The antimeridian ---- */
+
+/* How far x moves from one point to the next, the short way. */
+static double short_way(double from, double to) {
+    const bool along = (from == 0.0 && to == 1.0) || (from == 1.0 && to == 0.0);
+    return fabs(to - from) <= 0.5 || along ? 0.0 : to < from ? 1.0 : -1.0;
+}
+
+size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
+    double moved = 0.0, before = count ? points[0] : 0.0, y = 0.0;
+    *crosses = false;
+    for (size_t i = 0; i < count; i++) {
+        double *at = points + 2 * i;
+        moved += short_way(before, at[0]);
+        *crosses = *crosses || moved != 0.0;
+        before = at[0];
+        at[0] += moved;
+        y += at[1];
+    }
+    if (count == 0)
+        return 0;
+    double *last = points + 2 * (count - 1);
+    const double first[2] = {points[0], points[1]};
+    if (moved + short_way(before, first[0]) == 0.0)
+        return count;
+    /* It goes around the Earth: the pole on its side of the equator lies inside. */
+    const double pole = y / (double)count < 0.5 ? 0.0 : 1.0,
+                 close[6] = {last[0], pole, first[0], pole, first[0], first[1]};
+    memcpy(last + 2, close, sizeof close);
+    return count + 3;
+}
+
+/* ---- The report ---- */
+
+void camber_rings_report(const camber_features *features, const char *name, const camber_features_stats *before) {
+    const camber_features_stats *stats = &features->stats;
+    const size_t closed = stats->closed_rings - before->closed_rings,
+                 turned = stats->turned_rings - before->turned_rings, empty = stats->empty_rings - before->empty_rings,
+                 open = stats->open_relations - before->open_relations;
+    if (closed)
+        camber_log(features->context, CAMBER_LOG_WARNING, "%s: %zu rings of areas do not end where they begin; closed",
+                   name, closed);
+    if (turned)
+        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas wind the wrong way; turned", name,
+                   turned);
+    if (empty)
+        camber_log(features->context, CAMBER_LOG_INFO, "%s: left out %zu rings of areas that have no area", name,
+                   empty);
+    if (open)
+        camber_log(features->context, CAMBER_LOG_INFO,
+                   "%s: %zu multipolygons lack ways; left out their rings that do not close", name, open);
+}

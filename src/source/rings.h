@@ -1,0 +1,35 @@
+/* Rings of areas, as fill layers draw them: closed, outer rings clockwise as seen, and holes the other way.
+ *
+ * A fill covers what all rings of its colour together wind around a number of times that is not 0. So a hole takes
+ * away what its outer ring gives, areas may overlap, and a ring that crosses itself is drawn as it is. */
+#ifndef CAMBER_SOURCE_RINGS_H
+#define CAMBER_SOURCE_RINGS_H
+
+#include "source/features.h"
+
+/* A reader keeps this while it takes the rings of one area after the other. */
+typedef struct camber_rings {
+    camber_features_stats *stats;
+    bool any_winding;  /* the format has no rule how rings wind */
+    double outer_area; /* of the last outer ring as it was read. 0: it was left out */
+} camber_rings;
+
+/* Twice the area of a ring, whose last point is joined to its first: above 0 where it goes clockwise as seen. It is
+ * exact where the ring goes to and fro on one line. */
+double camber_ring_area(const double *points, size_t count);
+/* Whether all points lie on one line, or fewer than three of them differ. */
+bool camber_ring_is_flat(const double *points, size_t count);
+void camber_ring_turn(double *points, size_t count);
+/* Closes a ring in place, drops its points that are not numbers, and turns it. An outer ring comes before its holes.
+ * points has room for count + 1. Returns how many points there are now; 0: nothing is left to draw. Counts what it
+ * does. */
+size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool hole);
+/* Moves the points of a ring by whole worlds, so that it goes the short way from each to the next: it may then lie
+ * beyond the edges of the world. An edge from one edge of the world to the other stays as it is. A ring around a pole
+ * goes on along the pole. points has room for count + 4. Returns how many points there are now. *crosses: the ring
+ * crosses the antimeridian. */
+size_t camber_ring_unroll(double *points, size_t count, bool *crosses);
+/* Says what was done to the rings of a file since *before. */
+void camber_rings_report(const camber_features *features, const char *name, const camber_features_stats *before);
+
+#endif

@@ -23,8 +23,8 @@ typedef enum camber_theme {
 
 typedef struct camber_style camber_style;
 
-/* Parses a style document and compiles its background and line layers. Layers of other types, and properties that are
- * not drawn, are warned of, each once.
+/* Parses a style document and compiles its background, line and fill layers. Layers of other types, and properties
+ * that are not drawn, are warned of, each once.
  * name stands in messages.
  * Returns CAMBER_ERROR_INPUT, CAMBER_ERROR_MEMORY. The message says the line and column where the text is no JSON, and
  * the JSON pointer of a wrong type or value. */
@@ -33,6 +33,8 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 /* Makes the built-in road style. Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
+/* Leaves the style's fill layers out, for what takes lines alone. Call it before features are read for the style. */
+CAMBER_API void camber_style_leave_out_areas(camber_style *style);
 /* Effects that lines and backgrounds are drawn with, besides a width and a colour. */
 typedef enum camber_style_effect {
     CAMBER_STYLE_EFFECT_GAP = 1,

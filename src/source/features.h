@@ -13,6 +13,7 @@
 typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
+    CAMBER_GEOMETRY_AREA,    /* rings, closed and turned: outer ones clockwise as seen; they are filled */
 } camber_geometry_kind;
 
 typedef struct camber_feature_class {

@@ -280,6 +280,134 @@ static void test_roads(void **state) {
     }
 }
 
+/* ---- The built-in style ---- */
+
+/* A feature with some of a style's properties: "landuse=forest class=wood". */
+static void set_tags(const camber_style *style, const char *tags, camber_value *values, char *texts) {
+    memset(values, 0, style->property_count * sizeof *values);
+    strcpy(texts, tags);
+    for (char *tag = strtok(texts, " "); tag; tag = strtok(NULL, " ")) {
+        char *value = strchr(tag, '=');
+        size_t i = 0;
+        *value++ = 0;
+        while (i < style->property_count && strcmp(style->properties[i], tag) != 0)
+            i++;
+        if (i == style->property_count)
+            fail_msg("the style does not read %s", tag);
+        values[i] = (camber_value){.type = CAMBER_VALUE_STRING, .string = value};
+    }
+}
+
+/* Writes the ids of the layers of a kind that draw the feature, of a source layer or of any. */
+static const char *drawn_by(const camber_style *style, camber_layer_kind kind, const char *source_layer,
+                            const char *tags, char ids[256]) {
+    camber_value values[32];
+    char texts[128];
+    assert_in_range(style->property_count, 1, sizeof values / sizeof *values);
+    set_tags(style, tags, values, texts);
+    const camber_feature_view view = {.values = values,
+                                      .geometry_type = kind == CAMBER_LAYER_FILL ? "Polygon" : "LineString"};
+    ids[0] = 0;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        if (layer->kind != kind || (layer->source_layer && strcmp(layer->source_layer, source_layer) != 0) ||
+            !camber_style_layer_matches(layer, 16.0, &view))
+            continue;
+        snprintf(ids + strlen(ids), 256 - strlen(ids), "%s%s", *ids ? " " : "", layer->id);
+    }
+    return ids;
+}
+
+/* The last layers of the city are the style of roads, to the byte: where there is nothing else the pictures are too. */
+static void check_city_roads(camber_theme theme) {
+    static const char first[] = ",\n    {\"id\": \"tunnel-path-casing\"";
+    size_t size_bytes;
+    const char *city = strstr(camber_style_get_text("city", theme, &size_bytes), first);
+    const char *roads = strstr(camber_style_get_text("roads", theme, &size_bytes), first);
+    assert_non_null(city);
+    assert_non_null(roads);
+    assert_string_equal(city, roads);
+}
+
+static void check_city(const camber_style *style) {
+    static const struct {
+        const char *layer, *tags, *ids;
+    } areas[] = {
+        {"", "natural=water", "water"},
+        {"", "waterway=riverbank", "water"},
+        {"water", "class=ocean", "tiles-water-water"},
+        {"", "landuse=forest", "wood"},
+        {"", "natural=wood landuse=forest", "wood"},
+        {"landcover", "class=wood", "tiles-landcover-wood"},
+        {"", "leisure=park", "park"},
+        {"landcover", "class=grass", "tiles-landcover-park"},
+        {"", "natural=beach", "sand"},
+        {"", "landuse=residential", "built"},
+        {"landuse", "class=residential", "tiles-landuse-built"},
+        {"", "landuse=retail", "commerce"},
+        {"", "landuse=industrial", "industry"},
+        {"", "landuse=farmland", "field"},
+        {"", "amenity=school", "campus"},
+        {"", "amenity=school building=school", "campus building"},
+        {"", "leisure=pitch", "pitch"},
+        {"park", "class=national_park", "tiles-park-reserve"},
+        {"", "aeroway=runway", "apron"},
+        {"", "building=yes", "building"},
+        {"", "building=no", ""},
+        {"building", "", "tiles-building"},
+        {"", "highway=pedestrian", "plaza"},
+        {"", "highway=residential", ""},
+        {"", "natural=coastline", ""},
+    };
+    static const struct {
+        const char *layer, *tags, *ids;
+    } lines[] = {
+        {"", "waterway=river", "river"},
+        {"", "waterway=stream tunnel=culvert", ""},
+        {"waterway", "class=river", "tiles-river"},
+        {"waterway", "class=river brunnel=tunnel", ""},
+        {"", "railway=rail", "rail"},
+        {"", "railway=abandoned", ""},
+        {"transportation", "class=rail", "tiles-rail"},
+        {"", "highway=primary", "ground-primary-casing ground-primary-fill"},
+        {"transportation", "class=primary", "tiles-casing tiles-road"},
+        {"transportation", "class=minor brunnel=bridge", "tiles-bridge-casing tiles-bridge"},
+        {"transportation", "class=path", "tiles-path"},
+        {"transportation_name", "class=primary", ""},
+        {"water_name", "class=lake", ""},
+        {"", "building=yes", ""},
+    };
+    char ids[256];
+    for (size_t i = 0; i < sizeof areas / sizeof *areas; i++)
+        if (strcmp(drawn_by(style, CAMBER_LAYER_FILL, areas[i].layer, areas[i].tags, ids), areas[i].ids) != 0)
+            fail_msg("%s is drawn by \"%s\", not by \"%s\"", areas[i].tags, ids, areas[i].ids);
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+        if (strcmp(drawn_by(style, CAMBER_LAYER_LINE, lines[i].layer, lines[i].tags, ids), lines[i].ids) != 0)
+            fail_msg("%s is drawn by \"%s\", not by \"%s\"", lines[i].tags, ids, lines[i].ids);
+}
+
+static void test_builtin(void **state) {
+    (void)state;
+    for (int theme = 0; theme < 2; theme++) {
+        fixture f;
+        setup(&f);
+        const camber_theme which = theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT;
+        assert_string_equal(camber_style_list(0), "city");
+        assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
+        assert_int_equal(f.error_count + f.warning_count, 0);
+        assert_true(f.style->wants_areas);
+        assert_false(f.style->wants_polygons || f.style->directed || f.style->wants_all_properties);
+        check_city(f.style);
+        check_city_roads(which);
+        camber_style_leave_out_areas(f.style);
+        assert_false(f.style->wants_areas);
+        char ids[256];
+        assert_string_equal(drawn_by(f.style, CAMBER_LAYER_FILL, "", "natural=water", ids), "");
+        assert_string_equal(drawn_by(f.style, CAMBER_LAYER_LINE, "", "railway=rail", ids), "rail");
+        teardown(&f);
+    }
+}
+
 /* ---- Fill layers ---- */
 
 #define FILL_LAYER(more) "{\"version\": 8, \"layers\": [{\"id\": \"f\", \"type\": \"fill\", " more "}]}"
@@ -862,11 +990,12 @@ static void test_reference(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),   cmocka_unit_test(test_fill),      cmocka_unit_test(test_wrong_fills),
-        cmocka_unit_test(test_layer),   cmocka_unit_test(test_plain),     cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_states),  cmocka_unit_test(test_reference), cmocka_unit_test(test_wrong),
-        cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),      cmocka_unit_test(test_many_names),
-        cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),    cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_roads),         cmocka_unit_test(test_builtin), cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills),   cmocka_unit_test(test_layer),   cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),  cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),
+        cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_long_pointers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,16 +23,18 @@ typedef enum camber_theme {
 
 typedef struct camber_style camber_style;
 
-/* Parses a style document and compiles its background and line layers. Layers of other types, and properties that are
- * not drawn, are warned of, each once.
+/* Parses a style document and compiles its background, line and fill layers. Layers of other types, and properties
+ * that are not drawn, are warned of, each once.
  * name stands in messages.
  * Returns CAMBER_ERROR_INPUT, CAMBER_ERROR_MEMORY. The message says the line and column where the text is no JSON, and
  * the JSON pointer of a wrong type or value. */
 CAMBER_API camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes,
                                             const char *name, camber_style **style);
-/* Makes the built-in road style. Returns CAMBER_ERROR_MEMORY. */
+/* Makes the built-in style, "city". Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
+/* Leaves the style's fill layers out, for what takes lines alone. Call it before features are read for the style. */
+CAMBER_API void camber_style_leave_out_areas(camber_style *style);
 /* Effects that lines and backgrounds are drawn with, besides a width and a colour. */
 typedef enum camber_style_effect {
     CAMBER_STYLE_EFFECT_GAP = 1,
@@ -51,11 +53,12 @@ CAMBER_API uint32_t camber_style_get_effects(const camber_style *style, double z
 
 /* Returns the name of the n-th style that ships with camber, counted from 0, and NULL past the last.
  *
- *     "roads"         the built-in one
+ *     "city"          the built-in one: water, parks, woods, built-up land, buildings, and the roads of "roads" on them
+ *     "roads"         roads of OpenStreetMap and of the US Census Bureau, and nothing else
  *     "openmaptiles"  roads, rails, rivers and borders in tiles of the OpenMapTiles schema
  *     "transit"       lines of public transport side by side
  *
- * The second reads openmaptiles.mbtiles in the working folder, and the third transit.geojson there. */
+ * "openmaptiles" reads openmaptiles.mbtiles in the working folder, and "transit" transit.geojson there. */
 CAMBER_API const char *camber_style_list(size_t n);
 /* Returns the document of the style of that name, which is the library's; NULL: there is none. */
 CAMBER_API const char *camber_style_get_text(const char *name, camber_theme theme, size_t *size_bytes);

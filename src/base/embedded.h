@@ -14,8 +14,10 @@ extern const char camber_flatten_vert[], camber_flatten_frag[];
 extern const unsigned long camber_flatten_vert_size, camber_flatten_frag_size;
 extern const char camber_images_frag[], camber_count_frag[];
 extern const unsigned long camber_images_frag_size, camber_count_frag_size;
-extern const char camber_style_light[], camber_style_dark[]; /* src/style/ */
-extern const unsigned long camber_style_light_size, camber_style_dark_size;
+extern const char camber_style_city_light[], camber_style_city_dark[]; /* src/style/ */
+extern const unsigned long camber_style_city_light_size, camber_style_city_dark_size;
+extern const char camber_style_roads_light[], camber_style_roads_dark[];
+extern const unsigned long camber_style_roads_light_size, camber_style_roads_dark_size;
 extern const char camber_style_openmaptiles_light[], camber_style_openmaptiles_dark[];
 extern const unsigned long camber_style_openmaptiles_light_size, camber_style_openmaptiles_dark_size;
 extern const char camber_style_transit_light[], camber_style_transit_dark[];

@@ -252,6 +252,9 @@ static int open_map(camber_input *input) {
     const double start_ms = camber_clock_ms();
     bool done = false;
     int status = open_style(input);
+    if (status == CAMBER_EXIT_DONE &&
+        (session->options->verb == CAMBER_VERB_TESSELLATE || session->options->verb == CAMBER_VERB_VALIDATE))
+        camber_style_leave_out_areas(input->style);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         take_view(input);
     if (status == CAMBER_EXIT_DONE && session->opens_beside)

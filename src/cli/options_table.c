@@ -93,7 +93,7 @@ const camber_option_spec camber_option_specs[] = {
     {"attribution", 0, CAMBER_OPTION_WORDS, SIGNED, FIELD(attribution), "TEXT",
      "name this as the source of the data, in place of what INPUT names; '': name none"},
     {"style", 0, CAMBER_OPTION_STYLE, STYLED, FIELD(style), "NAME|FILE",
-     "a built-in style (roads, openmaptiles, transit), or a MapLibre style document (roads)"},
+     "a built-in style (city, roads, openmaptiles, transit), or a MapLibre style document (city)"},
     {"theme", 0, CAMBER_OPTION_CHOICE, STYLED, FIELD(theme), "light|dark", "theme of a built-in style (light)"},
     {"layer", 0, CAMBER_OPTION_TEXT, MAPS, FIELD(layer), "NAME", "read only this layer of INPUT"},
     {"where", 0, CAMBER_OPTION_WHERES, MAPS, 0, "SQL",

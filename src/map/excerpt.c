@@ -31,6 +31,8 @@ static camber_status find_reaches(camber_zoom_plan *zoom) {
     }
     for (size_t i = 0; i < plan->patterns.fill_count; i++)
         zoom->has_images = zoom->has_images || plan->patterns.fills[i].image;
+    for (size_t i = 0; i < plan->patterns.area_count; i++)
+        zoom->has_area_images = zoom->has_area_images || plan->patterns.areas[i].image;
     return CAMBER_OK;
 }
 
@@ -86,8 +88,10 @@ typedef struct reached {
     double west, east;
 } reached;
 
-static bool add_copies(camber_context *context, const camber_features *features, camber_plan_entry entry,
+static bool add_copies(const camber_zoom_plan *zoom, const camber_plan_set *set, camber_plan_entry entry,
                        const reached *window, entry_list *list) {
+    const camber_features *features = zoom->features;
+    const bool is_area = camber_plan_is_area(&zoom->plan, set);
     double west = INFINITY, east = -INFINITY;
     for (size_t i = features->offsets[entry.polyline]; i < features->offsets[entry.polyline + 1]; i++) {
         const double x = features->points[2 * i];
@@ -97,9 +101,9 @@ static bool add_copies(camber_context *context, const camber_features *features,
     if (!(east - west <= 2.0)) /* no points, or no place on earth */
         return true;
     for (double shift = ceil(window->west - east); shift <= floor(window->east - west); shift += 1.0) {
-        if (!camber_grow(context, &list->entries, &list->capacity, list->count + 1, sizeof *list->entries))
+        if (!camber_grow(zoom->context, &list->entries, &list->capacity, list->count + 1, sizeof *list->entries))
             return false;
-        list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift};
+        list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area};
     }
     return true;
 }
@@ -112,7 +116,7 @@ static camber_status list_copies(camber_excerpt *excerpt, const camber_plan_entr
     for (size_t s = 0; s < zoom->plan.set_count; s++) {
         excerpt->first_entries[s] = list->count;
         for (size_t i = listed->first_entries[s]; i < listed->first_entries[s + 1]; i++)
-            if (!add_copies(zoom->context, zoom->features, listed->entries[i], &window, list))
+            if (!add_copies(zoom, zoom->plan.sets + s, listed->entries[i], &window, list))
                 return CAMBER_ERROR_MEMORY;
     }
     excerpt->first_entries[zoom->plan.set_count] = list->count;
@@ -210,7 +214,7 @@ static void move_fills(camber_excerpt *excerpt) {
 }
 
 camber_frame camber_excerpt_get_frame(camber_excerpt *excerpt, camber_mesh *mesh) {
-    if (excerpt->zoom->has_images)
+    if (excerpt->zoom->has_images || excerpt->zoom->has_area_images)
         move_fills(excerpt);
     for (size_t i = 0; i < excerpt->passes.count; i++)
         excerpt->passes.passes[i].mesh = mesh;

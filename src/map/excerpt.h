@@ -19,6 +19,7 @@ typedef struct camber_zoom_plan {
     float *class_reach_px;  /* how far from its lines a class touches pixels. Negative: it is not drawn */
     float most_reach_px;
     bool has_images; /* the background shows images, so it differs from place to place */
+    bool has_area_images;
 } camber_zoom_plan;
 
 typedef struct camber_zoom_desc {
@@ -61,7 +62,7 @@ void camber_excerpt_free(camber_excerpt *excerpt);
 /* Returns what camber_mesh_tessellate_network returns. */
 camber_status camber_excerpt_tessellate(const camber_excerpt *excerpt, camber_mesh *mesh);
 /* The frame that draws the excerpt with the mesh that was tessellated. It is valid until the excerpt is freed, and the
- * images of backgrounds lie in it as they do in its window until another frame of the zoom is asked for. */
+ * images of fills lie in it as they do in its window until another frame of the zoom is asked for. */
 camber_frame camber_excerpt_get_frame(camber_excerpt *excerpt, camber_mesh *mesh);
 
 #endif

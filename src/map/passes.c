@@ -33,26 +33,32 @@ typedef struct layer_run {
     const camber_plan_fill *fill; /* NULL: none; else nothing of the above */
 } layer_run;
 
+static bool draws(const camber_paint *paint) {
+    return paint->width_px > 0.0f || paint->fill;
+}
+
 /* Whether the layer draws anything, and only opaque lines, of what polylines have. */
 static bool layer_draws(const camber_numbering *n, const camber_plan_layer *layer, bool *opaque) {
     const camber_plan_set *set = n->plan->sets + layer->set;
-    bool draws = false;
+    bool drawn = false;
     *opaque = true;
     for (size_t i = first_of(n, set); i < end_of(n, set); i++) {
         const camber_paint paint = paint_of(n, layer, i);
-        if (!n->used[i] || !(paint.width_px > 0.0f))
+        if (!n->used[i] || !draws(&paint))
             continue;
-        draws = true;
-        *opaque &= paint.color.a >= 1.0f && !(paint.ramp && layer->translucent_ramp);
+        drawn = true;
+        *opaque &= !paint.fill && paint.color.a >= 1.0f && !(paint.ramp && layer->translucent_ramp);
     }
-    return draws;
+    return drawn;
 }
 
 /* Opaque layers whose polylines follow each other are drawn by one pass. A translucent layer has a pass of its own,
- * since it is flattened by itself. Fills come between. */
+ * since it is flattened by itself; so has one of areas, since a pass may bring all areas of one fill together. A layer
+ * of areas with an opacity takes its outline along. Fills of the picture come between. */
 static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
     size_t count = 0, fill = 0;
+    const camber_style_layer *counted = NULL;
     *layer_count = 0;
     for (size_t i = 0; i <= plan->layer_count; i++) {
         bool opaque;
@@ -62,14 +68,18 @@ static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *laye
             break;
         if (!layer_draws(n, plan->layers + i, &opaque))
             continue;
-        *layer_count += !plan->layers[i].border;
+        *layer_count += plan->layers[i].look.layer != counted;
+        counted = plan->layers[i].look.layer;
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
         const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
         opaque = opaque && opacity >= 1.0f;
         const size_t first = n->first_polylines[plan->layers[i].set], end = n->first_polylines[plan->layers[i].set + 1];
         const camber_overlap overlap = plan->layers[i].look.layer->overlap;
         layer_run *last = count ? runs + count - 1 : NULL;
-        if (last && last->opaque && opaque && last->overlap == overlap && last->end_polyline == first) {
+        const bool same_group = opacity < 1.0f && plan->layers[i].part == CAMBER_PLAN_OUTLINE && last &&
+                                last->end_layer == i && plan->layers[i - 1].part == CAMBER_PLAN_AREA;
+        const bool goes_on = last && last->opaque && opaque && last->overlap == overlap;
+        if ((goes_on || same_group) && last->end_polyline == first) {
             last->end_layer = i + 1;
             last->end_polyline = end;
             last->end_paint = end_of(n, set);

@@ -23,20 +23,30 @@ static bool is_active(const camber_style_layer *layer, double zoom) {
 static camber_feature_view view_of(const camber_features *features, const camber_feature_class *class) {
     return (camber_feature_view){
         .values = features->values ? features->values + class->first_value : NULL,
-        .geometry_type = class->geometry == CAMBER_GEOMETRY_POLYGON ? "Polygon" : "LineString",
+        .geometry_type = class->geometry == CAMBER_GEOMETRY_LINE ? "LineString" : "Polygon",
         .id = class->id,
         .all = class->all,
     };
 }
 
-static bool draws_class(const camber_features *features, const camber_style_layer *layer, double zoom,
+/* Areas are filled; the outlines of polygons are lines too. */
+static bool takes(camber_plan_part part, camber_geometry_kind geometry) {
+    if (part == CAMBER_PLAN_AREA)
+        return geometry == CAMBER_GEOMETRY_AREA;
+    return part == CAMBER_PLAN_OUTLINE ? geometry == CAMBER_GEOMETRY_POLYGON : geometry != CAMBER_GEOMETRY_AREA;
+}
+
+static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
                         const camber_feature_class *class) {
+    const camber_style_layer *layer = drawn->look.layer;
+    if (!takes(drawn->part, class->geometry))
+        return false;
     if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
         return false;
     if (layer->source_layer && strcmp(layer->source_layer, features->layer_names[class->layer]) != 0)
         return false;
     const camber_feature_view feature = view_of(features, class);
-    return camber_style_layer_matches(layer, zoom, &feature);
+    return camber_style_layer_matches(layer, camber_view_style_zoom(view), &feature);
 }
 
 /* ---- Background ---- */
@@ -59,10 +69,12 @@ static bool same_text(const char *a, const char *b) {
     return a == b || (a && b && strcmp(a, b) == 0);
 }
 
-static bool shares_polylines(const camber_layer_look *a, const camber_layer_look *b) {
-    return a->layer->source_index == b->layer->source_index &&
-           same_text(a->layer->source_layer, b->layer->source_layer) &&
-           same_text(a->layer->filter_key, b->layer->filter_key) && camber_layer_look_shares(a, b);
+static bool shares_polylines(const camber_plan_layer *one, const camber_plan_layer *other) {
+    const camber_style_layer *a = one->look.layer, *b = other->look.layer;
+    const bool same_part =
+        one->part == other->part || (one->part <= CAMBER_PLAN_BORDER && other->part <= CAMBER_PLAN_BORDER);
+    return same_part && a->source_index == b->source_index && same_text(a->source_layer, b->source_layer) &&
+           same_text(a->filter_key, b->filter_key) && camber_layer_look_shares(&one->look, &other->look);
 }
 
 /* A hash table of sets, by what layers must agree in to share one, so that time grows only with the number of
@@ -80,11 +92,10 @@ static uint64_t set_hash(const camber_style_layer *layer) {
 }
 
 /* Finds the slot of the set that the layer shares, or an empty slot for a new one. */
-static uint32_t *find_set(const camber_plan *plan, const set_table *table, const camber_layer_look *look) {
-    const uint64_t hash = set_hash(look->layer);
+static uint32_t *find_set(const camber_plan *plan, const set_table *table, const camber_plan_layer *layer) {
+    const uint64_t hash = set_hash(layer->look.layer);
     size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
-    while (table->slots[at] &&
-           !shares_polylines(&plan->layers[plan->sets[table->slots[at] - 1].first_layer].look, look))
+    while (table->slots[at] && !shares_polylines(plan->layers + plan->sets[table->slots[at] - 1].first_layer, layer))
         at = (at + 1) & (table->slot_count - 1);
     return table->slots + at;
 }
@@ -100,7 +111,7 @@ static void find_translation(const camber_layer_look *look, const camber_view *v
 
 static void find_ramp(camber_plan *plan, camber_plan_layer *layer) {
     const camber_style_layer *from = layer->look.layer;
-    const camber_layer_ramp *ramp = layer->border ? &from->border_ramp : &from->ramp;
+    const camber_layer_ramp *ramp = layer->part == CAMBER_PLAN_BORDER ? &from->border_ramp : &from->ramp;
     layer->translucent_ramp = from->ramp.translucent;
     if (!ramp->count)
         return;
@@ -110,14 +121,14 @@ static void find_ramp(camber_plan *plan, camber_plan_layer *layer) {
 }
 
 static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,
-                      const camber_view *view, bool border) {
+                      const camber_view *view, camber_plan_part part) {
     camber_plan_layer *made = plan->layers + plan->layer_count;
-    *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view)), .border = border};
+    *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view)), .part = part};
     if (layer->properties[CAMBER_LINE_DASHARRAY] || layer->properties[CAMBER_LINE_PATTERN])
         made->below = camber_style_layer_look(layer, floor(made->look.zoom));
     find_translation(&made->look, view, made->translate_px);
     find_ramp(plan, made);
-    uint32_t *slot = find_set(plan, table, &made->look);
+    uint32_t *slot = find_set(plan, table, made);
     if (*slot == 0) {
         plan->sets[plan->set_count] =
             (camber_plan_set){.first_layer = plan->layer_count, .last_layer = plan->layer_count};
@@ -133,11 +144,12 @@ static void add_layer(camber_plan *plan, const set_table *table, const camber_st
 static camber_status group_layers(camber_plan *plan, const camber_style *style, const camber_view *view) {
     const double zoom = camber_view_style_zoom(view);
     set_table table = {.slot_count = 16};
-    while (table.slot_count / 2 < style->layer_count)
+    while (table.slot_count / 4 < style->layer_count)
         table.slot_count *= 2;
+    /* A line comes with its border, and an area with its outline. */
     if (!(plan->layers = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->layers)) ||
         !(plan->ramps = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->ramps)) ||
-        !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)) ||
+        !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, 2 * sizeof *plan->sets)) ||
         !(table.slots = camber_alloc_zero(plan->context, table.slot_count, sizeof *table.slots)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = find_first(style, zoom); i < style->layer_count && !plan->patterns.failed; i++) {
@@ -149,8 +161,10 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
             continue;
         }
         if (layer->properties[CAMBER_LINE_BORDER_WIDTH])
-            add_layer(plan, &table, layer, view, true);
-        add_layer(plan, &table, layer, view, false);
+            add_layer(plan, &table, layer, view, CAMBER_PLAN_BORDER);
+        add_layer(plan, &table, layer, view, layer->kind == CAMBER_LAYER_FILL ? CAMBER_PLAN_AREA : CAMBER_PLAN_LINE);
+        if (layer->properties[CAMBER_FILL_OUTLINE_COLOR] && camber_style_layer_look(layer, zoom).paint.antialias)
+            add_layer(plan, &table, layer, view, CAMBER_PLAN_OUTLINE);
     }
     camber_free(plan->context, table.slots);
     return plan->patterns.failed ? CAMBER_ERROR_MEMORY : CAMBER_OK;
@@ -163,9 +177,10 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
 typedef struct row_table {
     camber_stroke stroke;
     camber_paint *tuple;
-    uint32_t *slots;   /* row + 1; 0: free */
-    size_t slot_count; /* a power of two */
-    bool failed;       /* no memory for dashes or patterns */
+    camber_plan_fill *areas; /* the fills of the tuple, in a set of areas */
+    uint32_t *slots;         /* row + 1; 0: free */
+    size_t slot_count;       /* a power of two */
+    bool failed;             /* no memory for dashes or patterns */
 } row_table;
 
 /* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the key in a sorted set. */
@@ -184,17 +199,21 @@ static float whole_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-/* The paint of a layer without its border, or of the border alone. The border is a wider line below, or, where that
- * would be seen through, two rails beside the line. */
-static camber_layer_paint line_or_border(const camber_plan_layer *layer, const camber_layer_paint *whole) {
+/* The paint of a layer without its border, of the border alone, or of an area's outline, 1 px wide. The border is a
+ * wider line below, or, where that would be seen through, two rails beside the line. */
+static camber_layer_paint paint_of_part(const camber_plan_layer *layer, const camber_layer_paint *whole) {
     camber_layer_paint own = *whole;
+    if (layer->part == CAMBER_PLAN_OUTLINE) {
+        own.color = whole->border_color;
+        return own;
+    }
     const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
     const float alpha = layer->ramp ? (float)whole->opacity : whole->color.a;
     const bool seen_through = alpha < 1.0f || layer->translucent_ramp || whole->layer_opacity < 1.0 ||
                               layer->look.layer->properties[CAMBER_LINE_PATTERN];
     if (layer->ramp)
         own.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
-    if (layer->border) {
+    if (layer->part == CAMBER_PLAN_BORDER) {
         own.color = layer->ramp ? own.color : whole->border_color;
         own.width = border > 0.0 ? whole->width : 0.0;
         if (seen_through && !(whole->gap_width > 0.0) && inside > 0.0 && border > 0.0) {
@@ -211,7 +230,7 @@ static camber_layer_paint line_or_border(const camber_plan_layer *layer, const c
 /* Rows are compared by their paints' bytes, so those between the fields are 0 too. */
 static void put_paint(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio,
                       camber_paint *paint) {
-    const camber_layer_paint own = line_or_border(layer, whole);
+    const camber_layer_paint own = paint_of_part(layer, whole);
     const double widest_px = own.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
     memset(paint, 0, sizeof *paint);
     if (!(own.width * ratio > 0.0 && own.color.a > 0.0f && (float)own.layer_opacity > 0.0f))
@@ -301,6 +320,8 @@ static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer 
                                      const camber_feature_view *feature, camber_layer_paint *paint) {
     pattern_choice choice = {0};
     const camber_sprite_image *found;
+    if (layer->part == CAMBER_PLAN_OUTLINE)
+        return choice;
     choice.patterned =
         camber_plan_patterns_find(&plan->patterns, layer->look.layer, floor(layer->look.zoom), feature, &found);
     if (!choice.patterned)
@@ -316,11 +337,28 @@ static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer 
 static void put_pattern(const camber_plan_layer *layer, const pattern_choice *choice, camber_paint *paint) {
     if (!choice->image)
         memset(paint, 0, sizeof *paint);
-    if (layer->border || !(paint->width_px > 0.0f))
+    if (layer->part != CAMBER_PLAN_LINE || !(paint->width_px > 0.0f))
         return;
     paint->image = choice->image;
     paint->ramp = NULL;
     paint->image_px = choice->one_px;
+}
+
+/* Fills are compared by their bytes too. One that draws nothing has an alpha of 0. */
+static void put_area(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
+                     const camber_feature_view *feature, const camber_layer_paint *paint, camber_plan_fill *area) {
+    const camber_sprite_image *image;
+    memset(area, 0, sizeof *area);
+    if (!((float)paint->layer_opacity > 0.0f))
+        return;
+    if (!camber_plan_patterns_find(&plan->patterns, layer->look.layer, floor(layer->look.zoom), feature, &image)) {
+        area->fill.color = paint->color;
+    } else if (image) {
+        area->fill.color.a = (float)paint->opacity;
+        area->image = image;
+        memcpy(area->translate_px, layer->translate_px, sizeof area->translate_px);
+        camber_plan_fill_place(area, view);
+    }
 }
 
 /* A limit of 1 or less bevels every turn; 0 would mean the default. */
@@ -341,9 +379,23 @@ static float round_limit_that_shows(const camber_stroke *stroke) {
 }
 
 static bool same_row(const camber_plan *plan, const camber_plan_set *set, const row_table *table, size_t row) {
-    const camber_paint *paints = plan->paints + set->first_paint + (row - set->first_row) * set->layer_count;
+    const size_t at = (row - set->first_row) * set->layer_count;
     return memcmp(plan->strokes + row, &table->stroke, sizeof table->stroke) == 0 &&
-           memcmp(paints, table->tuple, set->layer_count * sizeof *table->tuple) == 0;
+           memcmp(plan->paints + set->first_paint + at, table->tuple, set->layer_count * sizeof *table->tuple) == 0 &&
+           (!camber_plan_is_area(plan, set) || memcmp(plan->patterns.areas + set->first_area + at, table->areas,
+                                                      set->layer_count * sizeof *table->areas) == 0);
+}
+
+/* Adds the tuple's fills to those of the plan, at the place that its paints have. */
+static bool add_areas(camber_plan *plan, const camber_plan_set *set, const row_table *table) {
+    camber_plan_patterns *p = &plan->patterns;
+    if (!camber_plan_is_area(plan, set))
+        return true;
+    if (!camber_grow(plan->context, &p->areas, &p->area_capacity, p->area_count + set->layer_count, sizeof *p->areas))
+        return false;
+    memcpy(p->areas + p->area_count, table->areas, set->layer_count * sizeof *p->areas);
+    p->area_count += set->layer_count;
+    return true;
 }
 
 /* Finds the row of the stroke and its paints, or adds one where no row of the set has them. */
@@ -351,13 +403,17 @@ static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *t
     const size_t size_bytes = set->layer_count * sizeof *table->tuple;
     uint64_t hash = camber_hash(CAMBER_HASH_START, &table->stroke, sizeof table->stroke);
     hash = camber_hash(hash, table->tuple, size_bytes);
+    if (camber_plan_is_area(plan, set))
+        hash = camber_hash(hash, table->areas, set->layer_count * sizeof *table->areas);
     size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
     for (; table->slots[at]; at = (at + 1) & (table->slot_count - 1))
         if (same_row(plan, set, table, table->slots[at] - 1))
             return table->slots[at] - 1;
     if (!camber_grow(plan->context, &plan->paints, &plan->paint_capacity, plan->paint_count + set->layer_count,
                      sizeof *plan->paints) ||
-        !camber_grow(plan->context, &plan->strokes, &plan->stroke_capacity, plan->row_count + 1, sizeof *plan->strokes))
+        !camber_grow(plan->context, &plan->strokes, &plan->stroke_capacity, plan->row_count + 1,
+                     sizeof *plan->strokes) ||
+        !add_areas(plan, set, table))
         return CAMBER_NO_ROW;
     memcpy(plan->paints + plan->paint_count, table->tuple, size_bytes);
     plan->paint_count += set->layer_count;
@@ -400,21 +456,61 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
     return table->stroke.width_px > 0.0f || *failed;
 }
 
+/* Fills the tuple of a class of areas, whose paints get their fills by link_areas; false where no layer draws it. */
+static bool fill_areas(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
+                       const camber_feature_view *feature, row_table *table, double *key) {
+    bool draws = false;
+    size_t at = set->first_layer;
+    table->stroke = (camber_stroke){0};
+    for (size_t i = 0; i < set->layer_count; i++, at = plan->layers[at].next) {
+        const camber_plan_layer *layer = plan->layers + at;
+        const camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
+        camber_paint *made = table->tuple + layer->slot;
+        camber_plan_fill *area = table->areas + layer->slot;
+        memset(made, 0, sizeof *made);
+        put_area(plan, layer, view, feature, &paint, area);
+        *key = paint.sort_key;
+        if (!(area->fill.color.a > 0.0f))
+            continue;
+        made->translate_x_px = layer->translate_px[0];
+        made->translate_y_px = layer->translate_px[1];
+        plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
+        draws = true;
+    }
+    table->failed |= plan->patterns.failed;
+    return draws || table->failed;
+}
+
+/* Points the paints of areas at their fills, which stay where they are from now on. */
+static void link_areas(camber_plan *plan) {
+    for (size_t s = 0; s < plan->set_count; s++) {
+        const camber_plan_set *set = plan->sets + s;
+        for (size_t i = 0; i < set->row_count * set->layer_count && camber_plan_is_area(plan, set); i++) {
+            const camber_fill *fill = &plan->patterns.areas[set->first_area + i].fill;
+            if (fill->color.a > 0.0f)
+                plan->paints[set->first_paint + i].fill = fill;
+        }
+    }
+}
+
 /* Finds the rows of every class in one set. */
 static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
                                camber_plan_set *set, class_rows *rows) {
-    const camber_style_layer *first = plan->layers[set->first_layer].look.layer;
+    const camber_plan_layer *first = plan->layers + set->first_layer;
     row_table *table = &rows->table;
     set->first_row = plan->row_count;
     set->first_paint = plan->paint_count;
+    set->first_area = plan->patterns.area_count;
     memset(table->slots, 0, table->slot_count * sizeof *table->slots);
     for (size_t c = 0; c < features->class_count; c++) {
         const size_t at = (size_t)(set - plan->sets) * features->class_count + c;
         rows->by_class.rows[at] = CAMBER_NO_ROW;
-        if (!draws_class(features, first, camber_view_style_zoom(view), features->classes + c))
+        if (!draws_class(features, first, view, features->classes + c))
             continue;
         const camber_feature_view feature = view_of(features, features->classes + c);
-        if (!fill_tuple(plan, set, view, &feature, table, rows->by_class.keys + at))
+        double *key = rows->by_class.keys + at;
+        if (!(camber_plan_is_area(plan, set) ? fill_areas(plan, set, view, &feature, table, key)
+                                             : fill_tuple(plan, set, view, &feature, table, key)))
             continue;
         if (table->failed)
             return CAMBER_ERROR_MEMORY;
@@ -620,6 +716,7 @@ camber_status camber_plan_evaluate(const camber_features *features, const camber
     /* One row more than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
     const size_t count = features->class_count + 1;
     if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
+        !(table->areas = camber_alloc(context, plan->layer_count, sizeof *table->areas)) ||
         !(table->slots = camber_alloc(context, table->slot_count, sizeof *table->slots)) ||
         !(rows.by_class.rows = camber_alloc(context, plan->set_count, count * sizeof *rows.by_class.rows)) ||
         !(rows.by_class.keys = camber_alloc(context, plan->set_count, count * sizeof *rows.by_class.keys)))
@@ -627,6 +724,7 @@ camber_status camber_plan_evaluate(const camber_features *features, const camber
     status = CAMBER_OK;
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         status = match_set(features, view, plan, plan->sets + s, &rows);
+    link_areas(plan);
     if (status == CAMBER_OK && features->polyline_count > UINT32_MAX)
         status = camber_fail(context, CAMBER_ERROR_LIMIT, "%zu polylines are more than 2^32; draw them in parts",
                              features->polyline_count);
@@ -638,6 +736,7 @@ done:
     camber_free(context, rows.by_class.keys);
     camber_free(context, rows.by_class.rows);
     camber_free(context, table->slots);
+    camber_free(context, table->areas);
     camber_free(context, table->tuple);
     return status;
 }

@@ -1,4 +1,4 @@
-/* The plan of a scene: which layers draw here, which of them share polylines, and with which strokes and paints.
+/* The plan of a scene: which layers draw here, which of them share polylines, and with which strokes, paints and fills.
  *
  *     layers (in drawing order) -> sets (layers that draw the same polylines) -> rows (a stroke and its paints in a
  * set)
@@ -11,22 +11,32 @@
 
 #define CAMBER_NO_ROW UINT32_MAX
 
-/* Layers that agree in source, filter, caps and joins: one geometry, cut for the widest of them. */
+/* Layers that agree in source, filter, caps and joins: one geometry, cut for the widest of them. Areas are another one
+ * than lines. */
 typedef struct camber_plan_set {
     size_t first_layer, last_layer, layer_count; /* layers of the plan, linked by next */
     size_t first_row, row_count;
     size_t first_pair, pair_count; /* its classes, in order */
     size_t first_paint;            /* into paints: row_count tuples of layer_count */
+    size_t first_area;             /* into the areas of patterns, which has as many, where the set is of areas */
     bool sorted;                   /* entries are in the order of pair_keys */
 } camber_plan_set;
+
+/* A part of a layer of the style. Lines and borders are one geometry. */
+typedef enum camber_plan_part {
+    CAMBER_PLAN_LINE = 0,
+    CAMBER_PLAN_BORDER,  /* of the line that comes next */
+    CAMBER_PLAN_AREA,    /* what lies inside of rings */
+    CAMBER_PLAN_OUTLINE, /* of the area before */
+} camber_plan_part;
 
 typedef struct camber_plan_layer {
     camber_layer_look look;
     camber_layer_look below; /* at the whole zoom below, of a layer with dashes or a pattern */
     float translate_px[2];
     size_t set;
-    size_t slot;             /* which of the set's layers it is */
-    bool border;             /* of the layer that comes next; it is the same in the style */
+    size_t slot; /* which of the set's layers it is */
+    camber_plan_part part;
     const camber_ramp *ramp; /* of the plan. NULL: none */
     bool translucent_ramp;
     size_t next; /* layer of the set */
@@ -105,6 +115,11 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
 void camber_plan_destroy(camber_plan *plan);
 
 /* ---- Using a plan ---- */
+
+/* Whether the set's polylines are rings that are filled. */
+static inline bool camber_plan_is_area(const camber_plan *plan, const camber_plan_set *set) {
+    return plan->layers[set->first_layer].part == CAMBER_PLAN_AREA;
+}
 
 /* The paint that a row of the set has in the set's layer number slot. */
 static inline camber_paint camber_plan_paint(const camber_plan *plan, const camber_plan_set *set, size_t row,

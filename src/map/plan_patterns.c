@@ -1,7 +1,7 @@
 /* Chooses the images that a plan draws with, and lays backgrounds that are images onto the map.
  *
- * Input: the style's pattern properties and the sprites. Output: the images of lines, and fills that are drawn between
- * layers.
+ * Input: the style's pattern properties and the sprites. Output: the images of lines, the fills of areas, and fills
+ * that are drawn between layers.
  */
 #include "map/plan_patterns.h"
 
@@ -24,6 +24,7 @@ static void note_missing_image(void *user, const char *name) {
 
 void camber_plan_patterns_free(camber_plan_patterns *patterns) {
     camber_free(patterns->context, patterns->fills);
+    camber_free(patterns->context, patterns->areas);
 }
 
 bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_style_layer *layer, double zoom,
@@ -38,7 +39,7 @@ bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_styl
     return true;
 }
 
-/* ---- Backgrounds ---- */
+/* ---- Fills ---- */
 
 static camber_color blend_over(camber_color top, camber_color below) {
     const float rest = below.a * (1.0f - top.a), a = top.a + rest;
@@ -50,7 +51,11 @@ static camber_color blend_over(camber_color top, camber_color below) {
 
 /* Lays images onto the map, from the world's north-western corner, in their own size at the whole zoom below; up to
  * the next whole zoom they grow with the map. */
-static void place_images(const camber_sprite_image *image, const camber_view *view, camber_fill *fill) {
+void camber_plan_fill_place(camber_plan_fill *placed, const camber_view *view) {
+    const camber_sprite_image *image = placed->image;
+    camber_fill *fill = &placed->fill;
+    if (!image)
+        return;
     const double css_px = view->scale_px / (512.0 * exp2(floor(camber_view_style_zoom(view)))) / image->pixel_ratio;
     const double width = fmax(image->width * css_px, 1e-3), height = fmax(image->height * css_px, 1e-3);
     const double x = view->x * view->scale_px, y = view->y * view->scale_px;
@@ -58,27 +63,24 @@ static void place_images(const camber_sprite_image *image, const camber_view *vi
     fill->image = &image->image;
     fill->width_px = (float)width;
     fill->height_px = (float)height;
-    fill->x_px = (float)(dx * view->cosine + dy * view->sine + 0.5 * view->width);
-    fill->y_px = (float)(dy * view->cosine - dx * view->sine + 0.5 * view->height);
+    fill->x_px = (float)(dx * view->cosine + dy * view->sine + 0.5 * view->width) + placed->translate_px[0];
+    fill->y_px = (float)(dy * view->cosine - dx * view->sine + 0.5 * view->height) + placed->translate_px[1];
     fill->bearing_deg = view->bearing_deg;
 }
 
 void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const camber_style_layer *layer,
                                          const camber_view *view, size_t layers_so_far, camber_color *below) {
     const camber_layer_paint paint = camber_style_layer_paint(layer, camber_view_style_zoom(view), NULL);
-    camber_fill fill = {.color = paint.color};
-    const camber_sprite_image *image = NULL;
+    camber_plan_fill made = {.before = layers_so_far, .fill = {.color = paint.color}};
     const bool patterned =
-        camber_plan_patterns_find(patterns, layer, floor(camber_view_style_zoom(view)), NULL, &image);
-    if (patterned) {
-        fill.color.a = image ? (float)paint.opacity : 0.0f;
-        if (image)
-            place_images(image, view, &fill);
-    }
-    if (!(fill.color.a > 0.0f))
+        camber_plan_patterns_find(patterns, layer, floor(camber_view_style_zoom(view)), NULL, &made.image);
+    if (patterned)
+        made.fill.color.a = made.image ? (float)paint.opacity : 0.0f;
+    camber_plan_fill_place(&made, view);
+    if (!(made.fill.color.a > 0.0f))
         return;
     if (!patterned && layers_so_far == 0 && patterns->fill_count == 0) {
-        *below = blend_over(fill.color, *below);
+        *below = blend_over(made.fill.color, *below);
         return;
     }
     if (!camber_grow(patterns->context, &patterns->fills, &patterns->fill_capacity, patterns->fill_count + 1,
@@ -86,11 +88,12 @@ void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const c
         patterns->failed = true;
         return;
     }
-    patterns->fills[patterns->fill_count++] = (camber_plan_fill){layers_so_far, fill, patterned ? image : NULL};
+    patterns->fills[patterns->fill_count++] = made;
 }
 
 void camber_plan_patterns_move(camber_plan_patterns *patterns, const camber_view *view) {
     for (size_t i = 0; i < patterns->fill_count; i++)
-        if (patterns->fills[i].image)
-            place_images(patterns->fills[i].image, view, &patterns->fills[i].fill);
+        camber_plan_fill_place(patterns->fills + i, view);
+    for (size_t i = 0; i < patterns->area_count; i++)
+        camber_plan_fill_place(patterns->areas + i, view);
 }

@@ -1,15 +1,17 @@
-/* The images that a plan draws with, and the backgrounds that stand above lines or are of images. */
+/* The images that a plan draws with, the backgrounds that stand above lines or are of images, and the fills of areas.
+ */
 #ifndef CAMBER_MAP_PLAN_PATTERNS_H
 #define CAMBER_MAP_PLAN_PATTERNS_H
 
 #include "map/view.h"
 #include "source/sprite.h"
 
-/* Drawn before a layer of the plan. */
+/* A fill of the whole picture, drawn before a layer of the plan; or of areas. */
 typedef struct camber_plan_fill {
-    size_t before; /* layer_count: behind the last */
+    size_t before; /* layer_count: behind the last; of areas 0 */
     camber_fill fill;
     const camber_sprite_image *image; /* NULL: the fill is of one colour */
+    float translate_px[2];            /* of areas: the image moves with them */
 } camber_plan_fill;
 
 typedef struct camber_plan_patterns {
@@ -17,8 +19,10 @@ typedef struct camber_plan_patterns {
     camber_sprites *sprites; /* NULL: not read */
     bool failed;             /* no memory */
     bool unread;             /* a pattern was asked for, and no sprites are read */
-    camber_plan_fill *fills;
+    camber_plan_fill *fills; /* of the whole picture */
     size_t fill_count, fill_capacity;
+    camber_plan_fill *areas; /* of areas: paints point at them */
+    size_t area_count, area_capacity;
 } camber_plan_patterns;
 
 void camber_plan_patterns_free(camber_plan_patterns *patterns);
@@ -33,7 +37,9 @@ bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_styl
 void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const camber_style_layer *layer,
                                          const camber_view *view, size_t layers_so_far, camber_color *below);
 
-/* Places the images of all backgrounds for another view of the same zoom and ratio. */
+/* Lays the images of a fill onto the map, as a view sees it; a fill of one colour stays as it is. */
+void camber_plan_fill_place(camber_plan_fill *fill, const camber_view *view);
+/* Places the images of all fills for another view of the same zoom and ratio. */
 void camber_plan_patterns_move(camber_plan_patterns *patterns, const camber_view *view);
 
 #endif

@@ -20,8 +20,8 @@ static double bound(const camber_style_layer *layer, camber_property_id property
     return camber_style_layer_bound(layer, property, zoom);
 }
 
-/* How far from its polyline a line of the layer reaches at most, px: half of its width, gap and both rails, at the
- * tips of its joins, and its offset, which joins lengthen too. */
+/* How far from its polyline a layer reaches at most, px. A line: half of its width, gap and both rails, at the tips of
+ * its joins, and its offset, which joins lengthen too. Of a fill these are the defaults, enough for its outline. */
 static double reach_of(const camber_style_layer *layer, const camber_view *view) {
     const double zoom = camber_view_style_zoom(view), ratio = view->ratio;
     const double width = fmin(bound(layer, CAMBER_LINE_WIDTH, zoom) * ratio, WIDEST_PX);
@@ -43,7 +43,7 @@ static double reach_of_style(const camber_style *style, const camber_view *view)
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
-        if (layer->kind == CAMBER_LAYER_LINE && layer->visible && !out)
+        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->visible && !out)
             reach = fmax(reach, reach_of(layer, view));
     }
     return reach;

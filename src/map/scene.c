@@ -213,7 +213,8 @@ static void list_properties(const camber_style *style, char *text, size_t size) 
 
 static bool has_patterns(const camber_plan *plan) {
     for (size_t i = 0; i < plan->layer_count; i++)
-        if (plan->layers[i].look.layer->properties[CAMBER_LINE_PATTERN])
+        if (plan->layers[i].look.layer->properties[CAMBER_LINE_PATTERN] ||
+            plan->layers[i].look.layer->properties[CAMBER_FILL_PATTERN])
             return true;
     return false;
 }

@@ -58,7 +58,7 @@ static void keep_problem(void *user, const camber_compiler *c, camber_log_level 
 /* Finds what is valid but may draw otherwise than expected, in layers and the sources that they name. */
 static void find_in_layer(camber_document *d, const camber_style_layer *layer, const char *type) {
     camber_compiler *c = &d->compiler;
-    if (layer->kind != CAMBER_LAYER_LINE)
+    if (layer->kind == CAMBER_LAYER_BACKGROUND)
         return;
     if (layer->min_zoom >= layer->max_zoom)
         camber_compiler_warn(c, "the layer is drawn at no zoom: its minzoom is %g, its maxzoom %g; swap or change them",
@@ -149,7 +149,7 @@ static void find_in_tiles(camber_document *d, const json_t *source) {
     }
 }
 
-/* Finds what reading a source would complain of, had a line layer named it. */
+/* Finds what reading a source would complain of, had a layer named it. */
 static void find_in_sources(camber_document *d) {
     static const char *const types[] = {"vector", "raster", "raster-dem", "geojson", "image", "video", "canvas", NULL};
     camber_compiler *c = &d->compiler;
@@ -180,7 +180,8 @@ static void list_type(checker *k, const char *type, size_t layers) {
         fail_memory(k);
         return;
     }
-    const bool drawn = strcmp(type, "line") == 0 || strcmp(type, "background") == 0;
+    camber_layer_kind kind;
+    const bool drawn = camber_layer_kind_find(type, &kind);
     k->types[report->type_count++] = (camber_style_type){keep(k, type), layers, drawn};
 }
 
@@ -212,7 +213,7 @@ static const char *find_trouble(const camber_style_source *source) {
     static const char *const remote = "it lies on a network, which is not read; save it as a file and name that";
     const bool geojson = strcmp(source->type, "geojson") == 0;
     if (!geojson && strcmp(source->type, "vector") != 0)
-        return "sources of this type have no lines; draw lines of a geojson or vector source";
+        return "sources of this type have neither lines nor areas; draw those of a geojson or vector source";
     const json_t *data = json_object_get(source->json, "data"), *url = json_object_get(source->json, "url");
     const json_t *tiles = json_object_get(source->json, "tiles");
     if (geojson ? !data : !url && !tiles)
@@ -231,7 +232,7 @@ static void list_sources(checker *k, const camber_style *style) {
         const camber_style_source *source = style->sources + i;
         size_t count = 0;
         for (size_t n = 0; n < style->layer_count; n++)
-            count += style->layers[n].kind == CAMBER_LAYER_LINE && style->layers[n].source_index == i;
+            count += style->layers[n].kind != CAMBER_LAYER_BACKGROUND && style->layers[n].source_index == i;
         k->sources[i] =
             (camber_style_report_source){keep(k, source->name), keep(k, source->type), count, find_trouble(source)};
     }

@@ -4,8 +4,6 @@
  */
 #include "style/document.h"
 
-#include "base/embedded.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -344,9 +342,10 @@ camber_status camber_style_parse(camber_context *context, const char *json, size
 }
 
 camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style) {
-    if (theme == CAMBER_THEME_DARK)
-        return camber_style_parse(context, camber_style_dark, camber_style_dark_size, "built-in dark style", style);
-    return camber_style_parse(context, camber_style_light, camber_style_light_size, "built-in light style", style);
+    const char *name = theme == CAMBER_THEME_DARK ? "built-in dark style" : "built-in light style";
+    size_t size_bytes;
+    const char *text = camber_style_get_text("city", theme, &size_bytes);
+    return camber_style_parse(context, text, size_bytes, name, style);
 }
 
 void camber_style_destroy(camber_style *style) {
@@ -381,14 +380,12 @@ uint32_t camber_style_get_effects(const camber_style *style, double zoom) {
     static const struct {
         camber_property_id property;
         camber_style_effect effect;
-    } named[] = {{CAMBER_LINE_GAP_WIDTH, CAMBER_STYLE_EFFECT_GAP},
-                 {CAMBER_LINE_BLUR, CAMBER_STYLE_EFFECT_BLUR},
-                 {CAMBER_LINE_DASHARRAY, CAMBER_STYLE_EFFECT_DASH},
-                 {CAMBER_LINE_TRIM_OFFSET, CAMBER_STYLE_EFFECT_TRIM},
-                 {CAMBER_LINE_GRADIENT, CAMBER_STYLE_EFFECT_GRADIENT},
-                 {CAMBER_LINE_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
-                 {CAMBER_BACKGROUND_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
-                 {CAMBER_LINE_BORDER_WIDTH, CAMBER_STYLE_EFFECT_BORDER}};
+    } named[] = {
+        {CAMBER_LINE_GAP_WIDTH, CAMBER_STYLE_EFFECT_GAP},         {CAMBER_LINE_BLUR, CAMBER_STYLE_EFFECT_BLUR},
+        {CAMBER_LINE_DASHARRAY, CAMBER_STYLE_EFFECT_DASH},        {CAMBER_LINE_TRIM_OFFSET, CAMBER_STYLE_EFFECT_TRIM},
+        {CAMBER_LINE_GRADIENT, CAMBER_STYLE_EFFECT_GRADIENT},     {CAMBER_LINE_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+        {CAMBER_BACKGROUND_PATTERN, CAMBER_STYLE_EFFECT_PATTERN}, {CAMBER_FILL_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+        {CAMBER_LINE_BORDER_WIDTH, CAMBER_STYLE_EFFECT_BORDER}};
     uint32_t effects = 0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;

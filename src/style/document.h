@@ -38,6 +38,8 @@ void camber_document_warn_unknown(camber_document *d, const json_t *object, cons
 
 /* layer.c */
 bool camber_document_read_layers(camber_document *d, const json_t *layers);
+/* false: layers of this type are not drawn. */
+bool camber_layer_kind_find(const char *type, camber_layer_kind *kind);
 void camber_style_layer_free(camber_context *context, camber_style_layer *layer);
 
 #endif

@@ -171,7 +171,6 @@ static bool read_filter(camber_document *d, const json_t *json, camber_style_lay
     if (!write_filter_key(c, filter, &layer->filter_key))
         return false;
     camber_compiler_leave(c);
-    c->style->wants_polygons = c->style->wants_polygons || camber_filter_asks_polygons(filter);
     return true;
 }
 
@@ -252,9 +251,20 @@ void camber_style_layer_free(camber_context *context, camber_style_layer *layer)
     camber_free(context, layer->id);
 }
 
-/* Whether the specification has this type of layer; others are misspelled. */
+bool camber_layer_kind_find(const char *type, camber_layer_kind *kind) {
+    static const char *const types[] = {
+        [CAMBER_LAYER_BACKGROUND] = "background", [CAMBER_LAYER_LINE] = "line", [CAMBER_LAYER_FILL] = "fill"};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (strcmp(types[i], type) == 0) {
+            *kind = (camber_layer_kind)i;
+            return true;
+        }
+    return false;
+}
+
+/* Whether the specification has this type of layer, which is not drawn; others are misspelled. */
 static bool is_known_type(const char *type) {
-    static const char *const types[] = {"fill",   "symbol",    "circle",       "heatmap", "fill-extrusion",
+    static const char *const types[] = {"symbol", "circle",    "heatmap",      "fill-extrusion",
                                         "raster", "hillshade", "color-relief", "sky"};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i], type) == 0)
@@ -294,8 +304,8 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     const char *type = json_string_value(json_object_get(json, "type"));
     if (!type)
         return camber_compiler_fail(c, "the layer has no \"type\" that is a string; write e.g. \"type\": \"line\"");
-    const bool line = strcmp(type, "line") == 0;
-    if (!line && strcmp(type, "background") != 0) {
+    camber_layer_kind kind;
+    if (!camber_layer_kind_find(type, &kind)) {
         if (camber_document_first_time(d, type))
             camber_compiler_warn(c,
                                  is_known_type(type) ? "layers of type \"%.64s\" are not drawn and left out"
@@ -304,7 +314,7 @@ static bool read_resolved(camber_document *d, const json_t *json) {
         return true;
     }
     camber_style_layer *layer = &style->layers[style->layer_count++];
-    layer->kind = line ? CAMBER_LAYER_LINE : CAMBER_LAYER_BACKGROUND;
+    layer->kind = kind;
     return read_layer(d, json, layer);
 }
 
@@ -374,6 +384,19 @@ static bool index_layers(camber_document *d, const json_t *layers) {
     return done || camber_compiler_fail_memory(&d->compiler);
 }
 
+/* Finds what else than lines is drawn of the features. */
+static void find_wants(camber_style *style) {
+    style->wants_polygons = style->wants_areas = false;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        const bool fills = layer->kind == CAMBER_LAYER_FILL && layer->visible;
+        const bool lines = layer->kind == CAMBER_LAYER_LINE && layer->filter;
+        style->wants_areas |= fills;
+        style->wants_polygons |= (fills && layer->properties[CAMBER_FILL_OUTLINE_COLOR]) ||
+                                 (lines && camber_filter_asks_polygons(layer->filter->document));
+    }
+}
+
 bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     camber_compiler *c = &d->compiler;
     camber_compiler_enter_key(c, "layers");
@@ -394,6 +417,20 @@ bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     }
     if (!check_ids(d, layers))
         return false;
+    find_wants(c->style);
     camber_compiler_leave(c);
     return true;
+}
+
+void camber_style_leave_out_areas(camber_style *style) {
+    size_t count = 0;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        camber_style_layer *layer = style->layers + i;
+        count += layer->kind == CAMBER_LAYER_FILL && layer->visible;
+        layer->visible = layer->visible && layer->kind != CAMBER_LAYER_FILL;
+    }
+    find_wants(style);
+    if (count)
+        camber_log(style->context, CAMBER_LOG_INFO, "style: %zu layer%s of areas left out; lines alone are taken here",
+                   count, count == 1 ? " is" : "s are");
 }

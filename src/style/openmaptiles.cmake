@@ -121,9 +121,8 @@ endfunction()
 set(omt_indices 0 1 2)
 set(omt_distances near far casing)
 
-# Writes openmaptiles-theme.json into the folder.
-function(openmaptiles_style theme folder)
-  set(THEME ${theme})
+# Sets the parts of the layers of roads: which features they have, and their widths, colours and order.
+function(omt_roads theme)
   omt_width(ROAD_WIDTH omt_casing_none)
   omt_width(ROAD_CASING omt_casing_ground)
   omt_width(BRIDGE_CASING omt_casing_bridge)
@@ -138,6 +137,15 @@ function(openmaptiles_style theme folder)
   endforeach()
   list(JOIN values "\", \"" values)
   set(IS_ROAD "[\"match\", [\"get\", \"class\"], [\"${values}\"], true, false]")
+  foreach(name ROAD_WIDTH ROAD_CASING BRIDGE_CASING ROAD_COLOR CASING_COLOR TUNNEL_COLOR CLASS_ORDER LAYER_ORDER IS_ROAD)
+    set(${name} "${${name}}" PARENT_SCOPE)
+  endforeach()
+endfunction()
+
+# Writes openmaptiles-theme.json into the folder.
+function(openmaptiles_style theme folder)
+  set(THEME ${theme})
+  omt_roads(${theme})
   foreach(color paper casing_bridge path track rail transit water stream ferry boundary boundary_band runway
           runway_casing pier works)
     string(TOUPPER ${color} name)

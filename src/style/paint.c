@@ -38,6 +38,13 @@ static bool store_number(const camber_property_row *row, const camber_value *val
     return true;
 }
 
+static bool store_bool(const camber_value *value, bool *field) {
+    if (value->type != CAMBER_VALUE_BOOL)
+        return false;
+    *field = value->boolean;
+    return true;
+}
+
 static bool store_choice(const camber_property_row *row, const camber_value *value, void *field) {
     _Static_assert(sizeof(int) == sizeof(camber_cap) && sizeof(int) == sizeof(camber_join) &&
                        sizeof(int) == sizeof(camber_translate_anchor),
@@ -80,6 +87,7 @@ static bool store_dashes(const camber_property_row *row, const camber_value *val
 static bool store_value(const camber_property_row *row, const camber_value *value, void *field) {
     switch (row->property.type) {
     case CAMBER_TYPE_NUMBER: return store_number(row, value, field);
+    case CAMBER_TYPE_BOOL: return store_bool(value, field);
     case CAMBER_TYPE_STRING: return store_choice(row, value, field);
     case CAMBER_TYPE_ARRAY:
         return row->property.length == 0 ? store_dashes(row, value, field) : store_pair(row, value, field);
@@ -108,7 +116,7 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
         if (!expression || camber_property_rows[i].offset == CAMBER_NO_OFFSET)
             continue;
         if (expression->reads_feature)
-            look.by_feature |= 1u << i;
+            look.by_feature |= UINT64_C(1) << i;
         else
             store_property(layer, i, &evaluation, &look.paint);
     }
@@ -153,8 +161,10 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
 
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image) {
-    const bool line = layer->kind == CAMBER_LAYER_LINE;
-    const camber_expression *pattern = layer->properties[line ? CAMBER_LINE_PATTERN : CAMBER_BACKGROUND_PATTERN];
+    static const camber_property_id patterns[] = {[CAMBER_LAYER_BACKGROUND] = CAMBER_BACKGROUND_PATTERN,
+                                                  [CAMBER_LAYER_LINE] = CAMBER_LINE_PATTERN,
+                                                  [CAMBER_LAYER_FILL] = CAMBER_FILL_PATTERN};
+    const camber_expression *pattern = layer->properties[patterns[layer->kind]];
     camber_evaluation evaluation;
     camber_value value;
     *image = 0;
@@ -184,10 +194,10 @@ static bool join_ignores(const camber_layer_paint *p, const camber_layer_paint *
 }
 
 bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b) {
-    const uint32_t geometry = (1u << CAMBER_LINE_GEOMETRY) - 1;
+    const uint64_t geometry = (UINT64_C(1) << CAMBER_LAYER_GEOMETRY) - 1;
     if ((a->by_feature & geometry) != (b->by_feature & geometry))
         return false;
-    for (unsigned i = 0; i < CAMBER_LINE_GEOMETRY; i++)
+    for (unsigned i = 0; i < CAMBER_LAYER_GEOMETRY; i++)
         if (a->by_feature >> i & 1 && !json_equal(a->layer->properties[i]->document, b->layer->properties[i]->document))
             return false;
     /* Properties that features change have no value yet in either. */

@@ -1,4 +1,5 @@
-# The built-in road style: a table of road classes and two palettes, written out as MapLibre style documents.
+# The style of roads alone: a table of road classes and two palettes, written out as MapLibre style documents. The style
+# city has the same roads.
 #
 # Three levels (tunnels, ground, bridges), each all its casings and then all its fills, minor classes first. The
 # casing and the fill of a class have the same filter, cap and join, so that they are tessellated once.
@@ -140,18 +141,28 @@ function(road_layer out theme level class part)
   set(${out} "${layer}" PARENT_SCOPE)
 endfunction()
 
-# Writes theme.json into the folder.
-function(road_style theme folder)
-  set(THEME ${theme})
-  set(PAPER ${${theme}_paper})
-  set(LAYERS "")
+# Appends the layers of all roads.
+function(road_layers out theme)
+  set(layers "${${out}}")
   foreach(level tunnel ground bridge)
     foreach(part casing fill)
       foreach(class IN LISTS road_classes)
         road_layer(layer ${theme} ${level} ${class} ${part})
-        string(APPEND LAYERS "${layer}")
+        string(APPEND layers "${layer}")
       endforeach()
     endforeach()
   endforeach()
-  configure_file(${PROJECT_SOURCE_DIR}/src/style/roads.json.in ${folder}/${theme}.json @ONLY)
+  set(${out} "${layers}" PARENT_SCOPE)
+endfunction()
+
+# Writes NAME-THEME.json into the folder: the layers behind a background.
+function(road_document NAME THEME LAYERS folder)
+  set(PAPER ${${THEME}_paper})
+  configure_file(${PROJECT_SOURCE_DIR}/src/style/roads.json.in ${folder}/${NAME}-${THEME}.json @ONLY)
+endfunction()
+
+function(road_style theme folder)
+  set(layers "")
+  road_layers(layers ${theme})
+  road_document(roads ${theme} "${layers}" ${folder})
 endfunction()

@@ -1,5 +1,5 @@
-/* The styles that ship with camber, as documents: the build makes and embeds them (roads.cmake, openmaptiles.cmake,
- * transit.cmake). */
+/* The styles that ship with camber, as documents: the build makes and embeds them (city.cmake, roads.cmake,
+ * openmaptiles.cmake, transit.cmake). The first one is the built-in style. */
 #include "base/embedded.h"
 #include "camber_map.h"
 
@@ -12,7 +12,12 @@ typedef struct shipped_style {
 } shipped_style;
 
 static const shipped_style styles[] = {
-    {"roads", {camber_style_light, camber_style_dark}, {&camber_style_light_size, &camber_style_dark_size}},
+    {"city",
+     {camber_style_city_light, camber_style_city_dark},
+     {&camber_style_city_light_size, &camber_style_city_dark_size}},
+    {"roads",
+     {camber_style_roads_light, camber_style_roads_dark},
+     {&camber_style_roads_light_size, &camber_style_roads_dark_size}},
     {"openmaptiles",
      {camber_style_openmaptiles_light, camber_style_openmaptiles_dark},
      {&camber_style_openmaptiles_light_size, &camber_style_openmaptiles_dark_size}},

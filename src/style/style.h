@@ -32,6 +32,7 @@ typedef struct camber_style_images {
 typedef enum camber_layer_kind {
     CAMBER_LAYER_BACKGROUND,
     CAMBER_LAYER_LINE,
+    CAMBER_LAYER_FILL,
 } camber_layer_kind;
 
 /* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
@@ -41,8 +42,9 @@ typedef enum camber_property_id {
     CAMBER_LINE_MITER_LIMIT,
     CAMBER_LINE_OFFSET,
     CAMBER_LINE_SORT_KEY,
-    CAMBER_LINE_GEOMETRY, /* layers that differ in those before share no polylines */
-    CAMBER_LINE_WIDTH = CAMBER_LINE_GEOMETRY,
+    CAMBER_FILL_SORT_KEY,
+    CAMBER_LAYER_GEOMETRY, /* layers that differ in those before share no polylines */
+    CAMBER_LINE_WIDTH = CAMBER_LAYER_GEOMETRY,
     CAMBER_LINE_ROUND_LIMIT,
     CAMBER_LINE_GAP_WIDTH,
     CAMBER_LINE_BLUR,
@@ -60,6 +62,14 @@ typedef enum camber_property_id {
     CAMBER_BACKGROUND_COLOR,
     CAMBER_BACKGROUND_OPACITY,
     CAMBER_BACKGROUND_PATTERN,
+    CAMBER_FILL_ANTIALIAS,
+    CAMBER_FILL_COLOR,
+    CAMBER_FILL_OPACITY,
+    CAMBER_FILL_LAYER_OPACITY,
+    CAMBER_FILL_OUTLINE_COLOR,
+    CAMBER_FILL_PATTERN,
+    CAMBER_FILL_TRANSLATE,
+    CAMBER_FILL_TRANSLATE_ANCHOR,
     CAMBER_PROPERTIES
 } camber_property_id;
 
@@ -126,7 +136,8 @@ struct camber_style {
     bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool accumulates; /* a line layer's lines are seen through each other, their ends too */
-    bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
+    bool wants_polygons; /* outlines are drawn: a line layer's filter names the geometry type Polygon, or a fill layer
+                            has a colour for them */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
 };
 
@@ -158,9 +169,10 @@ typedef struct camber_layer_paint {
     camber_color color; /* the alpha includes the opacity */
     double opacity;
     double border_width;       /* of the line's own width, on each side */
-    camber_color border_color; /* the alpha includes the opacity */
+    camber_color border_color; /* the alpha includes the opacity; of a fill, its outline's colour */
     camber_layer_dashes dashes;
     /* These are the same for all features. */
+    bool antialias; /* of a fill: it may have an outline */
     double layer_opacity;
     double translate[2];
     double trim[2]; /* the line is not drawn from one to the other: shares of its length */
@@ -172,7 +184,7 @@ typedef struct camber_layer_look {
     const camber_style_layer *layer;
     double zoom;
     camber_layer_paint paint;
-    uint32_t by_feature; /* bits of camber_property_id */
+    uint64_t by_feature; /* bits of camber_property_id */
 } camber_layer_look;
 
 camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom);
@@ -183,9 +195,9 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
                                             const camber_feature_view *feature);
 /* The border's colour for a line that gives none. */
 camber_color camber_border_color(camber_color color);
-/* Finds the image that a layer's line-pattern or background-pattern names at a zoom: a number from 1, as
- * images->find gives it. 0: it names none, or one that is missing, which images->missing is told. false: the layer
- * has no pattern. feature may be NULL for a background. */
+/* Finds the image that a layer's pattern names at a zoom: a number from 1, as images->find gives it. 0: it names none,
+ * or one that is missing, which images->missing is told. false: the layer has no pattern. feature may be NULL for a
+ * background. */
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image);
 /* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */

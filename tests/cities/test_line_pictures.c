@@ -1,6 +1,7 @@
-/* Another engine's pictures of line layers (CAMBER_DATA/line-tests): camber draws each style, and all but the
- * exceptions below come as close as the style asks, by pixelmatch's measure, in GL and in OpenCL. What does not stays
- * in line-tests/ or line-tests/cl/ of the build tree. */
+/* Another engine's pictures of layers: of lines (CAMBER_DATA/line-tests), and of fills and backgrounds (fill-tests,
+ * where the argument names that). camber draws each style, and all but the exceptions below come as close as the style
+ * asks, by pixelmatch's measure, in GL and in OpenCL. What does not stays in the suite's folder of the build tree, or
+ * in cl/ of that. */
 #include "core.h"
 #include "pixelmatch.h"
 #include "png_file.h"
@@ -10,6 +11,11 @@
 #include <sys/wait.h>
 
 enum { USUAL_PX = 512, PATH_SIZE = 1024, STYLES_MAX = 256 };
+
+typedef struct picture_suite {
+    char *folder;        /* absolute */
+    char out[PATH_SIZE]; /* of the build tree */
+} picture_suite;
 static const double THRESHOLD = 0.13, USUAL_SHARE = 0.00015;
 
 typedef enum reason {
@@ -230,10 +236,6 @@ static int run(const style_case *c, const char *style, const char *picture, cons
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static const char *out_folder(void) {
-    return draws_in_cl() ? CAMBER_LINE_PICTURES "/cl" : CAMBER_LINE_PICTURES;
-}
-
 /* ---- Verdicts ---- */
 
 static int exception_of(const char *name) {
@@ -306,9 +308,9 @@ static void print_file(const char *path) {
         fclose(file);
 }
 
-static bool draw(style_case *c, const char *folder, style_change change) {
+static bool draw(style_case *c, const picture_suite *suite, style_change change) {
     char base[PATH_SIZE], style[2 * PATH_SIZE], picture[2 * PATH_SIZE], log[2 * PATH_SIZE];
-    const int folded = snprintf(base, sizeof base, "%s/", out_folder());
+    const int folded = snprintf(base, sizeof base, "%.700s/", suite->out);
     snprintf(base + folded, sizeof base - (size_t)folded, "%s", c->name);
     for (char *at = base + folded; *at; at++)
         *at = *at == '/' ? '-' : *at;
@@ -316,22 +318,22 @@ static bool draw(style_case *c, const char *folder, style_change change) {
     snprintf(picture, sizeof picture, "%s.actual.png", base);
     snprintf(log, sizeof log, "%s.log", base);
     remove(picture);
-    prepare(c, folder, change, style);
+    prepare(c, suite->folder, change, style);
     const int status = run(c, style, picture, log);
     if (status == 0)
-        return compare(c, folder, change, base);
+        return compare(c, suite->folder, change, base);
     const int e = exception_of(c->name);
     printf("%-36s exit status %d%s%s\n", c->name, status, e >= 0 ? ": not yet: " : "", e >= 0 ? exceptions[e].why : "");
     print_file(log);
     return e >= 0 && exceptions[e].reason == NOT_YET;
 }
 
-static bool draw_case(style_case *c, const char *folder) {
+static bool draw_case(style_case *c, const picture_suite *suite) {
     bool proven = true;
     for (int i = 0; i < PROOFS; i++)
         if (strcmp(proofs[i].name, c->name) == 0)
-            proven &= draw(c, folder, proofs[i].change);
-    return draw(c, folder, NO_CHANGE) && proven;
+            proven &= draw(c, suite, proofs[i].change);
+    return draw(c, suite, NO_CHANGE) && proven;
 }
 
 /* ---- All of them ---- */
@@ -364,18 +366,18 @@ static size_t list_cases(const char *folder, style_case *cases) {
 
 static void test_pictures(void **state) {
     static style_case cases[STYLES_MAX];
-    const char *folder = *state;
-    const size_t count = list_cases(folder, cases);
+    const picture_suite *suite = *state;
+    const size_t count = list_cases(suite->folder, cases);
     size_t bad = 0;
     assert_in_range(count, 1, STYLES_MAX - 1);
     for (size_t i = 0; i < count; i++)
-        bad += !draw_case(cases + i, folder);
+        bad += !draw_case(cases + i, suite);
     size_t seen = 0; /* of the exceptions */
     for (size_t i = 0; i < count; i++)
         seen += exception_of(cases[i].name) >= 0;
     printf("%zu pictures, %zu of them exceptions\n", count, seen);
     if (bad)
-        fail_msg("%zu of %zu pictures; see %s", bad, count, out_folder());
+        fail_msg("%zu of %zu pictures; see %s", bad, count, suite->out);
 }
 
 /* The measure itself: a level off counts nothing, a black pixel on white does, a smooth edge that moved by half a pixel
@@ -413,19 +415,21 @@ static void test_measure(void **state) {
     assert_true(pixelmatch_count(&pair, THRESHOLD) < SIDE / 2);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     char folder[PATH_SIZE] = "";
-    const char *data = getenv("CAMBER_DATA");
-    snprintf(folder, sizeof folder, "%s/line-tests", data ? data : "");
-    char *absolute = data ? realpath(folder, NULL) : NULL;
-    if (!absolute || access(absolute, R_OK) != 0) {
-        puts("skipped: CAMBER_DATA has no line-tests");
-        free(absolute);
+    const char *data = getenv("CAMBER_DATA"), *name = argc > 1 ? argv[1] : "line-tests";
+    picture_suite suite;
+    snprintf(folder, sizeof folder, "%s/%s", data ? data : "", name);
+    snprintf(suite.out, sizeof suite.out, "%s/%s%s", CAMBER_PICTURES_FOLDER, name, draws_in_cl() ? "/cl" : "");
+    suite.folder = data ? realpath(folder, NULL) : NULL;
+    if (!suite.folder || access(suite.folder, R_OK) != 0) {
+        printf("skipped: CAMBER_DATA has no %s\n", name);
+        free(suite.folder);
         return 77;
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_measure),
-                                       cmocka_unit_test_prestate(test_pictures, absolute)};
+                                       cmocka_unit_test_prestate(test_pictures, &suite)};
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    free(absolute);
+    free(suite.folder);
     return failed;
 }

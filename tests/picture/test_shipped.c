@@ -557,7 +557,7 @@ static void test_documents(void **state) {
                 assert_null(report->sources[i].trouble);
             camber_style_report_destroy(report);
         }
-    assert_int_equal(count, 3);
+    assert_int_equal(count, 4);
     assert_null(camber_style_list(count));
     assert_null(camber_style_get_text("none", CAMBER_THEME_LIGHT, &size_bytes));
 }

@@ -914,13 +914,15 @@ sed 's|"vast"|"https://example.org/sprite"|' "$tmp/in/pattern.json" >"$tmp/in/fa
 expect 0 "a style whose sprite is elsewhere" render --style "$tmp/in/farsprite.json" -o a.png --size 64x64
 says '^camber: warning: sprite "default": https://example.org/sprite is on the network'
 rm -f a.png
-expect 0 "the built-in style by its name" render "$tiger" --style roads --theme dark -qo named.png --size 64x64
+expect 0 "the built-in style by its name" render "$tiger" --style city --theme dark -qo named.png --size 64x64
 expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --size 64x64
-cmp -s named.png builtin.png || fail "roads is not the built-in style"
-rm -f named.png builtin.png
+cmp -s named.png builtin.png || fail "city is not the built-in style"
+expect 0 "roads alone" render "$tiger" --style roads --theme dark -qo roads.png --size 64x64
+cmp -s roads.png builtin.png || fail "roads look otherwise in the built-in style"
+rm -f named.png builtin.png roads.png
 expect 0 "a style that ships" style check openmaptiles
 expect 66 "no style of that name" render "$tiger" --style streets -o a.png
-says 'roads, openmaptiles, transit'
+says 'city, roads, openmaptiles, transit'
 expect 66 "a style that ships, without its tiles" render --style openmaptiles --theme dark -o a.png
 says 'OpenMapTiles.*: /sources/openmaptiles: openmaptiles.mbtiles: no such file; tilemaker makes it'
 expect 66 "a style that ships, without its lines" render --style transit -o a.png

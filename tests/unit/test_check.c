@@ -22,7 +22,7 @@ static const char *const wrong =
     "  {\"id\": \"a\", \"type\": \"line\", \"source\": \"q\", \"filter\": [\"foo\"],"
     "   \"paint\": {\"line-width\": \"x\", \"line-color\": 7, \"line-blurr\": 4, \"line-offset\": 3, \"line-cap\": 1},"
     "   \"layout\": {\"line-cap\": \"pointed\", \"visibility\": 3}},"
-    "  {\"id\": \"a\", \"type\": \"fill\"}, {\"type\": \"line\"}, {\"id\": \"r\", \"ref\": \"zz\"}, 5,"
+    "  {\"id\": \"a\", \"type\": \"fill-extrusion\"}, {\"type\": \"line\"}, {\"id\": \"r\", \"ref\": \"zz\"}, 5,"
     "  {\"id\": \"b\", \"type\": \"line\", \"source\": \"g\", \"minzoom\": 30, \"paint\": []},"
     "  {\"id\": \"c\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-join\": \"round\"}},"
     "  {\"id\": \"d\", \"ref\": \"c\", \"paint\": {\"line-opacity\": 2}}, {\"id\": \"e\", \"ref\": \"d\"},"
@@ -106,6 +106,7 @@ static void test_root(void **state) {
 static void test_places(void **state) {
     (void)state;
 #define PAINT(json) "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {" json "}}"
+#define FILL(json) "{\"id\": \"a\", \"type\": \"fill\", \"source\": \"s\", \"paint\": {" json "}}"
 #define LAYOUT(json) "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"layout\": {" json "}}"
     static const struct {
         const char *source, *layer, *pointer;
@@ -133,6 +134,15 @@ static void test_places(void **state) {
         {"", LAYOUT("\"line-join\": [\"match\", [\"get\", \"pointed\"], \"pointed\", \"bevel\", \"round\"]"), NULL,
          false},
         {"", "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"minzoom\": 9, \"maxzoom\": 4}", "/layers/0",
+         false},
+        {"", FILL("\"fill-color\": \"#fff\", \"fill-antialias\": false, \"fill-outline-color\": [\"get\", \"c\"]"),
+         NULL, false},
+        {"", FILL("\"fill-opacity\": [\"match\", [\"get\", \"x\"], 1, 0.5, 3]"), "/layers/0/paint/fill-opacity/4",
+         false},
+        {"", FILL("\"fill-opacity\": -1"), "/layers/0/paint/fill-opacity", true},
+        {"", FILL("\"fill-sort-key\": 1"), "/layers/0/paint/fill-sort-key", false},
+        {"", FILL("\"line-color\": \"#fff\""), "/layers/0/paint/line-color", false},
+        {"", "{\"id\": \"a\", \"type\": \"fill\", \"source\": \"s\", \"minzoom\": 9, \"maxzoom\": 4}", "/layers/0",
          false},
         {", \"t\": {\"type\": \"raster-tiles\"}", PAINT(""), "/sources/t/type", true},
         {", \"t\": {\"type\": \"geojson\"}", PAINT(""), "/sources/t/data", true},
@@ -173,7 +183,7 @@ static void test_what_is_drawn(void **state) {
     assert_string_equal(report->types[0].type, "line");
     assert_int_equal(report->types[0].layers, 6); /* one by reference; what refers to that has none */
     assert_true(report->types[0].drawn);
-    assert_string_equal(report->types[1].type, "fill");
+    assert_string_equal(report->types[1].type, "fill-extrusion");
     assert_int_equal(report->types[1].layers, 1);
     assert_false(report->types[1].drawn);
     assert_int_equal(report->source_count, 3);

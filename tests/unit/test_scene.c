@@ -1,7 +1,7 @@
-/* Scenes: features under a view become polylines, rows, strokes and networks. */
+/* Scenes: features under a view become polylines, rows, strokes, fills and networks. */
 #include "camber_map.h"
 #include "lines/importance.h"
-#include "map/view.h"
+#include "map/plan_network.h"
 #include "source/features.h"
 
 #include <math.h>
@@ -339,6 +339,230 @@ static void test_backgrounds(void **state) {
     close_town(&t);
 }
 
+/* ---- Areas ---- */
+
+#define FILL(id, filter, rest) "{\"id\":\"" id "\",\"type\":\"fill\",\"filter\":" filter "," rest "}"
+#define BLUE "\"paint\":{\"fill-color\":\"#00f\"}"
+
+static const double SQUARE[] = {100, 100, 200, 100, 200, 200, 100, 200, 100, 100};
+
+static uint32_t add_shape(town *t, const char *kind, camber_geometry_kind geometry) {
+    const uint32_t class = add_class(t, kind, 0);
+    t->classes[class].geometry = geometry;
+    return class;
+}
+
+/* The pass's only paint that draws something. */
+static camber_paint paint_of(const camber_pass *pass) {
+    camber_paint found = {0};
+    size_t count = 0;
+    for (size_t i = 0; i < pass->paint_count; i++)
+        if (pass->paints[i].fill || pass->paints[i].width_px > 0.0f) {
+            found = pass->paints[i];
+            count++;
+        }
+    assert_int_equal(count, 1);
+    return found;
+}
+
+/* Fill layers draw areas, line layers lines and outlines, in the style's order. */
+static void test_areas_are_filled(void **state) {
+    (void)state;
+    town t;
+    open_town(&t, LINE("below", KIND("a"), "#f00", "2") "," FILL("area", KIND("a"), BLUE) "," LINE("above", KIND("a"),
+                                                                                                   "#0f0", "3"));
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_LINE), (double[]){300, 100, 400, 100}, 2);
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_POLYGON), SQUARE, 5);
+    add_px(&t, add_shape(&t, "b", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    camber_scene *scene = make_scene(&t, WORLD);
+    const camber_frame frame = frame_of(scene);
+    assert_int_equal(frame.pass_count, 3);
+    assert_int_equal(camber_scene_get_info(scene).layers, 3);
+    assert_int_equal(camber_scene_get_info(scene).undrawn, 1);
+    assert_near((double)paint_of(frame.passes).width_px, 2, 0);
+    assert_int_equal(frame.passes[0].polyline_count, 2); /* the line and the outline, in one set */
+    const camber_paint area = paint_of(frame.passes + 1);
+    assert_non_null(area.fill);
+    assert_true(area.fill->color.b == 1.0f && area.fill->color.r == 0.0f && area.fill->color.a == 1.0f);
+    assert_null(area.fill->image);
+    assert_near((double)area.width_px, 0, 0);
+    assert_int_equal(frame.passes[1].polyline_count, 1);
+    assert_near((double)paint_of(frame.passes + 2).width_px, 3, 0);
+    assert_null(paint_of(frame.passes + 2).fill);
+    camber_scene_destroy(scene);
+    close_town(&t);
+}
+
+/* The network is told which of its entries are rings to fill. */
+static void test_entries_of_areas(void **state) {
+    (void)state;
+    town t;
+    camber_view view;
+    camber_plan plan;
+    camber_plan_network network;
+    open_town(&t, FILL("area", KIND("a"), BLUE) "," LINE("line", KIND("a"), "#0f0", "3"));
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_LINE), (double[]){300, 100, 400, 100}, 2);
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    assert_int_equal(camber_view_create(t.context, &WORLD, &view), CAMBER_OK);
+    assert_int_equal(camber_plan_create(&t.features, &view, &plan), CAMBER_OK);
+    assert_int_equal(camber_plan_network_create(&t.features, &view, &plan, NULL, &network), CAMBER_OK);
+    assert_int_equal(network.first_entries[2], 2);
+    for (size_t i = 0; i < 2; i++) {
+        const bool is_area = network.entries[i].polyline == 1;
+        assert_int_equal(network.entries[i].is_area, is_area);
+        assert_near((double)plan.strokes[plan.pair_rows[network.entries[i].row]].width_px, is_area ? 0 : 3, 0);
+    }
+    camber_plan_network_destroy(&network);
+    camber_plan_destroy(&plan);
+    close_town(&t);
+}
+
+/* Colour and opacity by feature: equal fills are one row, transparent ones are not drawn. */
+static void test_fills_follow_data(void **state) {
+    (void)state;
+    town t;
+    open_town(&t, FILL("area", "true",
+                       "\"paint\":{\"fill-color\":[\"match\",[\"get\",\"kind\"],\"a\",\"#f00\",\"#00f\"],"
+                       "\"fill-opacity\":[\"match\",[\"get\",\"kind\"],\"n\",0,\"c\",0.5,1]}"));
+    static const char *const kinds[] = {"a", "b", "n", "c", "d"};
+    for (int i = 0; i < 5; i++)
+        add_px(&t, add_shape(&t, kinds[i], CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    camber_scene *scene = make_scene(&t, WORLD);
+    size_t count;
+    camber_scene_get_strokes(scene, &count);
+    assert_int_equal(count, 3); /* a, b and d, c */
+    assert_int_equal(camber_scene_get_info(scene).polylines, 4);
+    const camber_frame frame = frame_of(scene);
+    assert_int_equal(frame.pass_count, 1);
+    assert_int_equal(frame.passes[0].paint_count, 3);
+    const camber_paint *paints = frame.passes[0].paints;
+    assert_true(paints[0].fill->color.r == 1.0f && paints[0].fill->color.a == 1.0f);
+    assert_true(paints[1].fill->color.b == 1.0f && paints[1].fill->color.a == 1.0f);
+    assert_true(paints[2].fill->color.b == 1.0f && paints[2].fill->color.a == 0.5f);
+    camber_scene_destroy(scene);
+    close_town(&t);
+}
+
+/* A layer of areas has an opacity, a translation, and an outline on top. */
+static void test_fill_layers(void **state) {
+    (void)state;
+    town t;
+    open_town(&t, FILL("moved", KIND("a"), "\"paint\":{\"fill-layer-opacity\":0.5,\"fill-translate\":[3,4]}") "," FILL(
+                      "lined", KIND("a"),
+                      "\"paint\":{\"fill-color\":\"#"
+                      "00f\",\"fill-opacity\":0.5,"
+                      "\"fill-outline-color\":\"#"
+                      "f00\"}") "," FILL("hard", KIND("a"),
+                                         "\"paint\":"
+                                         "{\"fill-"
+                                         "antialias"
+                                         "\":false,"
+                                         "\"fill-"
+                                         "outline-"
+                                         "color\":"
+                                         "\"#f00\","
+                                         "\"fill-"
+                                         "opacity\":"
+                                         "0}"));
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_POLYGON), SQUARE, 5);
+    camber_view_desc view = WORLD;
+    view.ratio = 2;
+    view.bearing_deg = 90;
+    camber_scene *scene = make_scene(&t, view);
+    const camber_frame frame = frame_of(scene);
+    assert_int_equal(frame.pass_count, 3);
+    assert_int_equal(camber_scene_get_info(scene).layers, 2);
+    const camber_paint moved = paint_of(frame.passes), lined = paint_of(frame.passes + 1),
+                       outline = paint_of(frame.passes + 2);
+    assert_near((double)frame.passes[0].opacity, 0.5, 1e-6);
+    assert_near((double)moved.fill->color.a, 1, 0);
+    assert_near((double)moved.translate_x_px, 8, 1e-5); /* turned with the map */
+    assert_near((double)moved.translate_y_px, -6, 1e-5);
+    assert_near((double)lined.fill->color.a, 0.5, 1e-6);
+    assert_null(outline.fill);
+    assert_near((double)outline.width_px, 2, 0); /* a CSS px */
+    assert_near((double)outline.color.a, 0.5, 1e-6);
+    assert_true(outline.color.r == 1.0f && outline.color.b == 0.0f);
+    camber_scene_destroy(scene);
+    close_town(&t);
+
+    /* An opacity of the layer is one of both. */
+    open_town(&t, FILL("group", KIND("a"), "\"paint\":{\"fill-layer-opacity\":0.5,\"fill-outline-color\":\"#f00\"}"));
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_POLYGON), SQUARE, 5);
+    scene = make_scene(&t, WORLD);
+    const camber_frame group = frame_of(scene);
+    assert_int_equal(group.pass_count, 1);
+    assert_int_equal(group.passes[0].polyline_count, 2);
+    assert_near((double)group.passes[0].opacity, 0.5, 1e-6);
+    assert_non_null(group.passes[0].paints[0].fill);
+    assert_near((double)group.passes[0].paints[1].width_px, 1, 0);
+    camber_scene_destroy(scene);
+    close_town(&t);
+}
+
+/* Areas with a lower key come first; those of one key stay in order. */
+static void test_sorted_areas(void **state) {
+    (void)state;
+    town t;
+    open_town(&t, FILL("area", "true", "\"layout\":{\"fill-sort-key\":[\"to-number\",[\"get\",\"kind\"]]}," BLUE));
+    static const char *const kinds[] = {"2", "1", "3", "1"};
+    for (int i = 0; i < 4; i++)
+        add_px(&t, add_shape(&t, kinds[i], CAMBER_GEOMETRY_AREA),
+               (double[]){100 + i, 100, 200, 100, 200, 200, 100 + i, 100}, 4);
+    camber_scene *scene = make_scene(&t, WORLD);
+    const camber_lines *lines = camber_scene_get_lines(scene);
+    static const double wanted[] = {101, 103, 100, 102};
+    assert_int_equal(lines->polyline_count, 4);
+    for (size_t i = 0; i < 4; i++)
+        assert_near((double)lines->points[2 * lines->offsets[i]], wanted[i], 1e-3);
+    camber_scene_destroy(scene);
+    close_town(&t);
+}
+
+/* An image lies on areas as it lies on the background, and moves with them. */
+static void test_fill_patterns(void **state) {
+    (void)state;
+    town t;
+    camber_view view;
+    camber_plan plan;
+    uint8_t rgba[4 * 8 * 4] = {0};
+    camber_sprite_image image = {.name = (char[]){"dots"}, .width = 8, .height = 4, .pixel_ratio = 2};
+    image.image = (camber_image){.rgba = rgba, .width = 8, .height = 4};
+    open_town(&t, "{\"id\":\"below\",\"type\":\"background\",\"paint\":{\"background-pattern\":\"dots\"}}," FILL(
+                      "area", "true",
+                      "\"paint\":{\"fill-pattern\":[\"get\",\"kind\"],\"fill-opacity\":0.5,\"fill-color\":\"#f00\","
+                      "\"fill-translate\":[5,7]}"));
+    camber_sprites sprites = {.context = t.context, .images = &image, .image_count = 1};
+    t.features.sprites = &sprites;
+    add_px(&t, add_shape(&t, "dots", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    add_px(&t, add_shape(&t, "none", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    camber_view_desc seen = {.kind = CAMBER_VIEW_CENTER, .zoom = 3.25, .longitude = 11, .latitude = 47};
+    assert_int_equal(camber_view_create(t.context, &seen, &view), CAMBER_OK);
+    assert_int_equal(camber_plan_create(&t.features, &view, &plan), CAMBER_OK);
+    assert_int_equal(plan.row_count, 1); /* an area whose image is missing is not drawn */
+    assert_non_null(strstr(t.last, "none"));
+    assert_false(plan.has_arc_length);
+    for (int i = 0; i < 2; i++) {
+        const camber_fill *area = plan.paints[0].fill, *below = &plan.patterns.fills[0].fill;
+        assert_ptr_equal(area->image, &image.image);
+        assert_near((double)area->color.a, 0.5, 1e-6);
+        assert_near((double)area->width_px, 4 * exp2(0.25), 1e-4);
+        assert_near((double)area->height_px, (double)below->height_px, 0);
+        assert_near((double)area->x_px, (double)below->x_px + 5, 1e-4);
+        assert_near((double)area->y_px, (double)below->y_px + 7, 1e-4);
+        view.x += 1e-3;
+        camber_plan_patterns_move(&plan.patterns, &view);
+    }
+    camber_plan_destroy(&plan);
+    for (size_t i = 0; i < sprites.missed_count; i++)
+        camber_free(t.context, sprites.missed[i]);
+    camber_free(t.context, sprites.missed);
+    close_town(&t);
+}
+
 /* ---- Geometry ---- */
 
 #define ALL "{\"id\":\"all\",\"type\":\"line\",\"layout\":{\"line-join\":\"round\"},\"paint\":{\"line-width\":20}}"
@@ -632,8 +856,11 @@ static void *allow(void *user, void *block, size_t size_bytes) {
 static void test_out_of_memory(void **state) {
     (void)state;
     town t;
-    open_town(&t, LINE("a", KIND("a"), "#000", "2") "," LINE("b", KIND("b"), "#000",
-                                                             "[\"interpolate\",[\"linear\"],[\"zoom\"],0,1,20,9]"));
+    open_town(&t, FILL("c", "true", "\"paint\":{\"fill-outline-color\":\"#f00\"}") "," LINE(
+                      "a", KIND("a"), "#000", "2") "," LINE("b", KIND("b"), "#000",
+                                                            "[\"interpolate\",[\"linear\"],[\"zoom\"],0,1,20,9]"));
+    add_px(&t, add_shape(&t, "c", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    add_px(&t, add_shape(&t, "c", CAMBER_GEOMETRY_POLYGON), SQUARE, 5);
     add_px(&t, add_class(&t, "a", 0), (double[]){100, 100, 200, 100, 300, 300}, 3);
     add_px(&t, add_class(&t, "b", 0), (double[]){100, 100, 200, 100}, 2);
     allowance a = {.left = 1000};
@@ -664,6 +891,12 @@ int main(void) {
         cmocka_unit_test(test_rows_are_distinct),
         cmocka_unit_test(test_source_layers_zooms_and_caps),
         cmocka_unit_test(test_backgrounds),
+        cmocka_unit_test(test_areas_are_filled),
+        cmocka_unit_test(test_entries_of_areas),
+        cmocka_unit_test(test_fills_follow_data),
+        cmocka_unit_test(test_fill_layers),
+        cmocka_unit_test(test_sorted_areas),
+        cmocka_unit_test(test_fill_patterns),
         cmocka_unit_test(test_culling),
         cmocka_unit_test(test_clipping_keeps_lines_in_place),
         cmocka_unit_test(test_rings_stay_closed),

@@ -63,7 +63,7 @@ static camber_status parse(fixture *f, const char *json) {
     return camber_style_parse(f->context, json, strlen(json), "roads.json", &f->style);
 }
 
-/* ---- The built-in style ---- */
+/* ---- Roads ---- */
 
 typedef struct feature {
     const char *highway, *type, *mtfcc, *bridge, *tunnel; /* bridge and tunnel: a digit is a number */
@@ -260,15 +260,17 @@ static void check_widths(const camber_style *style) {
     }
 }
 
-static void test_builtin(void **state) {
+static void test_roads(void **state) {
     (void)state;
     for (int theme = 0; theme < 2; theme++) {
         fixture f;
+        size_t size_bytes;
         setup(&f);
         const camber_theme which = theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT;
-        assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
+        const char *text = camber_style_get_text("roads", which, &size_bytes);
+        assert_int_equal(camber_style_parse(f.context, text, size_bytes, "roads", &f.style), CAMBER_OK);
         assert_int_equal(f.error_count + f.warning_count, 0);
-        assert_false(f.style->wants_polygons);
+        assert_false(f.style->wants_polygons || f.style->wants_areas);
         check_order(f.style);
         check_widths(f.style);
         check_roads(f.style);
@@ -276,6 +278,215 @@ static void test_builtin(void **state) {
         assert_true(paper.a > 0.99f && (paper.g > 0.5f) == (which == CAMBER_THEME_LIGHT));
         teardown(&f);
     }
+}
+
+/* ---- The built-in style ---- */
+
+/* A feature with some of a style's properties: "landuse=forest class=wood". */
+static void set_tags(const camber_style *style, const char *tags, camber_value *values, char *texts) {
+    memset(values, 0, style->property_count * sizeof *values);
+    strcpy(texts, tags);
+    for (char *tag = strtok(texts, " "); tag; tag = strtok(NULL, " ")) {
+        char *value = strchr(tag, '=');
+        size_t i = 0;
+        *value++ = 0;
+        while (i < style->property_count && strcmp(style->properties[i], tag) != 0)
+            i++;
+        if (i == style->property_count)
+            fail_msg("the style does not read %s", tag);
+        values[i] = (camber_value){.type = CAMBER_VALUE_STRING, .string = value};
+    }
+}
+
+/* Writes the ids of the layers of a kind that draw the feature, of a source layer or of any. */
+static const char *drawn_by(const camber_style *style, camber_layer_kind kind, const char *source_layer,
+                            const char *tags, char ids[256]) {
+    camber_value values[32];
+    char texts[128];
+    assert_in_range(style->property_count, 1, sizeof values / sizeof *values);
+    set_tags(style, tags, values, texts);
+    const camber_feature_view view = {.values = values,
+                                      .geometry_type = kind == CAMBER_LAYER_FILL ? "Polygon" : "LineString"};
+    ids[0] = 0;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        if (layer->kind != kind || (layer->source_layer && strcmp(layer->source_layer, source_layer) != 0) ||
+            !camber_style_layer_matches(layer, 16.0, &view))
+            continue;
+        snprintf(ids + strlen(ids), 256 - strlen(ids), "%s%s", *ids ? " " : "", layer->id);
+    }
+    return ids;
+}
+
+/* The last layers of the city are the style of roads, to the byte: where there is nothing else the pictures are too. */
+static void check_city_roads(camber_theme theme) {
+    static const char first[] = ",\n    {\"id\": \"tunnel-path-casing\"";
+    size_t size_bytes;
+    const char *city = strstr(camber_style_get_text("city", theme, &size_bytes), first);
+    const char *roads = strstr(camber_style_get_text("roads", theme, &size_bytes), first);
+    assert_non_null(city);
+    assert_non_null(roads);
+    assert_string_equal(city, roads);
+}
+
+static void check_city(const camber_style *style) {
+    static const struct {
+        const char *layer, *tags, *ids;
+    } areas[] = {
+        {"", "natural=water", "water"},
+        {"", "waterway=riverbank", "water"},
+        {"water", "class=ocean", "tiles-water-water"},
+        {"", "landuse=forest", "wood"},
+        {"", "natural=wood landuse=forest", "wood"},
+        {"landcover", "class=wood", "tiles-landcover-wood"},
+        {"", "leisure=park", "park"},
+        {"landcover", "class=grass", "tiles-landcover-park"},
+        {"", "natural=beach", "sand"},
+        {"", "landuse=residential", "built"},
+        {"landuse", "class=residential", "tiles-landuse-built"},
+        {"", "landuse=retail", "commerce"},
+        {"", "landuse=industrial", "industry"},
+        {"", "landuse=farmland", "field"},
+        {"", "amenity=school", "campus"},
+        {"", "amenity=school building=school", "campus building"},
+        {"", "leisure=pitch", "pitch"},
+        {"park", "class=national_park", "tiles-park-reserve"},
+        {"", "aeroway=runway", "apron"},
+        {"", "building=yes", "building"},
+        {"", "building=no", ""},
+        {"building", "", "tiles-building"},
+        {"", "highway=pedestrian", "plaza"},
+        {"", "highway=residential", ""},
+        {"", "natural=coastline", ""},
+    };
+    static const struct {
+        const char *layer, *tags, *ids;
+    } lines[] = {
+        {"", "waterway=river", "river"},
+        {"", "waterway=stream tunnel=culvert", ""},
+        {"waterway", "class=river", "tiles-river"},
+        {"waterway", "class=river brunnel=tunnel", ""},
+        {"", "railway=rail", "rail"},
+        {"", "railway=abandoned", ""},
+        {"transportation", "class=rail", "tiles-rail"},
+        {"", "highway=primary", "ground-primary-casing ground-primary-fill"},
+        {"transportation", "class=primary", "tiles-casing tiles-road"},
+        {"transportation", "class=minor brunnel=bridge", "tiles-bridge-casing tiles-bridge"},
+        {"transportation", "class=path", "tiles-path"},
+        {"transportation_name", "class=primary", ""},
+        {"water_name", "class=lake", ""},
+        {"", "building=yes", ""},
+    };
+    char ids[256];
+    for (size_t i = 0; i < sizeof areas / sizeof *areas; i++)
+        if (strcmp(drawn_by(style, CAMBER_LAYER_FILL, areas[i].layer, areas[i].tags, ids), areas[i].ids) != 0)
+            fail_msg("%s is drawn by \"%s\", not by \"%s\"", areas[i].tags, ids, areas[i].ids);
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+        if (strcmp(drawn_by(style, CAMBER_LAYER_LINE, lines[i].layer, lines[i].tags, ids), lines[i].ids) != 0)
+            fail_msg("%s is drawn by \"%s\", not by \"%s\"", lines[i].tags, ids, lines[i].ids);
+}
+
+static void test_builtin(void **state) {
+    (void)state;
+    for (int theme = 0; theme < 2; theme++) {
+        fixture f;
+        setup(&f);
+        const camber_theme which = theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT;
+        assert_string_equal(camber_style_list(0), "city");
+        assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
+        assert_int_equal(f.error_count + f.warning_count, 0);
+        assert_true(f.style->wants_areas);
+        assert_false(f.style->wants_polygons || f.style->directed || f.style->wants_all_properties);
+        check_city(f.style);
+        check_city_roads(which);
+        camber_style_leave_out_areas(f.style);
+        assert_false(f.style->wants_areas);
+        char ids[256];
+        assert_string_equal(drawn_by(f.style, CAMBER_LAYER_FILL, "", "natural=water", ids), "");
+        assert_string_equal(drawn_by(f.style, CAMBER_LAYER_LINE, "", "railway=rail", ids), "rail");
+        teardown(&f);
+    }
+}
+
+/* ---- Fill layers ---- */
+
+#define FILL_LAYER(more) "{\"version\": 8, \"layers\": [{\"id\": \"f\", \"type\": \"fill\", " more "}]}"
+
+static void test_fill(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    assert_int_equal(parse(&f, FILL_LAYER("\"paint\": {}")), CAMBER_OK);
+    const camber_feature_view bare = {.geometry_type = "Polygon"};
+    const camber_layer_paint plain = camber_style_layer_paint(f.style->layers, 10.0, &bare);
+    assert_int_equal(f.style->layers[0].kind, CAMBER_LAYER_FILL);
+    assert_true(f.style->wants_areas && !f.style->wants_polygons);
+    assert_true(plain.color.r <= 0.0f && plain.color.a >= 1.0f && plain.antialias && plain.border_color.a <= 0.0f);
+    assert_true(plain.layer_opacity >= 1.0 && fabs(plain.translate[0]) + fabs(plain.translate[1]) <= 0.0);
+    assert_int_equal(plain.translate_anchor, CAMBER_TRANSLATE_MAP);
+    camber_style_destroy(f.style);
+
+    assert_int_equal(
+        parse(&f,
+              FILL_LAYER(
+                  "\"filter\": [\"==\", \"$type\", \"Polygon\"], \"layout\": {\"fill-sort-key\": [\"get\", \"k\"]}, "
+                  "\"paint\": {\"fill-color\": [\"get\", \"c\"], \"fill-opacity\": {\"stops\": [[0, 0], [10, 0.5]]}, "
+                  "\"fill-antialias\": [\"step\", [\"zoom\"], false, 10, true], \"fill-outline-color\": \"#f00\", "
+                  "\"fill-translate\": [1, 2], \"fill-translate-anchor\": \"viewport\", "
+                  "\"fill-layer-opacity\": 0.25, \"fill-color-transition\": {\"duration\": 1}}")),
+        CAMBER_OK);
+    assert_int_equal(f.error_count + f.warning_count, 0);
+    assert_true(f.style->wants_areas && f.style->wants_polygons);
+    assert_int_equal(f.style->property_count, 2);
+    camber_value values[2];
+    const size_t key = strcmp(f.style->properties[0], "k") == 0 ? 0 : 1;
+    values[key] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = 7.0};
+    values[1 - key] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "#0000ff"};
+    const camber_feature_view view = {.values = values, .geometry_type = "Polygon"};
+    assert_true(camber_style_layer_matches(f.style->layers, 10.0, &view));
+    const camber_layer_paint paint = camber_style_layer_paint(f.style->layers, 10.0, &view);
+    assert_true(fabs(paint.sort_key - 7.0) <= 0.0 && paint.color.b >= 1.0f && fabsf(paint.color.a - 0.5f) < 1e-6f);
+    assert_true(paint.border_color.r >= 1.0f && fabsf(paint.border_color.a - 0.5f) < 1e-6f);
+    assert_true(paint.antialias && !camber_style_layer_paint(f.style->layers, 9.0, &view).antialias);
+    assert_true(fabs(paint.translate[1] - 2.0) <= 0.0 && paint.translate_anchor == CAMBER_TRANSLATE_VIEWPORT);
+    assert_true(fabs(paint.layer_opacity - 0.25) <= 0.0);
+    values[1 - key].string = "no colour";
+    assert_true(camber_style_layer_paint(f.style->layers, 10.0, &view).color.b <= 0.0f);
+    camber_style_destroy(f.style);
+
+    /* A layer that nobody sees needs no areas. */
+    assert_int_equal(parse(&f, FILL_LAYER("\"layout\": {\"visibility\": \"none\"}")), CAMBER_OK);
+    assert_false(f.style->wants_areas);
+    teardown(&f);
+}
+
+static void test_wrong_fills(void **state) {
+    (void)state;
+    static const struct {
+        const char *json, *message;
+    } cases[] = {
+        {FILL_LAYER("\"paint\": {\"fill-opacity\": 2}"), "/layers/0/paint/fill-opacity: 2 is out of range"},
+        {FILL_LAYER("\"paint\": {\"fill-color\": 3}"), "/layers/0/paint/fill-color: expected a colour"},
+        {FILL_LAYER("\"paint\": {\"fill-antialias\": \"yes\"}"), "/layers/0/paint/fill-antialias: expected a boolean"},
+        {FILL_LAYER("\"paint\": {\"fill-antialias\": [\"get\", \"a\"]}"), "fill-antialias cannot depend on features"},
+        {FILL_LAYER("\"paint\": {\"fill-translate\": [1]}"), "/layers/0/paint/fill-translate"},
+        {FILL_LAYER("\"paint\": {\"fill-translate-anchor\": \"sky\"}"), "\"sky\" is no fill-translate-anchor"},
+        {FILL_LAYER("\"paint\": {\"fill-layer-opacity\": [\"get\", \"a\"]}"), "cannot depend on features"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        fixture f;
+        setup(&f);
+        assert_int_equal(parse(&f, cases[i].json), CAMBER_ERROR_INPUT);
+        if (!strstr(f.error, cases[i].message))
+            fail_msg("%s: %s", cases[i].message, f.error);
+        teardown(&f);
+    }
+    fixture f;
+    setup(&f);
+    assert_int_equal(parse(&f, FILL_LAYER("\"layout\": {\"fill-color\": \"red\"}, \"paint\": {\"line-width\": 2}")),
+                     CAMBER_OK);
+    assert_int_equal(f.warning_count, 2);
+    teardown(&f);
 }
 
 /* ---- Documents ---- */
@@ -393,7 +604,7 @@ static void test_warnings(void **state) {
     fixture f;
     setup(&f);
     assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": ["
-                               "{\"id\": \"a\", \"type\": \"fill\"}, {\"id\": \"b\", \"type\": \"fill\"},"
+                               "{\"id\": \"a\", \"type\": \"circle\"}, {\"id\": \"b\", \"type\": \"circle\"},"
                                "{\"id\": \"c\", \"type\": \"line\", \"layout\": {\"line-shadow\": 3},"
                                "  \"paint\": {\"line-color-transition\": {\"duration\": 1}}},"
                                "{\"id\": \"d\", \"type\": \"line\", \"layout\": {\"line-shadow\": 4}}]}"),
@@ -706,7 +917,8 @@ static void test_memory(void **state) {
 
 /* ---- The reference ---- */
 
-/* Every property of line and background layers in the specification's reference of August 2026, but visibility. */
+/* Every property of line, fill and background layers in the specification's reference of August 2026, but visibility
+ * and fill-layer-blend. */
 static void test_reference(void **state) {
     (void)state;
     enum range { RANGE_ANY, RANGE_FROM_0, RANGE_UNIT };
@@ -736,15 +948,25 @@ static void test_reference(void **state) {
         {"line-dasharray", false, CAMBER_TYPE_ARRAY, NULL, 0, RANGE_FROM_0, "zf"},
         {"line-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "zf"},
         {"line-gradient", false, CAMBER_TYPE_COLOR, NULL, 0, RANGE_ANY, "pi"},
+        {"fill-sort-key", true, CAMBER_TYPE_NUMBER, NULL, 0, RANGE_ANY, "zf"},
+        {"fill-antialias", false, CAMBER_TYPE_BOOL, "true", 0, RANGE_ANY, "z"},
+        {"fill-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zfi"},
+        {"fill-layer-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zi"},
+        {"fill-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zfi"},
+        {"fill-outline-color", false, CAMBER_TYPE_COLOR, NULL, 0, RANGE_ANY, "zfi"},
+        {"fill-translate", false, CAMBER_TYPE_ARRAY, "[0, 0]", 2, RANGE_ANY, "zi"},
+        {"fill-translate-anchor", false, CAMBER_TYPE_STRING, "\"map\"", 0, RANGE_ANY, "z"},
+        {"fill-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "zf"},
         {"background-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zi"},
         {"background-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "z"},
         {"background-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zi"},
     };
     for (size_t i = 0; i < sizeof reference / sizeof *reference; i++) {
         const char *name = reference[i].name, *depends = reference[i].depends;
-        const bool line = strncmp(name, "line-", 5) == 0;
-        const camber_property_row *row =
-            camber_property_find(line ? CAMBER_LAYER_LINE : CAMBER_LAYER_BACKGROUND, reference[i].layout, name);
+        const camber_layer_kind kind = name[0] == 'l'   ? CAMBER_LAYER_LINE
+                                       : name[0] == 'f' ? CAMBER_LAYER_FILL
+                                                        : CAMBER_LAYER_BACKGROUND;
+        const camber_property_row *row = camber_property_find(kind, reference[i].layout, name);
         if (!row) {
             fail_msg("%s is not known", name);
             return;
@@ -768,7 +990,8 @@ static void test_reference(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_builtin),       cmocka_unit_test(test_layer),   cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_roads),         cmocka_unit_test(test_builtin), cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills),   cmocka_unit_test(test_layer),   cmocka_unit_test(test_plain),
         cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),  cmocka_unit_test(test_reference),
         cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),
         cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),

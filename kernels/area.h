@@ -14,7 +14,7 @@
  *     e2 ---|\-/       |           so that what wind counts and what a tile counts always fit together.
  *          +-----------+
  *
- * The sums lie where a union has its own: a number for each pixel in the order of cells (tile_state.h). */
+ * Lanes are rows of pixels here: the sums of sixteen rows go from left to right together. */
 #ifndef CAMBER_KERNELS_AREA_H
 #define CAMBER_KERNELS_AREA_H
 
@@ -133,68 +133,56 @@ CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {
     return brush->mode >= CAMBER_BRUSH_AREA;
 }
 
-/* Where the sum of a pixel of the tile lies. */
-CAMBER_FN int camber_sum_at(int x, int y) {
-    const int cell = y / CAMBER_CELL_PX * CAMBER_TILE_CELLS + x / CAMBER_CELL_PX;
-    return 48 * cell + CAMBER_CELL_PX * (y % CAMBER_CELL_PX) + x % CAMBER_CELL_PX;
-}
-
-CAMBER_FN float *camber_tile_sums(camber_tile_state *c) {
-    return (float *)&c->sums[0][0][0];
-}
-
-/* The row of a pixel is about to be changed: a row of cells without edges so far has sums of 0. */
-CAMBER_FN void camber_area_take_row(camber_tile_state *c, int y) {
-    const int row = y / CAMBER_CELL_PX;
+/* A row of pixels is about to be changed: a row of cells without edges so far changes nothing. */
+CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
     if (c->area_rows >> row & 1u)
         return;
     c->area_rows |= 1u << row;
-    for (int i = CAMBER_TILE_CELLS * row; i < CAMBER_TILE_CELLS * (row + 1); i++)
-        for (int v = 0; v < CAMBER_VECTORS; v++)
-            c->sums[i][0][v] = CAMBER_REAL(0.0f);
+    for (int x = 0; x < CAMBER_TILE_PX; x++)
+        for (int y = CAMBER_CELL_PX * row; y < CAMBER_CELL_PX * (row + 1); y++)
+            c->turns[x][y] = 0.0f;
 }
 
 /* Adds to a pixel and to all that are right of it. */
-CAMBER_FN void camber_area_add(float *sums, int x, int y, float area) {
+CAMBER_FN void camber_area_add(camber_tile_state *c, int x, int y, float area) {
     if (x < CAMBER_TILE_PX)
-        sums[camber_sum_at(x, y)] += area;
+        c->turns[x][y] += area;
 }
 
 /* Adds a piece of an edge within a row of pixels, between from and to, px from the tile's left side. height: of the
  * piece, with the edge's sign. Right of the piece all pixels change by `height`. */
-CAMBER_FN void camber_area_add_piece(float *sums, int y, float from, float to, float height) {
+CAMBER_FN void camber_area_add_piece(camber_tile_state *c, int y, float from, float to, float height) {
     const float left = CAMBER_LESS(from, to), right = CAMBER_MORE(from, to);
     const int first = (int)left, last = (int)right;
     const float room = (float)(first + 1) - left, rest = right - (float)last;
     if (first == last) {
         const float area = height * (room - 0.5f * (right - left));
-        camber_area_add(sums, first, y, area);
-        camber_area_add(sums, first + 1, y, height - area);
+        camber_area_add(c, first, y, area);
+        camber_area_add(c, first + 1, y, height - area);
         return;
     }
     const float a_px = height / (right - left);
     float area = 0.5f * room * room * a_px, before = 0.0f;
     for (int x = first; x < last; x++) {
-        camber_area_add(sums, x, y, area - before);
+        camber_area_add(c, x, y, area - before);
         before = area;
         area = a_px * (room + (float)(x - first) + 0.5f);
     }
     area = height - 0.5f * rest * rest * a_px;
-    camber_area_add(sums, last, y, area - before);
-    camber_area_add(sums, last + 1, y, height - area);
+    camber_area_add(c, last, y, area - before);
+    camber_area_add(c, last + 1, y, height - area);
 }
 
 /* From y on, px from the tile's top, the left side of the tile is wound around so many times more. */
 CAMBER_FN void camber_area_turn(camber_tile_state *c, float y, float times, int first, int end) {
-    float *sums = camber_tile_sums(c);
     const int whole = (int)y;
     if (whole >= first && whole < end) {
-        camber_area_take_row(c, whole);
-        camber_area_add(sums, 0, whole, times * ((float)(whole + 1) - y));
+        camber_area_take_row(c, whole / CAMBER_CELL_PX);
+        camber_area_add(c, 0, whole, times * ((float)(whole + 1) - y));
     }
     for (int row = whole + 1 > first ? whole + 1 : first; row < end; row++) {
-        camber_area_take_row(c, row);
-        camber_area_add(sums, 0, row, times);
+        camber_area_take_row(c, row / CAMBER_CELL_PX);
+        camber_area_add(c, 0, row, times);
     }
 }
 
@@ -203,15 +191,14 @@ CAMBER_FN void camber_area_add_rows(camber_tile_state *c, const camber_ring_edge
     const float slope = (e->x1 - e->x0) / (e->y1 - e->y0);
     const float least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
     const int from = (int)e->y0 > first ? (int)e->y0 : first;
-    float *sums = camber_tile_sums(c);
     float top = (float)from > e->y0 ? (float)from : e->y0, x = e->x0 + (top - e->y0) * slope;
     x = x < least ? least : x > most ? most : x;
     for (int row = from; row < end && top < e->y1; row++) {
         const float bottom = (float)(row + 1) < e->y1 ? (float)(row + 1) : e->y1;
         float next = bottom < e->y1 ? e->x0 + (bottom - e->y0) * slope : e->x1;
         next = next < least ? least : next > most ? most : next;
-        camber_area_take_row(c, row);
-        camber_area_add_piece(sums, row, x, next, e->down * (bottom - top));
+        camber_area_take_row(c, row / CAMBER_CELL_PX);
+        camber_area_add_piece(c, row, x, next, e->down * (bottom - top));
         top = bottom;
         x = next;
     }
@@ -267,44 +254,77 @@ CAMBER_FN void camber_area_add_edge(camber_tile_state *c, CAMBER_GLOBAL const fl
 /* ---- The inside ---- */
 
 /* How much of a pixel is inside, by the sum of its windings. */
-CAMBER_FN float camber_area_inside(float sum, camber_u32 mode) {
-    float inside = CAMBER_FABS(sum);
+CAMBER_FN camber_real camber_area_inside(camber_real sum, camber_u32 mode) {
+    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
+    camber_real inside = CAMBER_FABS(sum);
     if (mode == CAMBER_BRUSH_AREA_EVENODD) {
-        const float pairs = (float)(int)(0.5f * inside);
-        inside -= 2.0f * pairs;
+        inside -= 2.0f * CAMBER_TRUNCATE(0.5f * inside);
         inside = inside > 1.0f ? 2.0f - inside : inside;
     }
-    return inside > 1.0f - CAMBER_AREA_LEAST ? 1.0f : inside < CAMBER_AREA_LEAST ? 0.0f : inside;
+    inside = inside > 1.0f - CAMBER_AREA_LEAST ? one : inside;
+    return inside < CAMBER_AREA_LEAST ? none : inside;
 }
 
-/* Replaces the sums of a row of cells by what is inside of the pixels. */
-CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row) {
-    float *sums = camber_tile_sums(c);
-    for (int y = CAMBER_CELL_PX * row; y < CAMBER_CELL_PX * (row + 1); y++) {
-        float sum = (float)c->winding;
-        for (int x = 0; x < CAMBER_TILE_PX; x++) {
-            const int at = camber_sum_at(x, y);
-            sum += sums[at];
-            sums[at] = camber_area_inside(sum, c->now.mode);
-        }
+/* Puts four columns of a vector of rows, from row y on, into the cells that they belong to, of which i is the first. */
+CAMBER_FN void camber_area_put_cells(camber_tile_state *c, const camber_real *columns, int i, int y) {
+#if CAMBER_LANES == 1
+    for (int x = 0; x < CAMBER_CELL_PX; x++)
+        c->sums[i][0][CAMBER_CELL_PX * (y % CAMBER_CELL_PX) + x] = columns[x];
+#else
+#define CAMBER_ROW(n) columns[0].n, columns[1].n, columns[2].n, columns[3].n
+#if CAMBER_LANES == 16
+    c->sums[i][0][0] = (float16)(CAMBER_ROW(s0), CAMBER_ROW(s1), CAMBER_ROW(s2), CAMBER_ROW(s3));
+    c->sums[i + 8][0][0] = (float16)(CAMBER_ROW(s4), CAMBER_ROW(s5), CAMBER_ROW(s6), CAMBER_ROW(s7));
+    c->sums[i + 16][0][0] = (float16)(CAMBER_ROW(s8), CAMBER_ROW(s9), CAMBER_ROW(sa), CAMBER_ROW(sb));
+    c->sums[i + 24][0][0] = (float16)(CAMBER_ROW(sc), CAMBER_ROW(sd), CAMBER_ROW(se), CAMBER_ROW(sf));
+#else
+    c->sums[i][0][0] = (float8)(CAMBER_ROW(s0), CAMBER_ROW(s1));
+    c->sums[i][0][1] = (float8)(CAMBER_ROW(s2), CAMBER_ROW(s3));
+    c->sums[i + 8][0][0] = (float8)(CAMBER_ROW(s4), CAMBER_ROW(s5));
+    c->sums[i + 8][0][1] = (float8)(CAMBER_ROW(s6), CAMBER_ROW(s7));
+#endif
+#undef CAMBER_ROW
+#endif
+}
+
+/* Adds the turns of a vector of rows up, from row y on: the sums of their cells become what is inside of the pixels. */
+CAMBER_FN void camber_area_find_rows(camber_tile_state *c, int y) {
+    camber_real sum = CAMBER_REAL((float)c->winding), columns[CAMBER_CELL_PX];
+    for (int x = 0; x < CAMBER_TILE_PX; x++) {
+        sum += CAMBER_LOAD(0, c->turns[x] + y);
+        columns[x % CAMBER_CELL_PX] = camber_area_inside(sum, c->now.mode);
+        if (x % CAMBER_CELL_PX == CAMBER_CELL_PX - 1)
+            camber_area_put_cells(c, columns, y / CAMBER_CELL_PX * CAMBER_TILE_CELLS + x / CAMBER_CELL_PX, y);
+    }
+}
+
+/* Finds the inside of all rows of cells that have edges. Rows that share a vector are taken together. */
+CAMBER_FN void camber_area_find_all(camber_tile_state *c) {
+    const int a_vector = CAMBER_LANES > CAMBER_CELL_PX ? CAMBER_LANES / CAMBER_CELL_PX : 1;
+    for (int row = 0; row < CAMBER_TILE_CELLS; row += a_vector) {
+        if (!(c->area_rows >> row & ((1u << a_vector) - 1u)))
+            continue;
+        for (int k = row; k < row + a_vector; k++)
+            camber_area_take_row(c, k);
+        for (int y = CAMBER_CELL_PX * row; y < CAMBER_CELL_PX * (row + a_vector); y += CAMBER_LANES)
+            camber_area_find_rows(c, y);
     }
 }
 
 /* Finds the cells that have something inside of the brush's rings, and ends the rings. The sums of those that it
  * returns are the areas of their pixels then; those of *whole lie inside as a whole. */
 CAMBER_FN camber_u64 camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_u64 *whole) {
-    const int is_inside = camber_area_inside((float)c->winding, c->now.mode) > 0.0f;
+    const int is_inside = camber_most_of(camber_area_inside(CAMBER_REAL((float)c->winding), c->now.mode)) > 0.0f;
+    const camber_u32 with_edges = c->area_rows;
     camber_u64 found = 0;
     *whole = 0;
+    camber_area_find_all(c);
     for (int row = where.first; row <= where.last; row++) {
-        const int has_edges = (int)(c->area_rows >> row & 1u);
+        const int has_edges = (int)(with_edges >> row & 1u);
         const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row) & ~(c->done | c->filled);
         if (!has_edges && is_inside)
             *whole |= cells;
-        if (!has_edges || !cells)
-            continue;
-        camber_area_find_row(c, row);
-        for (camber_u64 left = cells; left; left &= left - 1) {
+        for (camber_u64 left = has_edges ? cells : 0; left; left &= left - 1) {
             const int i = camber_lowest(left);
             camber_real most = c->sums[i][0][0];
             for (int v = 1; v < CAMBER_VECTORS; v++)

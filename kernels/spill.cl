@@ -4,14 +4,6 @@
 
 #include "area.h"
 
-/* Cells whose rings have edges in their row. */
-static inline ulong area_cells(const camber_tile_state *c) {
-    ulong cells = 0;
-    for (int j = 0; j < CAMBER_TILE_CELLS; j++)
-        cells |= c->area_rows >> j & 1u ? 255ul << (CAMBER_TILE_CELLS * j) : 0ul;
-    return cells;
-}
-
 static inline size_t plane_at(camber_u32 plane, int cell, int v) {
     return ((size_t)plane * CAMBER_CELLS + (size_t)cell) * CAMBER_VECTORS + (size_t)v;
 }
@@ -35,9 +27,20 @@ static inline void restore_planes(global const float *planes, camber_real *to, c
                     CAMBER_LOAD(plane_at(plane + k, i, v), planes);
 }
 
+/* Spills the turns of an area's rings into a plane, or restores them: of the rows of cells that have edges. */
+static inline void spill_turns(camber_tile_state *c, global float *plane, int spills) {
+    for (int y = 0; y < CAMBER_TILE_PX; y++)
+        for (int x = 0; x < CAMBER_TILE_PX && (c->area_rows >> (y / CAMBER_CELL_PX) & 1u); x++) {
+            if (spills)
+                plane[CAMBER_TILE_PX * y + x] = c->turns[x][y];
+            else
+                c->turns[x][y] = plane[CAMBER_TILE_PX * y + x];
+        }
+}
+
 /* Spills the state of rows of cells [first, last]. now: the brush, and which levels are open. */
-static inline void spill_cells(const camber_tile_state *c, global float *spill, camber_spill_args s, int first,
-                               int last, camber_u32 now) {
+static inline void spill_cells(camber_tile_state *c, global float *spill, camber_spill_args s, int first, int last,
+                               camber_u32 now) {
     global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global camber_u32 *rows = (global camber_u32 *)spill + CAMBER_SPILL_ROWS;
     global float *planes = spill + CAMBER_SPILL_WORDS;
@@ -53,7 +56,7 @@ static inline void spill_cells(const camber_tile_state *c, global float *spill, 
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
     if (c->now.mode == CAMBER_BRUSH_UNION)
         spill_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
-    spill_planes(planes, c->sums[0][0], s.sums, 3, area_cells(c));
+    spill_turns(c, planes + s.sums * (camber_u32)(16 * CAMBER_CELLS), 1);
     spill_planes(planes, c->level[CAMBER_GROUP][0][0], s.group, 4, c->touched[CAMBER_GROUP]);
     spill_planes(planes, c->level[CAMBER_LAYER][0][0], s.layer, 4, c->touched[CAMBER_LAYER]);
 #if CAMBER_RASTER_RICH
@@ -64,11 +67,11 @@ static inline void spill_cells(const camber_tile_state *c, global float *spill, 
 
 /* Restores rows of cells [first, last]. Returns the brush that was drawn last, ~0 if none was, or CAMBER_SPILL_FULL.
  * All rows that are not full have been drawn from the same list, so they have the same brush and open levels. */
-static inline camber_u32 restore_cells(camber_tile_state *c, global const float *spill,
-                                       global const camber_brush *brushes, camber_spill_args s, int first, int last) {
+static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill, global const camber_brush *brushes,
+                                       camber_spill_args s, int first, int last) {
     global const uchar *bits = (global const uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global const camber_u32 *rows = (global const camber_u32 *)spill + CAMBER_SPILL_ROWS;
-    global const float *planes = spill + CAMBER_SPILL_WORDS;
+    global float *planes = spill + CAMBER_SPILL_WORDS;
     ulong of[6] = {0, 0, 0, 0, 0, 0};
     camber_u32 now = CAMBER_SPILL_FULL;
     for (int j = first; j <= last; j++) {
@@ -101,7 +104,7 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global const float 
         c->winding = (int)word >> 1;
         c->area_rows |= (word & 1u) << j;
     }
-    restore_planes(planes, c->sums[0][0], s.sums, 3, area_cells(c));
+    spill_turns(c, planes + s.sums * (camber_u32)(16 * CAMBER_CELLS), 0);
 #if CAMBER_RASTER_RICH
     if (c->now.mode == CAMBER_BRUSH_MASKED)
         restore_planes(planes, c->mask[0], s.layer + 4, 1, c->touched[CAMBER_LAYER]);

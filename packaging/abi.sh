@@ -22,11 +22,11 @@ describe() { # library
 
 # A library's interface against what is kept: 1 where programs do not go on.
 compare() { # library, its SONAME
-    if [ ! -f "$kept/$1.abi.xz" ]; then
+    if [ ! -f "$kept/$1.abi.gz" ]; then
         echo "$1: nothing in packaging/abi to compare with: ./dev abi writes it"
         return 1
     fi
-    xz -dc "$kept/$1.abi.xz" >"$folder/old.abi"
+    gzip -dc "$kept/$1.abi.gz" >"$folder/old.abi" || return 1
     if ! grep -q "soname='$2'" "$folder/old.abi"; then
         echo "$1: $2 is another SONAME, so anything may differ"
     elif abidiff --no-added-syms "$folder/old.abi" "$folder/$1.abi"; then
@@ -68,7 +68,7 @@ elif [ "$1" = write ]; then
         exit 1
     fi
     mkdir -p "$kept"
-    for library in libcamber libcamber-map; do xz -9 <"$folder/$library.abi" >"$kept/$library.abi.xz"; done
+    for library in libcamber libcamber-map; do gzip -9n <"$folder/$library.abi" >"$kept/$library.abi.gz"; done
     status=0
 fi
 exit $status

@@ -77,3 +77,7 @@ wants 1 'count camber_soversion up' small write old
 wants 0 'go on' small check field
 wants 0 'another SONAME' small write next
 wants 0 'go on' small check next
+
+# A file that cannot be read is no other SONAME.
+echo broken >"$folder/tree/packaging/abi/libcamber.abi.gz"
+wants 1 'not in gzip format' small check next

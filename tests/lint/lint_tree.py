@@ -482,13 +482,16 @@ def check_documents(tree):
 
 # ---- Packages ----
 
-# Each thing that CMake looks for -> the package that has it: Debian's, RPM's, Homebrew's. None: it needs none of its own.
+# Each thing that CMake looks for, or whose headers the sources include -> the package that has it: Debian's, RPM's,
+# Homebrew's. None: it needs none of its own.
 LIBRARIES = {
     "PNG": ("libpng-dev", "pkgconfig(libpng)", "libpng"), "ZLIB": ("zlib1g-dev", "pkgconfig(zlib)", "zlib"),
     "OpenCL": ("ocl-icd-opencl-dev", "pkgconfig(OpenCL)", "opencl-icd-loader"), "Threads": None, "PkgConfig": None,
     "jansson": ("libjansson-dev", "pkgconfig(jansson)", "jansson"), "GDAL": ("libgdal-dev", "pkgconfig(gdal)", "gdal"),
     "SQLite3": ("libsqlite3-dev", "pkgconfig(sqlite3)", "sqlite"), "cmocka": None,
     "libprotobuf-c": ("libprotobuf-c-dev", "pkgconfig(libprotobuf-c)", "protobuf-c"),
+    "protoc-c": ("protobuf-c-compiler", "protobuf-c-compiler", "protobuf-c"),
+    "EGL": ("libegl-dev", "pkgconfig(egl)", "mesa"), "GLES3": ("libgles-dev", "pkgconfig(glesv2)", "mesa"),
     "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
     "libwebp": ("libwebp-dev", "pkgconfig(libwebp)", "webp"),
     "libmicrohttpd": ("libmicrohttpd-dev", "pkgconfig(libmicrohttpd)", "libmicrohttpd"),
@@ -496,13 +499,32 @@ LIBRARIES = {
 # Where a release's version stands besides CMakeLists.txt, and the file's place in LIBRARIES.
 PACKAGINGS = (
     ("packaging/debian/control", None, 0), ("packaging/camber.spec", r"^Version: *(\S+)", 1),
-    ("packaging/camber.rb", r"camber-([\d.]+)\.tar", 2), ("packaging/debian/changelog", r"\Acamber \(([\d.]+)-", None),
+    ("packaging/camber.rb", r"camber-([\d.]+)\.tar", 2), ("examples/serve/Dockerfile", None, 0),
+    ("packaging/debian/changelog", r"\Acamber \(([\d.]+)-", None),
     ("pyproject.toml", r'^version = "(.*)"', None), ("src/camber.3", r'^\.TH .* "camber (\S+)"', None),
-    ("src/cli/camber.1", r'^\.TH .* "camber (\S+)"', None))
+    ("packaging/camber.spec", r"^\* .* - (\S+)-1$", None), ("src/cli/camber.1", r'^\.TH .* "camber (\S+)"', None))
+# Each package is made with the same options, and with all that can be left out.
+CONFIGURED = ("packaging/debian/rules", "packaging/camber.spec", "packaging/camber.rb")
+
+
+def check_options(tree, cmake):
+    """Packages are built with options that there are, and with the same ones."""
+    known = set(re.findall(r"^(?:option|set)\((CAMBER_\w+)", cmake, re.M))
+    first = None
+    for path in CONFIGURED + ("examples/serve/Dockerfile",):
+        with open(os.path.join(tree.root, path), encoding="utf-8") as file:
+            options = set(re.findall(r"-D(CAMBER_\w+=\w+)", file.read()))
+        for option in sorted(options):
+            if option.split("=")[0] not in known:
+                yield Finding(path, 1, "CMakeLists.txt has no option " + option.split("=")[0], "take it away, or rename it")
+        first = first or options
+        if path in CONFIGURED and options != first:
+            yield Finding(path, 1, "%s: not as in %s" % (" ".join(sorted(options ^ first)), CONFIGURED[0]),
+                          "build all packages alike")
 
 
 def check_packages(tree):
-    """Packages have the version and the libraries that CMakeLists.txt has."""
+    """Packages have the version, the libraries and the options that CMakeLists.txt has."""
     if not tree.has("packaging/debian/control"):
         return
     cmake = next(file.text for file in tree.files if file.path == "CMakeLists.txt")
@@ -510,6 +532,11 @@ def check_packages(tree):
     used = set(re.findall(r"\bfind_package\((\w+)", cmake))
     used |= set(re.findall(r"\bpkg_check_modules\(\w+ .*IMPORTED_TARGET ([a-z][\w-]*)", cmake))
     used |= set(re.findall(r"^camber_encoder_library\(\w+ (\S+)", cmake, re.M))
+    used |= set(re.findall(r"\bfind_program\(\w+ ([\w-]+) REQUIRED", cmake))
+    for file in tree.files:
+        if file.path.startswith("src/"):
+            used |= set(re.findall(r"^#include <(EGL|GLES3)/", file.text, re.M))
+    yield from check_options(tree, cmake)
     for name in sorted(used - set(LIBRARIES)):
         yield Finding("CMakeLists.txt", 1, "%s is new to the packages" % name,
                       "say in LIBRARIES of tests/lint/lint_tree.py which packages have it, and add them")
@@ -524,6 +551,14 @@ def check_packages(tree):
             package = LIBRARIES[name] and LIBRARIES[name][place]
             if package and not re.search(r"(?<![\w-])%s(?![\w-])" % re.escape(package), text):
                 yield Finding(path, 1, "it does without %s, where CMake wants %s" % (package, name), "add it")
+        if path == "pyproject.toml":
+            modules = json.loads(re.search(r"^dependencies = (.*)", text, re.M).group(1))
+        elif path == "packaging/camber.spec":
+            spec = text
+    for module in modules:
+        if not re.search(r"^Requires:.* python3-%s(?!\S)" % module, spec, re.M):
+            yield Finding("packaging/camber.spec", 1, "it does without python3-%s, which pyproject.toml wants" % module,
+                          "add it")
 
 
 RULES = (check_packages, check_types, check_guards, check_layers, check_includes, check_links, check_kernels, check_words,

@@ -32,6 +32,7 @@ mount_root() {
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
     printf '#!/bin/sh\nexec "$@"\n' >"$root/usr/local/bin/sudo" # who asks is root
     chmod +x "$root/usr/local/bin/sudo"
+    echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fresh" # nothing of it outlives this run
 }
 
 # in_root DEBIAN FOLDER SCRIPT

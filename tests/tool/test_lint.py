@@ -243,13 +243,21 @@ class Lint(unittest.TestCase):
 
     def write_packages(self):
         self.write("CMakeLists.txt", "project(camber VERSION 1.2.3 LANGUAGES C)\nfind_package(GDAL REQUIRED)\n"
+                                     "option(CAMBER_WARM \"Compile\" ON)\nfind_program(PROTOC_C protoc-c REQUIRED)\n"
                                      "pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)\n")
+        self.write("src/io/egl.c", HEAD + "#include <EGL/egl.h>\n")
+        debian = "libgdal-dev, libjansson-dev, protobuf-c-compiler, libegl-dev\n"
         for path, text in {
-                "packaging/debian/control": "Build-Depends: libgdal-dev, libjansson-dev\n",
+                "packaging/debian/control": "Build-Depends: " + debian,
                 "packaging/debian/changelog": "camber (1.2.3-1) unstable\n",
-                "packaging/camber.spec": "Version: 1.2.3\nBuildRequires: pkgconfig(gdal) pkgconfig(jansson)\n",
-                "packaging/camber.rb": 'url "camber-1.2.3.tar.gz"\ndepends_on "gdal"\ndepends_on "jansson"\n',
-                "pyproject.toml": 'version = "1.2.3"\n', "src/camber.3": '.TH CAMBER 3 "x" "camber 1.2.3"\n',
+                "packaging/debian/rules": "dh_auto_configure -- -DCAMBER_WARM=OFF\n",
+                "packaging/camber.spec": "Version: 1.2.3\nBuildRequires: pkgconfig(gdal) pkgconfig(jansson)\n"
+                                         "BuildRequires: protobuf-c-compiler pkgconfig(egl)\nRequires: python3-numpy\n%cmake -DCAMBER_WARM=OFF\n"
+                                         "* Wed Nov 25 2026 Someone <a@b> - 1.2.3-1\n",
+                "packaging/camber.rb": 'url "camber-1.2.3.tar.gz"\ndepends_on "gdal"\ndepends_on "jansson"\n'
+                                       'depends_on "protobuf-c"\ndepends_on "mesa"\nsystem "-DCAMBER_WARM=OFF"\n',
+                "examples/serve/Dockerfile": "RUN apt-get install " + debian + "RUN cmake -DCAMBER_WARM=OFF\n",
+                "pyproject.toml": 'version = "1.2.3"\ndependencies = ["numpy"]\n', "src/camber.3": '.TH CAMBER 3 "x" "camber 1.2.3"\n',
                 "src/cli/camber.1": '.TH CAMBER 1 "x" "camber 1.2.3"\n'}.items():
             self.write(path, text)
 
@@ -260,12 +268,14 @@ class Lint(unittest.TestCase):
                      "src/camber.3", "src/cli/camber.1"):
             self.write_packages()
             with open(os.path.join(self.root, path), encoding="utf-8") as file:
-                self.write(path, file.read().replace("1.2.3", "1.2.4"))
+                self.write(path, file.read().replace("1.2.3", "1.2.4", 1))
             self.finds(path + ":1", "the version is 1.2.4")
 
     def test_libraries_of_packages(self):
         for path, name in (("packaging/debian/control", "libgdal-dev"), ("packaging/camber.spec", "pkgconfig(jansson)"),
-                           ("packaging/camber.rb", "gdal")):
+                           ("packaging/camber.rb", "gdal"), ("packaging/camber.rb", "mesa"),
+                           ("packaging/camber.spec", "protobuf-c-compiler"), ("packaging/camber.spec", "python3-numpy"),
+                           ("examples/serve/Dockerfile", "libegl-dev")):
             self.write_packages()
             with open(os.path.join(self.root, path), encoding="utf-8") as file:
                 self.write(path, file.read().replace(name, "x" + name))
@@ -276,6 +286,20 @@ class Lint(unittest.TestCase):
         with open(os.path.join(self.root, "CMakeLists.txt"), encoding="utf-8") as file:
             self.write("CMakeLists.txt", file.read() + "find_package(Zebra REQUIRED)\n")
         self.finds("CMakeLists.txt:1", "Zebra is new")
+
+    def test_options_of_packages(self):
+        for path, option, what in (("packaging/camber.rb", "CAMBER_WARM=ON", "CAMBER_WARM=OFF CAMBER_WARM=ON: not as in"),
+                                   ("examples/serve/Dockerfile", "CAMBER_SERVER=ON", "has no option CAMBER_SERVER")):
+            self.write_packages()
+            with open(os.path.join(self.root, path), encoding="utf-8") as file:
+                self.write(path, file.read().replace("CAMBER_WARM=OFF", option))
+            self.finds(path + ":1", what)
+
+    def test_the_changes_of_the_spec(self):
+        self.write_packages()
+        with open(os.path.join(self.root, "packaging/camber.spec"), encoding="utf-8") as file:
+            self.write("packaging/camber.spec", file.read().replace("- 1.2.3-1", "- 1.2.2-1"))
+        self.finds("packaging/camber.spec:1", "the version is 1.2.2")
 
     # ---- The program ----
 

@@ -33,7 +33,8 @@ elif "$python" -c 'import mypy' 2>/dev/null; then # the stubs say what the modul
 else
     echo "no mypy: the stubs are not compared"
 fi
-export LD_PRELOAD=$sanitizer${preloaded:+ $preloaded}
+# With the library of C++ it finds what others throw: matplotlib of Debian 13, as it is imported.
+export LD_PRELOAD=${sanitizer:+$sanitizer libstdc++.so.6 }$preloaded
 # Python keeps what it has until it ends; memory that is freed is used again at once, so that its growth can be told.
 [ -z "$sanitizer" ] || export CAMBER_CALLS=10000 ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0:quarantine_size_mb=1:thread_local_quarantine_size_kb=16
 cd "$source"

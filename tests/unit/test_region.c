@@ -180,6 +180,37 @@ static void test_indexed_files(void **state) {
     }
 }
 
+/* Areas stay whole; one that the region lies in stays, too, and one in whose hole it lies does not. */
+static void test_indexed_areas(void **state) {
+    file_reading *it = *state;
+    char source[128], indexed[128], plain[128];
+    it->style.wants_areas = true;
+    snprintf(source, sizeof source, "%s", in_folder(it, "source.json"));
+    snprintf(plain, sizeof plain, "%s", in_folder(it, "plain.geojson"));
+    mosaic_write(source, 7.0, 46.0);
+    for (size_t i = 0; i < INDEXED_FILES; i++) {
+        if (!GDALGetDriverByName(indexed_files[i].format) && i > 0)
+            continue;
+        snprintf(indexed, sizeof indexed, "%s", in_folder(it, indexed_files[i].name));
+        indexed_file_write(&indexed_files[i], source, indexed, plain);
+        uint64_t seed = 11;
+        for (int k = 0; k < 12; k++) {
+            const double size = k % 3 == 0 ? 0.01 : k % 3 == 1 ? 0.2 : 0.9;
+            const double west = camber_random_between(&seed, 6.8, 10.0),
+                         south = camber_random_between(&seed, 45.8, 49.0);
+            const camber_region region = region_of(west, south, west + size, south + 0.7 * size);
+            it->style.wants_polygons = k % 4 == 0;
+            (void)expect_as_whole(it, indexed, plain, &region, false);
+        }
+        it->style.wants_polygons = false;
+        const camber_region middle = region_of(8.57, 47.57, 8.571, 47.571),
+                            edge = region_of(7.37, 47.57, 7.371, 47.571), beside = region_of(6.9, 46.5, 6.95, 46.6);
+        assert_int_equal(expect_as_whole(it, indexed, plain, &middle, false), 2); /* a square, and the large one */
+        assert_int_equal(expect_as_whole(it, indexed, plain, &edge, false), 4);   /* and the ring, with its hole */
+        assert_int_equal(expect_as_whole(it, indexed, plain, &beside, false), 0);
+    }
+}
+
 /* Longitudes jump from 180 to -180; a line that does so lies all around the world in an index. */
 static void test_indexed_antimeridian(void **state) {
     static const double regions[][4] = {
@@ -254,6 +285,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_antimeridian, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_bounds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_indexed_files, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_indexed_areas, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_indexed_antimeridian, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_filter_and_two_files, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_no_lines, set_up, tear_down),

@@ -17,7 +17,8 @@ static int find_field(OGRFeatureDefnH schema, const char *name) {
     return -1;
 }
 
-static void find_properties(camber_columns *columns, const camber_style *style, OGRFeatureDefnH schema) {
+static void find_properties(camber_columns *columns, OGRFeatureDefnH schema) {
+    const camber_style *style = columns->features->style;
     columns->plain = true;
     for (size_t i = 0; i < style->property_count; i++) {
         camber_column *one = &columns->items[i];
@@ -27,7 +28,7 @@ static void find_properties(camber_columns *columns, const camber_style *style, 
         one->field = find_field(schema, style->properties[i]);
         if (one->field < 0)
             continue;
-        columns->plain = false;
+        columns->plain = columns->plain && !camber_features_lines_read(columns->features, OGR_FD_GetName(schema), i);
         OGRFieldDefnH definition = OGR_FD_GetFieldDefn(schema, one->field);
         one->type = OGR_Fld_GetType(definition);
         one->boolean = OGR_Fld_GetSubType(definition) == OFSTBoolean;
@@ -46,7 +47,7 @@ camber_status camber_columns_find(camber_columns *columns, camber_features *feat
         (!columns->areas && !(columns->areas = camber_alloc(context, keys, sizeof *columns->areas))))
         return CAMBER_ERROR_MEMORY;
     columns->features = features;
-    find_properties(columns, features->style, schema);
+    find_properties(columns, schema);
     columns->id_count = columns->area_count = 0;
     for (size_t i = 0; tiles && i < sizeof id_names / sizeof *id_names; i++) {
         const int field = find_field(schema, id_names[i]);

@@ -22,6 +22,9 @@ typedef struct interner {
     size_t string_slots, string_count;
     uint32_t *classes; /* index + 1; 0: free */
     size_t class_slots;
+    camber_value *read; /* the values of a class while it is looked for. NULL: none was */
+    uint32_t layer;     /* the last one that a class was looked for in, and whether layers of the style name it */
+    bool layer_is_named;
 } interner;
 
 enum { FIRST_SLOTS = 256 };
@@ -80,6 +83,7 @@ void camber_features_destroy(camber_features *features) {
         camber_free(context, set->strings[i]);
     }
     camber_free(context, set->strings);
+    camber_free(context, set->read);
     camber_free(context, set);
     for (size_t i = 0; i < features->layer_count; i++)
         camber_free(context, features->layer_names[i]);
@@ -131,13 +135,30 @@ static bool is_of_files(const camber_features *features) {
     return true;
 }
 
+/* Whether a layer of the style names this source layer. */
+static bool names_layer(const camber_style *style, const char *name) {
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (style->layers[i].source_layer && strcmp(style->layers[i].source_layer, name) == 0)
+            return true;
+    return false;
+}
+
+static bool names_layers_of(const camber_style *one, const camber_style *other) {
+    for (size_t i = 0; i < other->layer_count; i++)
+        if (other->layers[i].source_layer && !names_layer(one, other->layers[i].source_layer))
+            return false;
+    return true;
+}
+
 static bool reads_the_same(const camber_style *one, const camber_style *other) {
     bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
                 one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
                 one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas;
     for (size_t i = 0; same && i < one->property_count; i++)
-        same = strcmp(one->properties[i], other->properties[i]) == 0;
-    return same;
+        same = strcmp(one->properties[i], other->properties[i]) == 0 &&
+               (one->property_readers ? one->property_readers[i] : UINT8_MAX) ==
+                   (other->property_readers ? other->property_readers[i] : UINT8_MAX);
+    return same && names_layers_of(one, other) && names_layers_of(other, one);
 }
 
 camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
@@ -415,11 +436,55 @@ static bool equal_classes(const camber_feature_class *a, const camber_feature_cl
            equal_values(&a->id, &b->id, 1);
 }
 
+bool camber_features_lines_read(const camber_features *features, const char *layer, size_t property) {
+    const camber_style *style = features->style;
+    unsigned readers = camber_readers_of(CAMBER_LAYER_LINE, false);
+    if (names_layer(style, layer))
+        readers |= camber_readers_of(CAMBER_LAYER_LINE, true);
+    return !style->property_readers || style->property_readers[property] & readers;
+}
+
+/* The layers of the style that may draw the class, as camber_readers_of has them. */
+static uint8_t readers_of(camber_features *features, const camber_feature_class *one) {
+    interner *set = features->interned;
+    uint8_t readers = 0;
+    if (!set->read || set->layer != one->layer)
+        set->layer_is_named =
+            one->layer < features->layer_count && names_layer(features->style, features->layer_names[one->layer]);
+    set->layer = one->layer;
+    for (int named = 0; named <= set->layer_is_named; named++) {
+        if (one->geometry != CAMBER_GEOMETRY_AREA)
+            readers |= camber_readers_of(CAMBER_LAYER_LINE, named);
+        if (one->geometry != CAMBER_GEOMETRY_LINE)
+            readers |= camber_readers_of(CAMBER_LAYER_FILL, named);
+    }
+    return readers;
+}
+
+/* Leaves out the values that no layer reads of such features, so that they make no more classes than are drawn. NULL:
+ * no memory. */
+static const camber_value *read_values(camber_features *features, const camber_feature_class *one,
+                                       const camber_value *values) {
+    interner *set = features->interned;
+    const camber_style *style = features->style;
+    const uint8_t readers = readers_of(features, one);
+    if (!set->read)
+        set->read = camber_alloc(features->context, style->property_count, sizeof *set->read);
+    for (size_t i = 0; i < style->property_count && set->read; i++) {
+        const bool reads = !style->property_readers || style->property_readers[i] & readers;
+        set->read[i] = reads ? values[i] : (camber_value){0};
+    }
+    return set->read;
+}
+
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
-                                            const camber_value *values, uint32_t *class_index) {
+                                            const camber_value *all, uint32_t *class_index) {
     interner *set = features->interned;
     const size_t count = features->style->property_count;
+    const camber_value *values = read_values(features, wanted, all);
     camber_feature_class made = *wanted;
+    if (!values)
+        return CAMBER_ERROR_MEMORY;
     made.source = features->source;
     made.first_value = features->value_count;
     if (features->class_count >= set->class_slots / 2 && !grow_classes(features))

@@ -115,6 +115,8 @@ camber_status camber_features_find_class(camber_features *features, uint32_t lay
 /* Does the same with an id and all properties; wanted's source and first_value are not read. */
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index);
+/* Whether a line layer of the style that may draw lines of the source layer reads the property. */
+bool camber_features_lines_read(const camber_features *features, const char *layer, size_t property);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
 /* Adds a polyline to the feature that was added last. points: pairs of world coordinates. */
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);

@@ -142,7 +142,9 @@ static bool find_keys(camber_mvt *mvt) {
     for (uint32_t k = 0; k < layer->n_keys; k++) {
         const ProtobufCBinaryData key = layer->keys[k];
         mvt->key_properties[k] = find_property(mvt, key);
-        mvt->stats.names_property |= mvt->key_properties[k] != NONE;
+        mvt->stats.names_property = mvt->stats.names_property ||
+                                    (mvt->key_properties[k] != NONE &&
+                                     camber_features_lines_read(mvt->desc.features, mvt->name, mvt->key_properties[k]));
         for (int i = 0; i < ID_KEYS; i++)
             mvt->ids[i] = is_text(key, id_keys[i]) ? k : mvt->ids[i];
         for (int i = 0; i < 2 && mvt->desc.wants_progress; i++)

@@ -235,6 +235,11 @@ bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, cons
         style->properties[style->property_count++] = copy;
         c->property_slots[slot] = (uint32_t)style->property_count;
     }
+    if (c->readers && !style->property_readers &&
+        !(style->property_readers = camber_alloc_zero(c->context, CAMBER_PROPERTY_LIMIT, 1)))
+        return fail_memory(c);
+    if (c->readers)
+        style->property_readers[c->property_slots[slot] - 1] |= c->readers;
     const camber_node prototype = {
         .evaluate = evaluate,
         .type = camber_typing_of(evaluate == camber_evaluate_has ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE),

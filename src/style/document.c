@@ -370,6 +370,7 @@ void camber_style_destroy(camber_style *style) {
     json_decref(style->state);
     camber_free(context, style->name);
     camber_free(context, style->properties);
+    camber_free(context, style->property_readers);
     camber_free(context, style->sprites);
     camber_free(context, style->sources);
     camber_free(context, style->layers);

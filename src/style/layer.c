@@ -315,7 +315,10 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     }
     camber_style_layer *layer = &style->layers[style->layer_count++];
     layer->kind = kind;
-    return read_layer(d, json, layer);
+    c->readers = camber_readers_of(kind, json_object_get(json, "source-layer") != NULL);
+    const bool done = read_layer(d, json, layer);
+    c->readers = 0;
+    return done;
 }
 
 static bool read_any_layer(camber_document *d, json_t *json) {

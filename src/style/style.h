@@ -9,7 +9,8 @@
 #include <jansson.h>
 
 /* The style's pseudo property that a source sets to true on every feature of a layer whose schema has none of
- * the other properties that the style names, and leaves null elsewhere: such lines cannot be classified. */
+ * the other properties that the style's line layers read, and leaves null elsewhere: such lines cannot be classified.
+ */
 #define CAMBER_PLAIN_PROPERTY "camber:plain"
 
 /* A feature as an expression reads it. */
@@ -132,6 +133,9 @@ struct camber_style {
     size_t source_count;
     char **properties; /* feature properties that any expression reads, each once */
     size_t property_count;
+    /* property_count: which layers read it, as camber_readers_of has them; none, where only a source's filter does.
+     * NULL: all read all. */
+    uint8_t *property_readers;
     bool wants_id;             /* an expression reads the feature's id */
     bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
@@ -140,6 +144,11 @@ struct camber_style {
                             has a colour for them */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
 };
+
+/* The readers of layers of a kind: a bit for those of any source layer, and another one for those that name theirs. */
+static inline uint8_t camber_readers_of(camber_layer_kind kind, bool names_source_layer) {
+    return (uint8_t)(1u << ((unsigned)kind + (names_source_layer ? 4 : 0)));
+}
 
 /* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);

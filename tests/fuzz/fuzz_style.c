@@ -57,7 +57,7 @@ static bool add_features(fuzz_run *run, camber_features *features) {
         }
         if (!fuzz_done(run, camber_features_find_layer(features, c % 3 ? "roads" : "other", &layer)) ||
             !fuzz_done(run,
-                       camber_features_find_class(features, layer, (camber_geometry_kind)(c % 2), all, &class_index)) ||
+                       camber_features_find_class(features, layer, (camber_geometry_kind)(c % 3), all, &class_index)) ||
             !fuzz_done(run, camber_features_add_feature(features, class_index)) ||
             !fuzz_done(run, camber_features_add_polyline(features, shapes[c % 3], 1 + c % 4)))
             return false;

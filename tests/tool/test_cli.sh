@@ -919,7 +919,13 @@ expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --siz
 cmp -s named.png builtin.png || fail "city is not the built-in style"
 expect 0 "roads alone" render "$tiger" --style roads --theme dark -qo roads.png --size 64x64
 cmp -s roads.png builtin.png || fail "roads look otherwise in the built-in style"
-rm -f named.png builtin.png roads.png
+echo '{"type": "Feature", "properties": {"class": "A Road", "building": "no"},
+    "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, 1], [2, 0]]}}' >"$tmp/in/class.geojson"
+for style in roads city; do
+    expect 0 "lines of no class, in $style" render "$tmp/in/class.geojson" --style "$style" -qo "$style.png" --size 64x64
+done
+cmp -s roads.png city.png || fail "what the city knows of areas hides lines of no class"
+rm -f named.png builtin.png roads.png city.png
 expect 0 "a style that ships" style check openmaptiles
 expect 66 "no style of that name" render "$tiger" --style streets -o a.png
 says 'city, roads, openmaptiles, transit'

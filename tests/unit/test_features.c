@@ -217,6 +217,60 @@ static void test_bounds(void **state) {
     assert_true(fabs(bounds[3] - 66.51326) < 1e-5);
 }
 
+/* Attributes that no layer reads of lines make no classes of lines, nor do those of source layers that are named. */
+static void test_read_values(void **state) {
+    fixture *it = *state;
+    char *names[] = {"highway", "landuse", "ramp"};
+    uint8_t readers[] = {camber_readers_of(CAMBER_LAYER_LINE, false), camber_readers_of(CAMBER_LAYER_FILL, false),
+                         camber_readers_of(CAMBER_LAYER_LINE, true)};
+    camber_style_layer named = {.source_layer = "transport"};
+    camber_style style = {
+        .properties = names, .property_count = 3, .property_readers = readers, .layers = &named, .layer_count = 1};
+    camber_features *features = NULL;
+    assert_int_equal(camber_features_create(it->context, &style, &features), CAMBER_OK);
+    uint32_t layers[2], classes[4];
+    assert_int_equal(camber_features_find_layer(features, "lines", &layers[0]), CAMBER_OK);
+    assert_int_equal(camber_features_find_layer(features, "transport", &layers[1]), CAMBER_OK);
+    static const struct {
+        size_t layer;
+        camber_geometry_kind geometry;
+        size_t count; /* of classes, where the three differ in one value */
+    } cases[][3] = {
+        {{0, CAMBER_GEOMETRY_LINE, 2}, {0, CAMBER_GEOMETRY_LINE, 1}, {0, CAMBER_GEOMETRY_LINE, 1}},
+        {{0, CAMBER_GEOMETRY_AREA, 1}, {0, CAMBER_GEOMETRY_AREA, 2}, {0, CAMBER_GEOMETRY_AREA, 1}},
+        {{0, CAMBER_GEOMETRY_POLYGON, 2}, {0, CAMBER_GEOMETRY_POLYGON, 2}, {0, CAMBER_GEOMETRY_POLYGON, 1}},
+        {{1, CAMBER_GEOMETRY_LINE, 2}, {1, CAMBER_GEOMETRY_LINE, 1}, {1, CAMBER_GEOMETRY_LINE, 2}},
+        {{1, CAMBER_GEOMETRY_AREA, 1}, {1, CAMBER_GEOMETRY_AREA, 2}, {1, CAMBER_GEOMETRY_AREA, 1}},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
+        for (size_t p = 0; p < 3; p++) {
+            camber_value values[3] = {{0}};
+            for (int round = 0; round < 2; round++) {
+                values[p] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = round};
+                assert_int_equal(camber_features_find_class(features, layers[cases[c][p].layer], cases[c][p].geometry,
+                                                            values, &classes[round]),
+                                 CAMBER_OK);
+            }
+            if ((classes[0] != classes[1]) != (cases[c][p].count == 2))
+                fail_msg("%s, case %zu", names[p], c);
+        }
+    static const bool read_of_lines[] = {true, false, false}, read_of_transport[] = {true, false, true};
+    for (size_t p = 0; p < 3; p++) {
+        assert_int_equal(camber_features_lines_read(features, "lines", p), read_of_lines[p]);
+        assert_int_equal(camber_features_lines_read(features, "transport", p), read_of_transport[p]);
+    }
+    /* Another style that names other source layers would have read other values. */
+    camber_style_layer other_layer = {.source_layer = "roads"};
+    camber_style other = style;
+    other.layers = &other_layer;
+    assert_int_equal(camber_features_restyle(features, &other), CAMBER_ERROR_ARGUMENT);
+    uint8_t other_readers[] = {readers[0], readers[1], readers[0]};
+    other = style;
+    other.property_readers = other_readers;
+    assert_int_equal(camber_features_restyle(features, &other), CAMBER_ERROR_ARGUMENT);
+    camber_features_destroy(features);
+}
+
 /* Another style that reads the same is taken; one that reads other properties is not. */
 static void test_restyle(void **state) {
     static char *turned[] = {"bridge", "highway"};
@@ -318,6 +372,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_no_properties, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_bounds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_restyle, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_read_values, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_attribution, set_up, tear_down),
         cmocka_unit_test(test_out_of_memory),
     };

@@ -196,13 +196,18 @@ static camber_scene bare_scene(const camber_features *features, double simplify_
                           .plan = {.context = features->context}};
 }
 
-/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. */
+/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines of any source layer go by
+ * come first. */
 static void list_properties(const camber_style *style, char *text, size_t size) {
+    const size_t count = style->property_count;
+    const uint8_t readers = camber_readers_of(CAMBER_LAYER_LINE, false);
     size_t used = 0, listed = 0;
     *text = 0;
-    for (size_t i = 0; i < style->property_count; i++) {
+    for (size_t k = 0; k < 2 * count; k++) {
+        const size_t i = k % count;
         const char *name = style->properties[i];
-        if (strcmp(name, CAMBER_PLAIN_PROPERTY) == 0)
+        const bool is_first = style->property_readers && style->property_readers[i] & readers;
+        if (strcmp(name, CAMBER_PLAIN_PROPERTY) == 0 || is_first != (k < count))
             continue;
         const bool fits = listed < 8 && used + strlen(name) + sizeof ", , ..." <= size;
         used += (size_t)snprintf(text + used, size - used, "%s%s", listed++ ? ", " : "", fits ? name : "...");

@@ -507,11 +507,11 @@ static void test_widths(void **state) {
 
 /* ---- The tiles as input ---- */
 
-static size_t read_file(fixture *s, const char *path, const char *layer) {
+static size_t read_file(fixture *s, const char *name, const char *path, const char *layer) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     size_t size_bytes;
-    const char *text = camber_style_get_text("openmaptiles", CAMBER_THEME_LIGHT, &size_bytes);
+    const char *text = camber_style_get_text(name, CAMBER_THEME_LIGHT, &size_bytes);
     assert_int_equal(camber_style_parse(s->context, text, size_bytes, "shipped", &style), CAMBER_OK);
     assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
     const camber_source_desc desc = {.path = path, .layer = layer, .keep_apart = true};
@@ -522,17 +522,21 @@ static size_t read_file(fixture *s, const char *path, const char *layer) {
     return count;
 }
 
-/* A file that is given beside the style has its layers read that the style names, all but transportation_name. */
+/* A file that is given beside the style has its layers read that the style names: all but transportation_name, and in
+ * the style city but boundary. */
 static void test_file(void **state) {
     fixture *s = *state;
     char folder[32], path[64];
-    size_t rivers = 0;
+    size_t rivers = 0, borders = 0;
     make_folder(folder, path);
     write_sheet(path);
     for (size_t i = 0; i < THINGS; i++)
         rivers += strcmp(things[i].layer, "waterway") == 0;
-    assert_int_equal(read_file(s, path, NULL), THINGS - 1);
-    assert_int_equal(read_file(s, path, "waterway"), rivers);
+    for (size_t i = 0; i < THINGS; i++)
+        borders += strcmp(things[i].layer, "boundary") == 0;
+    assert_int_equal(read_file(s, "openmaptiles", path, NULL), THINGS - 1);
+    assert_int_equal(read_file(s, "openmaptiles", path, "waterway"), rivers);
+    assert_int_equal(read_file(s, "city", path, NULL), THINGS - 1 - borders);
     remove_folder(folder, path);
 }
 

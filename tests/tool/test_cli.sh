@@ -807,9 +807,10 @@ says 'cut.json'
 expect 65 "all that is wrong with a style" style check --json "$tmp/in/type.json"
 has "$tmp/stdout" '/layers/0/paint/line-width'
 says '1 error; correct it'
-echo '{"version": 8, "layers": [{"id": "a", "type": "fill"}, {"id": "b", "type": "line"}]}' >"$tmp/in/fill.json"
+echo '{"version": 8, "layers": [{"id": "a", "type": "fill"}, {"id": "b", "type": "fill-extrusion"}]}' >"$tmp/in/fill.json"
 expect 0 "a style that is right" style check "$tmp/in/fill.json"
-says '1 layer of type fill: not drawn'
+says '1 layer of type fill: drawn'
+says '1 layer of type fill-extrusion: not drawn'
 echo '{"expression": ["*", 2, ["get", "w"]], "inputs": [[{}, {"properties": {"w": 1.5}}], [{}, {}]]}' >"$tmp/in/double.json"
 echo '{"expression": ["+", "a"]}' >"$tmp/in/wrong.json"
 expect 0 "what an expression is" style eval "$tmp/in/double.json"
@@ -922,7 +923,7 @@ cmp -s roads.png builtin.png || fail "roads look otherwise in the built-in style
 echo '{"type": "Feature", "properties": {"class": "A Road", "building": "no"},
     "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, 1], [2, 0]]}}' >"$tmp/in/class.geojson"
 for style in roads city; do
-    expect 0 "lines of no class, in $style" render "$tmp/in/class.geojson" --style "$style" -qo "$style.png" --size 64x64
+    expect 0 "lines of no class, in $style" render "$tmp/in/class.geojson" --style "$style" -fqo "$style.png" --size 64x64
 done
 cmp -s roads.png city.png || fail "what the city knows of areas hides lines of no class"
 rm -f named.png builtin.png roads.png city.png

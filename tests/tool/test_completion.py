@@ -114,7 +114,7 @@ def cases():
     yield ["camber", "bench", "--draw", ""], ["auto", "gl", "cl"], []
     yield ["camber", "render", "--theme", "d"], ["dark"], ["light"]
     yield ["camber", "info", "--device", ""], ["cpu", "gpu"], []
-    yield ["camber", "render", "--style", ""], ["roads", "transit", "openmaptiles", "roads.gpkg"], ["check"]
+    yield ["camber", "render", "--style", ""], ["city", "roads", "transit", "openmaptiles", "roads.gpkg"], ["check"]
     yield ["camber", "render", "--size", ""], [], ["roads.gpkg", "png"]
     yield ["camber", "render", "-o", ""], ["roads.gpkg"], []
     yield ["camber", "style", ""], ["check", "eval"], ["roads.gpkg"]

@@ -139,7 +139,7 @@ if [ "$map" != ON ]; then
     echo "render in a build without maps: status $status"
     exit 1
 fi
-for style in roads-light roads-dark openmaptiles-light openmaptiles-dark transit-light transit-dark; do
+for style in city-light city-dark roads-light roads-dark openmaptiles-light openmaptiles-dark transit-light transit-dark; do
     "$folder/usr/bin/camber" style check "$folder/usr/share/camber/styles/$style.json"
 done
 for job in slurm.sh batch.sh mpirun.sh job.yaml batch.json; do

@@ -392,6 +392,22 @@ static void test_areas_are_filled(void **state) {
     assert_null(paint_of(frame.passes + 2).fill);
     camber_scene_destroy(scene);
     close_town(&t);
+
+    /* Backgrounds hide what lies below, and come between areas and lines. */
+    open_town(&t, FILL("hidden", KIND("a"), BLUE) "," BACKGROUND("land", "#0f0") "," FILL(
+                      "area", KIND("a"), BLUE) "," BACKGROUND("veil", "rgba(255,0,0,0.5)") "," LINE("line", KIND("a"),
+                                                                                                    "#000", "2"));
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_AREA), SQUARE, 5);
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_LINE), (double[]){300, 100, 400, 100}, 2);
+    scene = make_scene(&t, WORLD);
+    const camber_frame three = frame_of(scene);
+    assert_int_equal(three.pass_count, 3);
+    assert_true(three.background.g == 1.0f);
+    assert_non_null(paint_of(three.passes).fill);
+    assert_int_equal(three.passes[1].kind, CAMBER_PASS_FILL);
+    assert_near((double)paint_of(three.passes + 2).width_px, 2, 0);
+    camber_scene_destroy(scene);
+    close_town(&t);
 }
 
 /* The network is told which of its entries are rings to fill. */

@@ -321,7 +321,8 @@ static void test_documents(void **state) {
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         char command[4096];
         snprintf(command, sizeof command,
-                 "cd '%s' && cp '%s' '%s' && '%s' --readme bench/results/xeon-*.json '%s' && cmp '%s' '%s'",
+                 "cd '%s' && cp '%s' '%s' && '%s' --readme bench/results/epyc-avx512.json bench/results/epyc-avx2.json "
+                 "'%s' && cmp '%s' '%s'",
                  CAMBER_TEST_DATA "/../..", paths[i], README, CAMBER_BENCH, README, paths[i], README);
         assert_int_equal(shell(command), 0);
     }

@@ -218,7 +218,8 @@ static camber_status add_run(void *user, size_t part, void *slot) {
         if (!member || status != CAMBER_OK)
             continue;
         status = camber_osm_relations_add_places(relations, self->met++, places, ways[i].place_count);
-        places += ways[i].place_count;
+        if (ways[i].place_count)
+            places += ways[i].place_count;
     }
     self->features->stats.empty_rings += run->stats.empty_rings;
     self->clamped += run->lines.clamped_points;

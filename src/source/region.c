@@ -79,6 +79,9 @@ bool camber_region_touches(const camber_region *region, const double *points, si
 
 /* ---- Areas ---- */
 
+/* Rings are at most two worlds wide, and regions less than one; wider ones are no place on Earth. */
+static const double MOST_WORLDS = 4.0;
+
 /* How often a ring winds around a place that it does not touch. */
 static int winding_of(const double *points, size_t count, double x, double y) {
     int winding = 0;
@@ -110,8 +113,10 @@ bool camber_region_meets_area(const camber_region *region, const double *points,
         west = fmin(west, points[2 * i]);
         east = fmax(east, points[2 * i]);
     }
-    for (double world = ceil(region->x0 - east); world <= floor(region->x1 - west); world += 1.0) {
-        const camber_region box = {region->x0 - world, region->y0, region->x1 - world, region->y1};
+    const double first = ceil(region->x0 - east), worlds = fmin(floor(region->x1 - west) - first, MOST_WORLDS);
+    for (double world = 0.0; world <= worlds; world += 1.0) {
+        const double shift = first + world;
+        const camber_region box = {region->x0 - shift, region->y0, region->x1 - shift, region->y1};
         if (box_meets_area(&box, points, offsets, ring_count))
             return true;
     }

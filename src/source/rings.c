@@ -86,19 +86,29 @@ static double short_way(double from, double to) {
     return fabs(to - from) <= 0.5 || along ? 0.0 : to < from ? 1.0 : -1.0;
 }
 
+/* Whether a ring goes beyond the world on one side of it, once around at most. */
+static bool crosses_once(const double *points, size_t count) {
+    double moved = 0.0, west = 0.0, east = 0.0;
+    for (size_t i = 1; i < count; i++) {
+        moved += short_way(points[2 * i - 2], points[2 * i]);
+        west = fmin(west, moved);
+        east = fmax(east, moved);
+    }
+    return east - west == 1.0;
+}
+
 size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
-    double moved = 0.0, before = count ? points[0] : 0.0, y = 0.0;
-    *crosses = false;
+    *crosses = crosses_once(points, count);
+    if (!*crosses)
+        return count;
+    double moved = 0.0, before = points[0], y = 0.0;
     for (size_t i = 0; i < count; i++) {
         double *at = points + 2 * i;
         moved += short_way(before, at[0]);
-        *crosses = *crosses || moved != 0.0;
         before = at[0];
         at[0] += moved;
         y += at[1];
     }
-    if (count == 0)
-        return 0;
     double *last = points + 2 * (count - 1);
     const double first[2] = {points[0], points[1]};
     if (moved + short_way(before, first[0]) == 0.0)

@@ -26,8 +26,8 @@ void camber_ring_turn(double *points, size_t count);
 size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool hole);
 /* Moves the points of a ring by whole worlds, so that it goes the short way from each to the next: it may then lie
  * beyond the edges of the world. An edge from one edge of the world to the other stays as it is. A ring around a pole
- * goes on along the pole. points has room for count + 4. Returns how many points there are now. *crosses: the ring
- * crosses the antimeridian. */
+ * goes on along the pole, and one that goes round and round stays as it is. points has room for count + 4. Returns how
+ * many points there are now. *crosses: the ring crosses the antimeridian. */
 size_t camber_ring_unroll(double *points, size_t count, bool *crosses);
 /* Says what was done to the rings of a file since *before. */
 void camber_rings_report(const camber_features *features, const char *name, const camber_features_stats *before);

@@ -96,7 +96,7 @@ camber_status camber_tile_stitcher_add_ring(camber_tile_stitcher *stitcher, cons
     camber_cut_line ring = *like;
     ring.first = self.first;
     ring.count = stitcher->point_count - self.first;
-    if (camber_ring_is_flat(stitcher->points + 2 * self.first, ring.count)) {
+    if (ring.count < 3 || camber_ring_is_flat(stitcher->points + 2 * self.first, ring.count)) {
         stitcher->point_count = self.first;
         return CAMBER_OK;
     }

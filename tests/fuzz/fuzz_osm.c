@@ -1,5 +1,5 @@
 /* A PBF file of OpenStreetMap: a whole one, or the content of a blob, which needs no packing to be reached. */
-#include "fuzz.h"
+#include "fuzz_scene.h"
 
 #include "osm/osm.h"
 
@@ -39,10 +39,12 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         fuzz_done(run, camber_style_parse(run->context, style_text, strlen(style_text), "fuzz", &style)) &&
         fuzz_done(run, camber_features_create(run->context, style, &features))) {
         bool declined = false;
+        style->wants_areas = run->hash & 1;
         const bool read = fuzz_done(run, camber_osm_read(features, &desc, &declined));
         const camber_features_stats stats = camber_features_get_stats(features);
         REQUIRE((read && !declined) || stats.points == 0);
         REQUIRE(stats.points >= stats.polylines);
+        fuzz_check_areas(features);
     }
     camber_features_destroy(features);
     camber_style_destroy(style);

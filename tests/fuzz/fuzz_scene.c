@@ -1,6 +1,20 @@
 #include "fuzz_scene.h"
 
+#include "source/rings.h"
+
 #include <math.h>
+#include <string.h>
+
+void fuzz_check_areas(const camber_features *features) {
+    for (size_t i = 0; i < features->polyline_count; i++) {
+        const size_t first = features->offsets[i], count = features->offsets[i + 1] - first;
+        const double *ring = features->points + 2 * first;
+        if (camber_features_kind(features, i) != CAMBER_GEOMETRY_AREA)
+            continue;
+        REQUIRE(count >= 4 && memcmp(ring, ring + 2 * (count - 1), 2 * sizeof *ring) == 0);
+        REQUIRE(!camber_ring_is_flat(ring, count));
+    }
+}
 
 static void check_color(camber_color c) {
     REQUIRE(c.r >= 0.0f && c.r <= 1.0f && c.g >= 0.0f && c.g <= 1.0f && c.b >= 0.0f && c.b <= 1.0f);

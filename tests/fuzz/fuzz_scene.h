@@ -6,6 +6,8 @@
 
 #include "camber_map.h"
 
+/* Rings of areas are closed, and no line. */
+void fuzz_check_areas(const camber_features *features);
 /* Makes the scene, checks it and tessellates it. */
 void fuzz_scene(fuzz_run *run, const camber_features *features, const camber_scene_desc *desc);
 

@@ -16,6 +16,7 @@ static void check(const camber_features *features, double reach) {
         REQUIRE(features->points[i] >= -reach && features->points[i] <= 1 + reach);
     for (size_t i = 0; i < features->polyline_count; i++)
         REQUIRE(features->offsets[i] < features->offsets[i + 1]);
+    fuzz_check_areas(features);
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
         REQUIRE(!one->all || one->all->type == CAMBER_VALUE_OBJECT);
@@ -34,6 +35,7 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
                             .layers = run->hash >> 12 & 7 ? layers : NULL,
                             .layer_count = 3,
                             .wants_polygons = run->hash >> 16 & 1,
+                            .wants_areas = run->hash >> 18 & 1,
                             .plain = run->hash >> 17 & 1};
     camber_mvt *mvt = NULL;
     bool done = fuzz_done(run, camber_tile_stitcher_create(run->context, place.zoom, &desc.stitcher)) &&
@@ -47,6 +49,7 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
     if (done && fuzz_done(run, camber_tile_stitcher_finish(desc.stitcher, features)) &&
         fuzz_done(run, camber_features_set_importance(features, 0))) {
         const camber_view_desc view = {.width = 100, .height = 100};
+        camber_features_pin_borders(features, 0, place.zoom);
         check(features, ldexp(1.0, -place.zoom) + 1e-9);
         fuzz_scene(run, features, &(camber_scene_desc){.view = view});
     }

@@ -432,6 +432,33 @@ static void test_tile_winding(void **state) {
     expect_counts(it->features, 0, 3, 0);
 }
 
+/* Buildings of a city: each is cut by the sides of its tiles, and its pieces take each other away along them. */
+static void test_real_tiles(void **state) {
+    enum { DATA_ZOOM = 15 };
+    file_reading *it = *state;
+    const camber_source_desc desc = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles", .layer = "buildings"};
+    expect_ok(it, camber_features_read(it->features, &desc));
+    const camber_features *set = it->features;
+    double sum = 0.0, length = 0.0, area = 0.0;
+    for (size_t p = 0; p < set->polyline_count; p++) {
+        assert_int_equal(camber_features_kind(set, p), CAMBER_GEOMETRY_AREA);
+        assert_true(is_closed(set, p));
+        area += ring_area(set, p);
+        for (size_t i = set->offsets[p]; i + 1 < set->offsets[p + 1]; i++) {
+            const double *a = set->points + 2 * i, x = ldexp(a[0], DATA_ZOOM);
+            if (a[0] != a[2] || x != floor(x))
+                continue;
+            assert_true(set->importance[i] == INFINITY && set->importance[i + 1] == INFINITY);
+            sum += a[3] - a[1];
+            length += fabs(a[3] - a[1]);
+        }
+    }
+    assert_true(set->feature_count > 4000 && set->polyline_count > set->feature_count);
+    assert_true(area > 5e-9 && area < 5.2e-9); /* twice, in squares of the world */
+    assert_true(length > 1e-4 && fabs(sum) < 1e-3 * length);
+    assert_int_equal(set->stats.turned_rings, 0);
+}
+
 /* ---- Tiles that are drawn ---- */
 
 static void expect_tile(const camber_census *census, uint32_t column, uint32_t row, size_t polylines) {
@@ -484,6 +511,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_pieces, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_full_tile, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_tile_winding, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_real_tiles, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_census, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -630,7 +630,10 @@ static void test_wrong_blobs(void **state) {
 static void test_memory(void **state) {
     fixture *it = *state;
     make_small(it);
+    RELATION(it, wood, {1000, "outer"}, {1006, "inner"});
+    pbf_end_block(&it->file, &it->block);
     write_file(&it->on, "file", it->file.bytes, it->file.size);
+    it->on.style.wants_areas = true;
     size_t failed = 0;
     for (uint64_t bytes = 4096; bytes < 600000; bytes += bytes / 8) {
         camber_budget *budget;

@@ -57,8 +57,7 @@ static bool layer_draws(const camber_numbering *n, const camber_plan_layer *laye
  * of areas with an opacity takes its outline along. Fills of the picture come between. */
 static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
-    size_t count = 0, fill = 0;
-    const camber_style_layer *counted = NULL;
+    size_t count = 0, fill = 0, counted = plan->layer_count;
     *layer_count = 0;
     for (size_t i = 0; i <= plan->layer_count; i++) {
         bool opaque;
@@ -68,8 +67,8 @@ static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *laye
             break;
         if (!layer_draws(n, plan->layers + i, &opaque))
             continue;
-        *layer_count += plan->layers[i].look.layer != counted;
-        counted = plan->layers[i].look.layer;
+        *layer_count += counted == plan->layer_count || plan->layers[i].look.layer != plan->layers[counted].look.layer;
+        counted = i;
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
         const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
         opaque = opaque && opacity >= 1.0f;

@@ -483,13 +483,12 @@ static bool fill_areas(camber_plan *plan, const camber_plan_set *set, const camb
 
 /* Points the paints of areas at their fills, which stay where they are from now on. */
 static void link_areas(camber_plan *plan) {
-    for (size_t s = 0; s < plan->set_count; s++) {
+    const camber_plan_fill *areas = plan->patterns.areas;
+    for (size_t s = 0; s < plan->set_count && areas && plan->paints; s++) {
         const camber_plan_set *set = plan->sets + s;
-        for (size_t i = 0; i < set->row_count * set->layer_count && camber_plan_is_area(plan, set); i++) {
-            const camber_fill *fill = &plan->patterns.areas[set->first_area + i].fill;
-            if (fill->color.a > 0.0f)
-                plan->paints[set->first_paint + i].fill = fill;
-        }
+        for (size_t i = 0; i < set->row_count * set->layer_count && camber_plan_is_area(plan, set); i++)
+            if (areas[set->first_area + i].fill.color.a > 0.0f)
+                plan->paints[set->first_paint + i].fill = &areas[set->first_area + i].fill;
     }
 }
 

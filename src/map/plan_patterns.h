@@ -38,7 +38,7 @@ void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const c
                                          const camber_view *view, size_t layers_so_far, camber_color *below);
 
 /* Lays the images of a fill onto the map, as a view sees it; a fill of one colour stays as it is. */
-void camber_plan_fill_place(camber_plan_fill *fill, const camber_view *view);
+void camber_plan_fill_place(camber_plan_fill *placed, const camber_view *view);
 /* Places the images of all fills for another view of the same zoom and ratio. */
 void camber_plan_patterns_move(camber_plan_patterns *patterns, const camber_view *view);
 

@@ -204,7 +204,7 @@ static void list_properties(const camber_style *style, char *text, size_t size) 
     size_t used = 0, listed = 0;
     *text = 0;
     for (size_t k = 0; k < 2 * count; k++) {
-        const size_t i = k % count;
+        const size_t i = k < count ? k : k - count;
         const char *name = style->properties[i];
         const bool is_first = style->property_readers && style->property_readers[i] & readers;
         if (strcmp(name, CAMBER_PLAIN_PROPERTY) == 0 || is_first != (k < count))

@@ -478,26 +478,26 @@ static const camber_value *read_values(camber_features *features, const camber_f
 }
 
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
-                                            const camber_value *all, uint32_t *class_index) {
+                                            const camber_value *values, uint32_t *class_index) {
     interner *set = features->interned;
     const size_t count = features->style->property_count;
-    const camber_value *values = read_values(features, wanted, all);
+    const camber_value *read = read_values(features, wanted, values);
     camber_feature_class made = *wanted;
-    if (!values)
+    if (!read)
         return CAMBER_ERROR_MEMORY;
     made.source = features->source;
     made.first_value = features->value_count;
     if (features->class_count >= set->class_slots / 2 && !grow_classes(features))
         return CAMBER_ERROR_MEMORY;
-    size_t slot = slot_of(hash_class(&made, values, count), set->class_slots);
+    size_t slot = slot_of(hash_class(&made, read, count), set->class_slots);
     for (; set->classes[slot]; slot = (slot + 1) & (set->class_slots - 1)) {
         const camber_feature_class *one = &features->classes[set->classes[slot] - 1];
-        if (equal_classes(one, &made) && equal_values(values_of(features, one), values, count)) {
+        if (equal_classes(one, &made) && equal_values(values_of(features, one), read, count)) {
             *class_index = set->classes[slot] - 1;
             return CAMBER_OK;
         }
     }
-    const camber_status status = add_class(features, &made, values);
+    const camber_status status = add_class(features, &made, read);
     if (status != CAMBER_OK)
         return status;
     set->classes[slot] = (uint32_t)features->class_count;

@@ -295,7 +295,8 @@ bool camber_sprites_miss(camber_sprites *sprites, const char *name) {
 static bool has_patterns(const camber_style *style) {
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        if (layer->visible && (layer->properties[CAMBER_LINE_PATTERN] || layer->properties[CAMBER_BACKGROUND_PATTERN]))
+        if (layer->visible && (layer->properties[CAMBER_LINE_PATTERN] || layer->properties[CAMBER_FILL_PATTERN] ||
+                               layer->properties[CAMBER_BACKGROUND_PATTERN]))
             return true;
     }
     return false;

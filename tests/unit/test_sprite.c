@@ -2,6 +2,7 @@
 #include "core.h"
 #include "png_file.h"
 
+#include "source/features.h"
 #include "source/sprite.h"
 
 typedef struct desk {
@@ -195,6 +196,39 @@ static void test_false_sizes(void **state) {
     close_desk(&d);
 }
 
+/* Sprites are read where a layer that is seen has a pattern. */
+static void test_wanted(void **state) {
+    (void)state;
+    static const struct {
+        const char *layer;
+        bool wanted;
+    } cases[] = {
+        {"\"type\": \"line\", \"paint\": {\"line-pattern\": \"a\"}", true},
+        {"\"type\": \"fill\", \"paint\": {\"fill-pattern\": \"a\"}", true},
+        {"\"type\": \"background\", \"paint\": {\"background-pattern\": \"a\"}", true},
+        {"\"type\": \"fill\", \"paint\": {\"fill-color\": \"red\"}", false},
+        {"\"type\": \"fill\", \"layout\": {\"visibility\": \"none\"}, \"paint\": {\"fill-pattern\": \"a\"}", false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        desk d;
+        char json[512];
+        camber_features *features = NULL;
+        open_desk(&d, "\"sheet\"");
+        write_sheet(&d, "sheet.png", 4);
+        write_index(&d, "sheet.json", good);
+        camber_style_destroy(d.style);
+        snprintf(json, sizeof json, "{\"version\": 8, \"sprite\": \"sheet\", \"layers\": [{\"id\": \"a\", %s}]}",
+                 cases[i].layer);
+        assert_int_equal(camber_style_parse(d.context, json, strlen(json), "test", &d.style), CAMBER_OK);
+        assert_int_equal(camber_features_create(d.context, d.style, &features), CAMBER_OK);
+        assert_int_equal(camber_features_read_sprites(features, 1, d.base), CAMBER_OK);
+        if ((features->sprites != NULL) != cases[i].wanted)
+            fail_msg("sprites for %s: %d", cases[i].layer, !cases[i].wanted);
+        camber_features_destroy(features);
+        close_desk(&d);
+    }
+}
+
 static camber_status attempt(camber_context *context, void *user) {
     const desk *d = user;
     camber_sprites *sprites = NULL;
@@ -214,8 +248,8 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sheet_and_index), cmocka_unit_test(test_several),
-                                       cmocka_unit_test(test_lies), cmocka_unit_test(test_false_sizes),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sheet_and_index), cmocka_unit_test(test_several), cmocka_unit_test(test_lies),
+        cmocka_unit_test(test_false_sizes),     cmocka_unit_test(test_wanted),  cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

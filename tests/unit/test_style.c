@@ -283,9 +283,9 @@ static void test_roads(void **state) {
 /* ---- The built-in style ---- */
 
 /* A feature with some of a style's properties: "landuse=forest class=wood". */
-static void set_tags(const camber_style *style, const char *tags, camber_value *values, char *texts) {
+static void set_tags(const camber_style *style, const char *tags, camber_value *values, char texts[128]) {
     memset(values, 0, style->property_count * sizeof *values);
-    strcpy(texts, tags);
+    snprintf(texts, 128, "%s", tags);
     for (char *tag = strtok(texts, " "); tag; tag = strtok(NULL, " ")) {
         char *value = strchr(tag, '=');
         size_t i = 0;

@@ -36,11 +36,14 @@ struct camber_sources {
     size_t count;
 };
 
-/* The kinds of features that a layer draws: CAMBER_KIND_*. Besides backgrounds and lines there are fills alone. */
+/* The kinds of features that a layer draws: CAMBER_KIND_*. A fill draws outlines where they have a colour. */
 static unsigned kinds_of(const camber_style_layer *layer) {
-    if (layer->kind == CAMBER_LAYER_BACKGROUND)
-        return 0;
-    return layer->kind == CAMBER_LAYER_LINE ? CAMBER_KIND_LINE | CAMBER_KIND_POLYGON : CAMBER_KIND_AREA;
+    switch (layer->kind) {
+    case CAMBER_LAYER_BACKGROUND: return 0;
+    case CAMBER_LAYER_LINE: return CAMBER_KIND_LINE | CAMBER_KIND_POLYGON;
+    case CAMBER_LAYER_FILL: break;
+    }
+    return CAMBER_KIND_AREA | (layer->properties[CAMBER_FILL_OUTLINE_COLOR] ? CAMBER_KIND_POLYGON : 0u);
 }
 
 static bool is_drawn_from(const camber_style_layer *layer, uint32_t index) {

@@ -36,16 +36,17 @@ typedef struct camber_target_args {
     camber_u32 columns, stride;
     camber_u32 first_row; /* the list of the first row of tiles; ~0: there are no areas */
     float r, g, b, a;     /* background, premultiplied */
-    camber_u32 above; /* rows of pixels of the target before the first tile */
-    float horizon;    /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
+    camber_u32 above;     /* rows of pixels of the target before the first tile */
+    float horizon;        /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
     camber_eye eye;
     float sky[4];         /* the sky's colour, premultiplied */
     camber_u32 first_job; /* an argument, as PoCL builds a kernel again for an offset of its work-items */
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state. That is six sets of cells and a count of each cell, two words for each row of cells, and planes from
- * word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture. */
+ * spills its state. That is six sets of cells and a count of each cell, two words for each row of cells, and planes
+ * from word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture.
+ */
 typedef struct camber_spill_args {
     camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
     camber_u32 tile_words;

@@ -1,4 +1,5 @@
-/* Lines that have two sides and a gap, fade, are dashed, drawn in part or change their colour: against samples. */
+/* Lines that have two sides and a gap, fade, are dashed, drawn in part or change their colour, and areas that the same
+ * points bound: against samples. */
 #include "validate/along_truth.h"
 #include "validate/checks.h"
 
@@ -27,6 +28,7 @@ static const camber_ramp_stop steps[] = {{0.2f, {0.1f, 0, 0, 1}}, {0.22f, {1, 0,
 static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}, {steps, 7}};
 
 #define WHITE .color = {1, 1, 1, 1}
+static const camber_fill fills[] = {{WHITE}, {WHITE, .rule = CAMBER_FILL_EVENODD}};
 
 /* Lines as they are drawn, and the bounds of their pixels: measured with llvmpipe, with a third on top. */
 static const struct {
@@ -43,6 +45,8 @@ static const struct {
     {"a ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps, WHITE}, {0.3, 0.002, 0.0005}},
     {"a steep ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 2, WHITE}, {0.65, 0.004, 0.0005}},
     {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 1, WHITE}, {0.3, 0.002, 0.0005}},
+    {"areas", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}},
+    {"areas by even-odd", CAMBER_CAP_BUTT, {.fill = fills + 1}, {0.2, 0.002, 0.0005}},
 };
 
 /* Red, then alpha. */
@@ -59,6 +63,33 @@ static bool take(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t r
     return true;
 }
 
+/* How often a line, closed, winds around a point: by its edges that pass to the left. */
+static int winding_around(size_t line, double x, double y) {
+    int winding = 0;
+    const size_t first = offsets[line], count = offsets[line + 1] - first;
+    for (size_t i = 0; i < count; i++) {
+        const float *a = points + 2 * (first + i), *b = points + 2 * (first + (i + 1) % count);
+        const double ax = (double)a[0], ay = (double)a[1], bx = (double)b[0], by = (double)b[1];
+        if ((ay <= y) != (by <= y) && ax + (y - ay) / (by - ay) * (bx - ax) < x)
+            winding += by > ay ? 1 : -1;
+    }
+    return winding;
+}
+
+/* Adds what a line, closed, has inside, by samples. The lines lie apart. */
+static void add_inside(size_t line, camber_fill_rule rule, float *rgba) {
+    enum { SAMPLES = 32 };
+    for (size_t i = 0; i < (size_t)PIXELS * SAMPLES * SAMPLES; i++) {
+        const size_t pixel = i / (SAMPLES * SAMPLES), sample = i % (SAMPLES * SAMPLES);
+        const double x = (double)(pixel % SIDE_PX) + ((double)(sample % SAMPLES) + 0.5) / SAMPLES;
+        const double y = (double)(pixel / SIDE_PX) + ((double)(sample / SAMPLES) + 0.5) / SAMPLES;
+        const int winding = winding_around(line, x, y);
+        if (rule == CAMBER_FILL_EVENODD ? winding % 2 != 0 : winding != 0)
+            for (size_t k = 0; k < 4; k++)
+                rgba[4 * pixel + k] += 1.0f / (SAMPLES * SAMPLES);
+    }
+}
+
 static void make_truth(size_t number, float truth[2 * PIXELS]) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
     const camber_paint *paint = &rows[number].paint;
@@ -68,7 +99,10 @@ static void make_truth(size_t number, float truth[2 * PIXELS]) {
                                         .count = offsets[i + 1] - offsets[i],
                                         .cap = rows[number].cap,
                                         .paint = paint};
-        camber_along_add(&desc, window, rgba);
+        if (paint->fill)
+            add_inside(i, paint->fill->rule, rgba);
+        else
+            camber_along_add(&desc, window, rgba);
     }
     for (size_t i = 0; i < PIXELS && rgba; i++) {
         truth[i] = rgba[4 * i];
@@ -87,8 +121,11 @@ static camber_status draw(camber_context *context, const camber_drawing_path *pa
         .strokes = &stroke, .stroke_count = 1, .method = method, .has_arc_length = true};
     const camber_pass pass = {.mesh = path->mesh, .paints = paint, .paint_count = 1};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
+    const camber_areas_desc areas = {
+        .points = points, .point_count = offsets[LINES], .offsets = offsets, .ring_count = LINES};
     camber_polylines *polylines = NULL;
-    camber_status status = camber_polylines_create(context, &desc, &polylines);
+    camber_status status = paint->fill ? camber_areas_create(context, &areas, &polylines)
+                                       : camber_polylines_create(context, &desc, &polylines);
     if (status == CAMBER_OK)
         status = camber_mesh_tessellate(path->mesh, polylines, &tessellation);
     if (status == CAMBER_OK)

@@ -11,12 +11,20 @@ enum { PART_PX = 512 };
 
 /* ---- The picture: lines over each other, united, and in a group ---- */
 
+/* Fills of neighbouring rows. */
+static const camber_fill fills[] = {{.color = {1, 0.5f, 0, 1}},
+                                    {.color = {0, 0.5f, 1, 0.5f}, .rule = CAMBER_FILL_EVENODD}};
+
 /* Kernels are built in variants: without sides beside lines, with them, and for planes that are seen at an angle. */
 static const struct {
     const char *name;
     float gap_px, blur_px;
     double pitch_deg;
-} variants[] = {{"", 0, 0, 0}, {", gaps and blurs", 1.5f, 0.8f, 0}, {", at 40 degrees", 0, 0, 40}};
+    bool fills; /* what is inside of the lines, too */
+} variants[] = {{"", 0, 0, 0, false},
+                {", gaps and blurs", 1.5f, 0.8f, 0, false},
+                {", at 40 degrees", 0, 0, 40, false},
+                {", areas", 0, 0, 0, true}};
 enum { VARIANTS = sizeof variants / sizeof *variants };
 
 typedef struct drawn {
@@ -45,7 +53,8 @@ static bool make_frame(const camber_subject *s, const camber_validation_desc *de
                                          .color = pass == 1 ? color_of(0, 1) : color_of(row, pass),
                                          .translate_x_px = pass == 2 ? 1.5f : 0.0f,
                                          .gap_px = row % 2 ? variants[variant].gap_px : 0.0f,
-                                         .blur_px = pass == 2 ? variants[variant].blur_px : 0.0f};
+                                         .blur_px = pass == 2 ? variants[variant].blur_px : 0.0f,
+                                         .fill = variants[variant].fills && pass != 1 ? fills + row % 2 : NULL};
         d->passes[pass] = (camber_pass){.mesh = mesh, .paints = paints, .paint_count = s->stroke_count};
     }
     d->passes[1].overlap = CAMBER_OVERLAP_UNITE;

@@ -255,6 +255,9 @@ mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 
     'in_y = CAMBER_FABS(at->y) * scale'
 mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area * (1.0 - area)), area, area)' \
     'area * (1.0 - area)), 0.0, area)'
+mutant strip kernels/area.h "areas: edges through a tile's left side" 'to_left ? e.down : -e.down' '0.0f * e.down'
+mutant strip kernels/area.h "areas: pixels that an edge enters" '0.5f * room * room * a_px' '0.0f * room * a_px'
+mutant strip kernels/area.h "areas: holes that fill" 'CAMBER_FABS(sum)' 'CAMBER_FABS(sum) + 1.0f'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
 mutant strip kernels/union.h "united lines: every two edges face alike" 'weight = CAMBER_FABS(cosine)' 'weight = one'
@@ -295,6 +298,11 @@ mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[t
 mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++' 'k + 1u < count; k++'
 mutant strip kernels/rasterize.cl "rows of cells that lie abreast, from the top" 'v * (CAMBER_LANES / CAMBER_CELL_PX)' '0 * v'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
+
+mutant strip kernels/wind.cl "areas: all rows by the top of the first" 'of.top + (float)(row * CAMBER_TILE_PX)' 'of.top'
+mutant strip kernels/rasterize.cl "areas: a tile too late" '(place) <= left->column' '(place) < left->column'
+mutant strip kernels/bin_count.cl "areas: edges that no row of tiles knows" '+= camber_crosses_top(segment, y, &of)' \
+    '+= 0u * camber_crosses_top(segment, y, &of)'
 
 # ---- Coverage, tiles and cells, which these kernels and their twin share: pixels tell ----
 

@@ -108,13 +108,16 @@ CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_re
     edge[2] = y * scale;
 }
 
+CAMBER_FN camber_real camber_pitch_edge_length(const camber_segment *s) {
+    return (s->bx - s->ax) * s->ux + (s->by - s->ay) * s->uy;
+}
+
 /* The edge of a ring, seen from `from` to `to`: a straight line in the picture, too. What lies behind the camera is
  * lower than the picture, and changes nothing in it. An end that two edges share stays the same point. */
 CAMBER_FN void camber_pitch_see_edge(camber_eye e, const camber_segment *s, camber_real from, camber_real to,
                                      camber_segment *footprint) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
-    const camber_real length = (s->bx - s->ax) * s->ux + (s->by - s->ay) * s->uy;
-    const camber_mask is_whole = to >= length;
+    const camber_mask is_whole = to >= camber_pitch_edge_length(s);
     camber_real x0, y0, x1, y1;
     camber_pitch_see(e, s->ax + s->ux * from, s->ay + s->uy * from, &x0, &y0);
     camber_pitch_see(e, is_whole ? s->bx : s->ax + s->ux * to, is_whole ? s->by : s->ay + s->uy * to, &x1, &y1);
@@ -160,7 +163,7 @@ CAMBER_FN camber_mask camber_pitch_segment_of(camber_eye e, float horizon, const
         return seen & (CAMBER_MORE(line.ay, line.by) + line.reach > horizon);
     }
     from = none;
-    to = along_b - along_a;
+    to = camber_pitch_edge_length(s);
     const camber_mask edge_seen = camber_pitch_clip(e, s, &from, &to, &all_over);
     camber_pitch_see_edge(e, s, from, to, &edge);
 #define CAMBER_CHOOSE(name) line.name = is_edge ? edge.name : line.name

@@ -192,7 +192,9 @@ CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float m
     const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], ux = segment[CAMBER_SEGMENT_UX],
                 uy = segment[CAMBER_SEGMENT_UY];
     const float to_middle = 0.5f * side, a_square = 1.0f / side;
-    const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay));
+    const float far_b = CAMBER_FABS(segment[CAMBER_SEGMENT_BX]) + CAMBER_FABS(segment[CAMBER_SEGMENT_BY]);
+    const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay) +
+                                 (segment[CAMBER_SEGMENT_HALF_WIDTH] == CAMBER_EDGE_PX ? far_b : 0.0f));
     const float reach =
         segment[CAMBER_SEGMENT_HALF_WIDTH] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
     if (CAMBER_FABS(uy) < 1e-3f)

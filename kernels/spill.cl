@@ -101,6 +101,8 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
         restore_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
     for (int j = first; j <= last; j++) {
         const camber_u32 word = rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
+        if (rows[j] == CAMBER_SPILL_FULL)
+            continue;
         c->winding = (int)word >> 1;
         c->area_rows |= (word & 1u) << j;
     }

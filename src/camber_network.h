@@ -16,7 +16,8 @@ typedef struct camber_network_entry {
     uint32_t polyline;
     uint32_t row;   /* an index into the strokes, below 2^24 */
     double shift_x; /* added to each x: another copy of a world that repeats itself */
-    /* The polyline is a ring, to be filled: what it winds around stays so where a camera cuts the ring. */
+    /* The polyline is a ring, to be filled: what it winds around stays so where a camera cuts the ring. A ring with an
+     * invalid point is left out. */
     bool is_area;
 } camber_network_entry;
 

@@ -6,6 +6,9 @@
  * would need more than LAYERS_MAX of them, its lines are taken out of order, one command an alpha; and where it has
  * more than ALPHAS_MAX alphas, one masked layer has all lines, each with its own.
  *
+ * Areas of one fill that follow each other make a span, too, which needs no layer: the rasterizer takes all their rings
+ * at once. Where a pass would need more than FILLS_MAX spans of areas, those of one fill come together.
+ *
  * A pass with an opacity is put onto the picture as a whole: by the opacity of its one layer, or as a group. */
 #include "draw/draw_list.h"
 
@@ -467,7 +470,7 @@ static camber_status add_by_alpha(command_maker *m) {
     const size_t count = list_alphas(m->lines, alphas);
     camber_status status = CAMBER_OK;
     if (count > ALPHAS_MAX)
-        return add_span(m, mask_all(m->lines), true);
+        return add_span(m, mask_all(m->lines), m->group == 0);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = add_span(m, pick_alpha(m->lines, alphas[i]), false);
     return status;

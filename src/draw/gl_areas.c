@@ -8,21 +8,6 @@
 /* No side of a block is longer, px: the rasterizer takes as much at once, and so much before it. */
 enum { BLOCK_PX = CAMBER_TILE_PX * (CAMBER_TILES_MAX / 2) };
 
-/* ---- Meshes whose buffers GL may have ---- */
-
-/* Takes the parts of a command's mesh from GL, or gives them back. */
-static camber_status hand_over(const camber_draw_command *command, bool to_kernels) {
-    camber_mesh *mesh = command->mesh;
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK; i++) {
-        camber_mesh_part *part = mesh->parts + i;
-        if (part->buffers[CAMBER_BUFFER_RECORDS].mem)
-            status = to_kernels ? mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh))
-                                : mesh->ops->finish(mesh->ops_user, part->buffers, camber_buffer_count(mesh), false);
-    }
-    return status;
-}
-
 /* ---- Blocks of the area ---- */
 
 /* Copies the block that was drawn last into the layer's texture. left and top: px of it before the area. */
@@ -89,12 +74,8 @@ camber_status camber_gl_fill_layer(camber_renderer *renderer, const camber_draw_
     status = make_list(&renderer->list, first, (size_t)(end - first), &list);
     if (status == CAMBER_OK)
         status = camber_cl_tables_make(&list, &nothing, &tables);
-    for (const camber_draw_command *command = first; command < end && status == CAMBER_OK; command++)
-        status = hand_over(command, true);
     if (status == CAMBER_OK)
         status = draw_blocks(renderer, &tables.scene, area);
-    for (const camber_draw_command *command = first; command < end && status == CAMBER_OK; command++)
-        status = hand_over(command, false);
     camber_cl_tables_free(&tables);
     camber_side_table_free(&list.side_table);
     camber_free(renderer->list.context, list.commands);

@@ -27,6 +27,7 @@ typedef struct walker {
     piece_end *ends;      /* 2 * count, by their places */
     uint32_t *nodes;      /* by end: its node, the number of its place among those of all ends */
     uint32_t *first_ends; /* by node: index into ends; one more behind the last */
+    uint32_t *next_ends;  /* by node: no piece before this goes on from there on the walks of the role */
     uint32_t *walked;     /* by node: where it stands on the walk; NONE: not on it */
     uint32_t *walk;       /* the ends that pieces are entered by */
     uint32_t walk_count;
@@ -35,9 +36,9 @@ typedef struct walker {
 
 enum { FREE = 0, WALKED, IN_RING };
 
-/* Pairs of rings that are compared; where there are more, rings without a role are outer ones. Only files that were
- * made to slow us down have so many. */
-static const size_t MOST_COMPARED = (size_t)1 << 20;
+/* Pairs of rings that are compared, and places that are looked at for it; where there are more, rings without a role
+ * are outer ones. Only files that were made to slow us down have so many. */
+static const size_t MOST_COMPARED = (size_t)1 << 20, MOST_PLACES = (size_t)1 << 28;
 
 static int compare_ends(const void *left, const void *right) {
     const piece_end *a = left, *b = right;
@@ -98,9 +99,10 @@ static bool add_ring(walker *self, uint32_t from) {
 /* ---- Walking ---- */
 
 /* Finds a piece that goes on from a node, and returns the end that it is entered by. role NONE: any. */
-static uint32_t find_next(const walker *self, uint32_t node, uint32_t role) {
-    for (uint32_t i = self->first_ends[node]; i < self->first_ends[node + 1]; i++) {
+static uint32_t find_next(walker *self, uint32_t node, uint32_t role) {
+    for (uint32_t i = self->next_ends[node]; i < self->first_ends[node + 1]; i++) {
         const uint32_t piece = self->ends[i].end / 2;
+        self->next_ends[node] = i;
         if (self->states[piece] == FREE && (role == NONE || self->pieces[piece].role == (camber_osm_role)role))
             return self->ends[i].end;
     }
@@ -129,6 +131,7 @@ static bool walk_from(walker *self, uint32_t piece, uint32_t role) {
 
 /* Makes rings of the pieces of a role; NONE: of any. The pieces that are in none are free again afterwards. */
 static bool walk_role(walker *self, uint32_t role) {
+    memcpy(self->next_ends, self->first_ends, 2 * self->count * sizeof *self->next_ends);
     for (uint32_t i = 0; i < self->count; i++)
         if (self->states[i] == FREE && (role == NONE || self->pieces[i].role == (camber_osm_role)role) &&
             !walk_from(self, i, role))
@@ -151,7 +154,8 @@ static double latitude_of(uint64_t place) {
     return (double)(int32_t)(uint32_t)place;
 }
 
-/* Whether a place lies in a ring: 1, outside of it: 0, or on it: below 0. Products of differences of 33 bits fit. */
+/* Whether a place lies in a ring: 1, outside of it: 0, or on it: below 0. That is exact for
+ * rings below some 9 degrees, whose products fit a double. */
 static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, uint64_t place) {
     const double x = longitude_of(place), y = latitude_of(place);
     bool inside = false;
@@ -167,9 +171,12 @@ static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, ui
     return inside;
 }
 
-/* Whether a ring lies in another, by the first of its places that does not lie on it. */
-static bool has_inside(const camber_osm_assembly *a, const camber_osm_ring *outer, const camber_osm_ring *ring) {
-    for (size_t i = ring->first; i < ring->first + ring->count; i++) {
+/* Whether a ring lies in another, by the first of its places that does not lie on it. *left: places that may be looked
+ * at. */
+static bool has_inside(const camber_osm_assembly *a, const camber_osm_ring *outer, const camber_osm_ring *ring,
+                       size_t *left) {
+    for (size_t i = ring->first; i < ring->first + ring->count && *left >= outer->count; i++) {
+        *left -= outer->count;
         const int inside = lies_in(a, outer, a->places[i]);
         if (inside >= 0)
             return inside > 0;
@@ -185,7 +192,7 @@ static int compare_rings(const void *left, const void *right) {
 }
 
 static void find_roles(camber_osm_assembly *a) {
-    size_t unknown = 0;
+    size_t unknown = 0, left = MOST_PLACES;
     for (size_t i = 0; i < a->ring_count; i++)
         unknown += a->rings[i].role == CAMBER_OSM_ROLE_UNKNOWN;
     const bool compares = unknown <= MOST_COMPARED / (a->ring_count + 1);
@@ -194,7 +201,7 @@ static void find_roles(camber_osm_assembly *a) {
         if (a->rings[i].role != CAMBER_OSM_ROLE_UNKNOWN)
             continue;
         for (size_t k = 0; k < a->ring_count && compares; k++)
-            around += k != i && has_inside(a, &a->rings[k], &a->rings[i]);
+            around += k != i && has_inside(a, &a->rings[k], &a->rings[i], &left);
         a->rings[i].role = around % 2 ? CAMBER_OSM_ROLE_INNER : CAMBER_OSM_ROLE_OUTER;
     }
     if (a->ring_count)
@@ -210,6 +217,7 @@ camber_status camber_osm_assemble(camber_osm_assembly *assembly, const camber_os
     if (!(self.ends = camber_alloc(context, 2 * count, sizeof *self.ends)) ||
         !(self.nodes = camber_alloc(context, 2 * count, sizeof *self.nodes)) ||
         !(self.first_ends = camber_alloc(context, 2 * count + 1, sizeof *self.first_ends)) ||
+        !(self.next_ends = camber_alloc(context, 2 * count, sizeof *self.next_ends)) ||
         !(self.walked = camber_alloc(context, 2 * count, sizeof *self.walked)) ||
         !(self.walk = camber_alloc(context, count, sizeof *self.walk)) ||
         !(self.states = camber_alloc_zero(context, count, sizeof *self.states)))
@@ -224,6 +232,7 @@ done:
     camber_free(context, self.states);
     camber_free(context, self.walk);
     camber_free(context, self.walked);
+    camber_free(context, self.next_ends);
     camber_free(context, self.first_ends);
     camber_free(context, self.nodes);
     camber_free(context, self.ends);

@@ -68,19 +68,22 @@ camber_status camber_osm_relations_add_places(camber_osm_relations *relations, s
     return CAMBER_OK;
 }
 
-/* Lists the pieces of a relation that the file has. */
-static size_t list_pieces(const camber_osm_relations *relations, const camber_osm_relation *one,
-                          camber_osm_piece *pieces) {
+/* Lists the pieces of a relation that the file has. *lacks becomes true where it lacks some. */
+static size_t list_pieces(const camber_osm_relations *relations, size_t relation, camber_osm_piece *pieces,
+                          bool *lacks) {
+    const camber_osm_relation *one = &relations->items[relation];
     camber_osm_finger finger = {.leaf_id = UINT64_MAX, .id = -2};
     size_t count = 0;
     for (size_t m = one->first_member; m < one->first_member + one->member_count; m++) {
         const camber_osm_member *member = &relations->members[m];
         uint32_t index;
-        if (!camber_osm_relations_find(relations, member->way, &finger, &index))
+        const bool found = camber_osm_relations_find(relations, member->way, &finger, &index);
+        camber_osm_member_way *way = found ? &relations->ways[index] : NULL;
+        *lacks = *lacks || !way || way->place_count < 2;
+        if (!way || way->place_count < 2 || way->listed == (uint32_t)relation + 1)
             continue;
-        const camber_osm_member_way *way = &relations->ways[index];
-        if (way->place_count >= 2)
-            pieces[count++] = (camber_osm_piece){relations->places + way->first_place, way->place_count, member->role};
+        way->listed = (uint32_t)relation + 1;
+        pieces[count++] = (camber_osm_piece){relations->places + way->first_place, way->place_count, member->role};
     }
     return count;
 }
@@ -91,9 +94,10 @@ camber_status camber_osm_relations_assemble(const camber_osm_relations *relation
     camber_osm_piece *pieces = camber_alloc(relations->context, one->member_count, sizeof *pieces);
     if (!pieces)
         return CAMBER_ERROR_MEMORY;
-    const size_t count = list_pieces(relations, one, pieces);
+    bool lacks = false;
+    const size_t count = list_pieces(relations, relation, pieces, &lacks);
     const camber_status status = camber_osm_assemble(assembly, pieces, count);
-    assembly->open = assembly->open || count < one->member_count;
+    assembly->open = assembly->open || lacks;
     camber_free(relations->context, pieces);
     return status;
 }

@@ -22,6 +22,7 @@ typedef struct camber_osm_member_way {
     size_t first_place;
     uint32_t place_count; /* 0: it is not there */
     uint32_t set;         /* its own set of tags, + 1; 0: it has none */
+    uint32_t listed;      /* the last relation that it was listed for, + 1: one named twice is a member once */
     bool is_outer;        /* a relation has its tags, and is filled in its place */
 } camber_osm_member_way;
 

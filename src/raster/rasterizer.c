@@ -79,6 +79,30 @@ static bool cut_range(const camber_raster *raster, camber_record_range *range) {
     return range->first < range->end;
 }
 
+/* Starts setup for a range whose records lie in a buffer. */
+static camber_status set_up(camber_raster *raster, const camber_raster_scene *scene, const camber_record_range *range,
+                            cl_mem records) {
+    const camber_setup_args args = camber_raster_setup_args(scene, range, &raster->band);
+    const camber_kernel_arg arguments[] = {
+        CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
+        CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};
+    return run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments,
+               (range->end - range->first + 15) / 16);
+}
+
+/* The same for a part of a mesh that GL draws, too: it has the buffers back when setup is done. */
+static camber_status set_up_shared(camber_raster *raster, const camber_raster_scene *scene,
+                                   const camber_record_range *range) {
+    camber_mesh *mesh = range->mesh;
+    camber_mesh_part *part = mesh->parts + range->part;
+    camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh));
+    if (status != CAMBER_OK)
+        return status;
+    status = set_up(raster, scene, range, part->buffers[CAMBER_BUFFER_RECORDS].mem);
+    const camber_status settled = settle(raster);
+    return camber_part_finish(mesh, part, false, status == CAMBER_OK ? settled : status);
+}
+
 static camber_status make_segments(camber_raster *raster, const camber_raster_scene *scene,
                                    const camber_record_range *ranges, size_t range_count) {
     camber_status status = CAMBER_OK;
@@ -88,16 +112,14 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
             continue;
         camber_mesh *mesh = range.mesh;
         camber_mesh_part *part = mesh ? mesh->parts + range.part : NULL;
-        const camber_setup_args args = camber_raster_setup_args(scene, &range, &raster->band);
         status = part ? camber_part_ensure_made(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
-        cl_mem records = part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL];
-        const camber_kernel_arg arguments[] = {
-            CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
-            CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};
-        const size_t jobs = (range.end - range.first + 15) / 16;
-        status = run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments, jobs);
+        if (part && mesh->ops != &camber_buffer_plain)
+            status = set_up_shared(raster, scene, &range);
+        else
+            status = set_up(raster, scene, &range,
+                            part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL]);
     }
     return status;
 }
@@ -157,7 +179,9 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     /* One more than there are lists, as rasterize looks at the next tile's list, too. */
     raster->starts[lists] = raster->starts[lists + 1] = (uint32_t)sum;
     clEnqueueUnmapMemObject(device->queue, raster->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
-    *fits = 4 * sum <= camber_raster_most_bytes(raster) ||
+    const uint64_t crossings = sum - raster->starts[raster->tile_count];
+    *fits = (4 * sum <= camber_raster_most_bytes(raster) &&
+             4 * CAMBER_CROSSING_WORDS * crossings <= camber_raster_most_bytes(raster)) ||
             (raster->band.height <= CAMBER_TILE_PX && raster->segment_count <= 16);
     if (!*fits)
         return CAMBER_OK;

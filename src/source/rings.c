@@ -62,7 +62,8 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
     count = drop_invalid(points, count);
     const bool flat = camber_ring_is_flat(points, count);
     const double area = camber_ring_area(points, count);
-    if (!hole)
+    const bool keeps = flat && rings->any_winding && rings->outer_area != 0.0; /* holes may be of another outer ring */
+    if (!hole && !keeps)
         rings->outer_area = flat ? 0.0 : area != 0.0 ? area : 1.0;
     if (flat || (hole && rings->outer_area == 0.0)) {
         rings->stats->empty_rings++;

@@ -18,7 +18,8 @@
 static const double LEAST_EXTENT = 1e-30;
 /* Points farther out are invalid, so that no difference of two coordinates is infinite. */
 static const double FARTHEST = 1e300;
-/* So that 32 bits number the slots: a point may make its own, a ring's sentinel, and an end where the window cuts. */
+/* So that 32 bits number the slots: a point may make its own, a ring's sentinel, and an end where the window cuts. An
+ * area's may make two more; parts check their sums. */
 static const size_t MOST_POINTS = INT32_MAX;
 /* A stretch that is a smaller share of its line says too little about how long the line is. */
 static const double LEAST_PART = 1e-6;
@@ -234,11 +235,23 @@ static bool grow_stretches(camber_network *n, size_t count, capacities *room) {
            (!n->lengths || camber_grow(n->context, &n->totals, &room->totals, count, sizeof *n->totals));
 }
 
+/* Whether all points of a ring are valid. Those that are not are counted: open pieces of a ring would fill what lies to
+ * their right. */
+static bool is_valid_ring(camber_network *n, const camber_network_desc *desc, camber_network_entry entry) {
+    size_t invalid = 0;
+    for (size_t i = desc->offsets[entry.polyline]; i < desc->offsets[entry.polyline + 1]; i++)
+        invalid += !is_place(desc, entry, i);
+    n->stats.invalid_points += invalid;
+    return invalid == 0;
+}
+
 /* Stores an entry's points, a stretch between each two invalid points. */
 static camber_status store_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
                                  capacities *room) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     n->stats.empty_polylines += begin == end;
+    if (entry.is_area && !is_valid_ring(n, desc, entry))
+        return CAMBER_OK;
     size_t first = begin;
     for (size_t i = begin; i <= end; i++) {
         if (i < end && is_valid(desc->points[2 * i] + entry.shift_x, desc->points[2 * i + 1]))

@@ -95,6 +95,15 @@ static uint64_t hash_features(const camber_features *f) {
     return hash;
 }
 
+/* A fill by its colour: where it lies differs from scene to scene. */
+static uint64_t hash_paint(uint64_t hash, const camber_paint *paint) {
+    camber_paint own;
+    memcpy(&own, paint, sizeof own);
+    own.fill = NULL;
+    hash = camber_hash(hash, &own, sizeof own);
+    return paint->fill ? camber_hash(hash, &paint->fill->color, sizeof paint->fill->color) : hash;
+}
+
 static uint64_t hash_scene(camber_scene *scene) {
     size_t count = 0;
     const camber_lines *lines = camber_scene_get_lines(scene);
@@ -109,7 +118,8 @@ static uint64_t hash_scene(camber_scene *scene) {
         const camber_pass *pass = frame.passes + i;
         const size_t range[] = {pass->first_polyline, pass->polyline_count};
         hash = camber_hash(hash, range, sizeof range);
-        hash = camber_hash(hash, pass->paints, pass->paint_count * sizeof *pass->paints);
+        for (size_t k = 0; k < pass->paint_count; k++)
+            hash = hash_paint(hash, pass->paints + k);
     }
     return hash;
 }

@@ -127,6 +127,29 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER
     return camber_put_crossings(turns, first, last, brush, crossings, count);
 }
 
+/* The crossings of a tile's row that no brush has taken yet: those of the brushes to come, the nearest last. */
+typedef struct camber_crossings_left {
+    CAMBER_GLOBAL const camber_u32 *words;
+    camber_u32 first, end, column; /* column: of the tile */
+} camber_crossings_left;
+
+/* The brush of the next crossing; 0, which has no area: there is none. */
+CAMBER_FN camber_u32 camber_next_area(const camber_crossings_left *left) {
+    return left->end > left->first
+               ? left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_BRUSH]
+               : 0u;
+}
+
+/* Takes the crossings of a brush. Returns how often its rings wind around the tile's corner. */
+CAMBER_FN int camber_take_winding(camber_crossings_left *left, camber_u32 brush) {
+    int winding = 0;
+    for (; camber_next_area(left) == brush && brush != 0u; left->end--) {
+        const camber_u32 place = left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_PLACE];
+        winding += camber_crossing_column(place) <= left->column ? camber_crossing_times(place) : 0;
+    }
+    return winding;
+}
+
 /* ---- Edges in a tile ---- */
 
 CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {

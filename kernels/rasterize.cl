@@ -3,9 +3,8 @@
  * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 2], lists[starts[tiles]], brushes[brush count],
  * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
  * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
- * planes[CAMBER_PLANE_WORDS * n]. Where there are areas, crossings
- * and ends, as wind writes them. Writes pixels, rows of `stride` words. Before the last slice it writes spill[tiles *
- * tile_words] instead.
+ * planes[CAMBER_PLANE_WORDS * n]. Where there are areas it reads crossings and ends, as wind writes them. Writes
+ * pixels, rows of `stride` words. Before the last slice it writes spill[tiles * tile_words] instead.
  *
  * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
  * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */
@@ -87,29 +86,6 @@ static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, 
 
 /* ---- Areas ---- */
 
-/* The crossings of the tile's row that no brush has taken yet: those of the brushes to come, the nearest last. */
-typedef struct crossings_left {
-    global const camber_u32 *words;
-    camber_u32 first, end, column; /* column: of the tile */
-} crossings_left;
-
-/* The brush of the next crossing; 0, which has no area: there is none. */
-static inline camber_u32 next_area(const crossings_left *left) {
-    return left->end > left->first
-               ? left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_BRUSH]
-               : 0u;
-}
-
-/* Takes the crossings of a brush. Returns how often its rings wind around the tile's corner. */
-static inline int take_winding(crossings_left *left, camber_u32 brush) {
-    int winding = 0;
-    for (; next_area(left) == brush && brush != 0u; left->end--) {
-        const camber_u32 place = left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_PLACE];
-        winding += camber_crossing_column(place) <= left->column ? camber_crossing_times(place) : 0;
-    }
-    return winding;
-}
-
 /* All that brushes need beside a tile's state. */
 typedef struct tile_brushes {
     global const camber_brush *brushes;
@@ -160,10 +136,11 @@ static inline void change_brush(camber_tile_state *c, const positions *at, const
  * drawn last. */
 static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
                                                              const tile_brushes *from, camber_tile_rows where,
-                                                             crossings_left *left, camber_u32 brush,
+                                                             camber_crossings_left *left, camber_u32 brush,
                                                              camber_u32 current) {
-    for (camber_u32 next = next_area(left); next > brush && !camber_tile_is_full(c); next = next_area(left)) {
-        const int winding = take_winding(left, next);
+    for (camber_u32 next = camber_next_area(left); next > brush && !camber_tile_is_full(c);
+         next = camber_next_area(left)) {
+        const int winding = camber_take_winding(left, next);
         if (winding == 0)
             continue;
         change_brush(c, at, from, where, next);
@@ -216,7 +193,7 @@ CAMBER_KERNEL(1, rasterize,
 #endif
 #endif
     };
-    crossings_left left_of = {crossings, 0, 0, column};
+    camber_crossings_left left_of = {crossings, 0, 0, column};
     if (s.first_row != ~0u) {
         left_of.first = starts[s.first_row + row] - starts[s.first_row];
         left_of.end = ends[row];
@@ -229,7 +206,7 @@ CAMBER_KERNEL(1, rasterize,
 #if CAMBER_RASTER_RICH
             camber_tile_use_ext(&c, brush_ext[current]);
 #endif
-            c.winding += take_winding(&left_of, current);
+            c.winding += camber_take_winding(&left_of, current);
         }
     }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
@@ -242,7 +219,7 @@ CAMBER_KERNEL(1, rasterize,
             if (camber_tile_is_full(&c))
                 break;
             change_brush(&c, &at, &from_brushes, where, brush);
-            c.winding = take_winding(&left_of, brush);
+            c.winding = camber_take_winding(&left_of, brush);
             current = brush;
         }
         if (camber_brush_is_area(&c.now)) {

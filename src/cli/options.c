@@ -45,7 +45,7 @@ void camber_options_help(camber_verb verb, FILE *file) {
             fputs("\n`man camber` has examples and the exit statuses.\n", file);
             return;
         }
-    fputs("camber VERB [OPTION...] [INPUT...]\nturn map lines into anti-aliased pictures\n\n", file);
+    fputs("camber VERB [OPTION...] [INPUT...]\nturn maps into anti-aliased pictures\n\n", file);
     for (size_t i = 0; i < camber_verb_count; i++)
         fprintf(file, "  %-12s%s\n", camber_verb_specs[i].name, camber_verb_specs[i].summary);
     fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or a verb's");

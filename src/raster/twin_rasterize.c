@@ -253,34 +253,11 @@ static void write_tile(const camber_twin *t, camber_tile_state *c, uint32_t colu
         }
 }
 
-/* The crossings of a row of tiles, and those that a tile's brushes have not taken yet: from the last to the first. */
-typedef struct row_crossings {
-    camber_u32 *words;
-    size_t count, left;
-} row_crossings;
-
-static camber_u32 next_area(const row_crossings *crossings) {
-    return crossings->left ? crossings->words[CAMBER_CROSSING_WORDS * (crossings->left - 1) + CAMBER_CROSSING_BRUSH]
-                           : 0;
-}
-
-/* How often a brush's rings wind around the corner of the tile in a column. */
-static int take_winding(row_crossings *crossings, camber_u32 brush, uint32_t column) {
-    int winding = 0;
-    for (; brush && next_area(crossings) == brush; crossings->left--) {
-        const camber_u32 place =
-            crossings->words[CAMBER_CROSSING_WORDS * (crossings->left - 1) + CAMBER_CROSSING_PLACE];
-        if (camber_crossing_column(place) <= column)
-            winding += camber_crossing_times(place);
-    }
-    return winding;
-}
-
 /* A tile that is drawn. */
 typedef struct drawn_tile {
     const camber_twin *twin;
     camber_tile_state *state;
-    row_crossings crossings;
+    camber_crossings_left crossings; /* those of its row that are left */
     camber_tile_rows where;
     uint32_t column;
 } drawn_tile;
@@ -320,8 +297,8 @@ static void change_brush(drawn_tile *d, camber_u32 brush) {
 
 /* Draws the areas above a brush of which the tile has no edges. */
 static void draw_areas_above(drawn_tile *d, camber_u32 brush) {
-    for (camber_u32 next = next_area(&d->crossings); next > brush; next = next_area(&d->crossings)) {
-        const int winding = take_winding(&d->crossings, next, d->column);
+    for (camber_u32 next = camber_next_area(&d->crossings); next > brush; next = camber_next_area(&d->crossings)) {
+        const int winding = camber_take_winding(&d->crossings, next);
         if (winding == 0)
             continue;
         change_brush(d, next);
@@ -329,7 +306,7 @@ static void draw_areas_above(drawn_tile *d, camber_u32 brush) {
     }
 }
 
-static void draw_tile(drawn_tile *d, uint32_t row) {
+static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
     const camber_twin *t = d->twin;
     const camber_raster_stages *stages = t->stages;
     camber_tile_state *c = d->state;
@@ -337,7 +314,8 @@ static void draw_tile(drawn_tile *d, uint32_t row) {
     uint32_t current = UINT32_MAX;
     d->where = (camber_tile_rows){(float)t->area->x + (float)(d->column * CAMBER_TILE_PX),
                                   (float)t->area->y + (float)(row * CAMBER_TILE_PX), 0, CAMBER_TILE_CELLS - 1};
-    d->crossings.left = d->crossings.count;
+    d->crossings.end = crossing_count;
+    d->crossings.column = d->column;
     camber_tile_begin(c, ~(camber_u64)0, t->scene->brushes);
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
         const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * stages->lists[k];
@@ -345,7 +323,7 @@ static void draw_tile(drawn_tile *d, uint32_t row) {
         if (brush != current) {
             draw_areas_above(d, brush);
             change_brush(d, brush);
-            c->winding = take_winding(&d->crossings, brush, d->column);
+            c->winding = camber_take_winding(&d->crossings, brush);
         }
         current = brush;
         if (camber_brush_is_area(&c->now))
@@ -359,15 +337,15 @@ static void draw_tile(drawn_tile *d, uint32_t row) {
     write_tile(t, c, d->column, row);
 }
 
-/* Finds the crossings of a row of tiles. */
-static void wind_row(const camber_twin *t, uint32_t row, row_crossings *crossings) {
+/* Writes the crossings of a row of tiles. Returns how many there are. */
+static camber_u32 wind_row(const camber_twin *t, uint32_t row, camber_u32 *crossings) {
     const camber_raster_stages *stages = t->stages;
     const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
     const uint32_t *starts = stages->starts + stages->tile_count + row;
-    crossings->count = 0;
-    if (stages->list_count > stages->tile_count)
-        crossings->count = camber_wind_row(stages->segments, stages->lists + starts[0], starts[1] - starts[0], of,
-                                           of.top + (float)(row * CAMBER_TILE_PX), crossings->words);
+    if (stages->list_count == stages->tile_count)
+        return 0;
+    return camber_wind_row(stages->segments, stages->lists + starts[0], starts[1] - starts[0], of,
+                           of.top + (float)(row * CAMBER_TILE_PX), crossings);
 }
 
 #if CAMBER_STROKE_PITCHED
@@ -378,14 +356,15 @@ camber_status camber_twin_draw(const camber_twin *t) {
     const camber_raster_stages *stages = t->stages;
     const size_t edges = stages->starts[stages->list_count] - stages->starts[stages->tile_count];
     drawn_tile d = {.twin = t, .state = camber_alloc(t->context, 1, sizeof *d.state)};
-    d.crossings.words = camber_alloc(t->context, edges, CAMBER_CROSSING_WORDS * sizeof *d.crossings.words);
-    const bool held = d.state && d.crossings.words;
+    camber_u32 *crossings = camber_alloc(t->context, edges, CAMBER_CROSSING_WORDS * sizeof *crossings);
+    const bool held = d.state && crossings;
+    d.crossings.words = crossings;
     for (uint32_t row = 0; row < t->rows && held; row++) {
-        wind_row(t, row, &d.crossings);
+        const camber_u32 count = wind_row(t, row, crossings);
         for (d.column = 0; d.column < t->columns; d.column++)
-            draw_tile(&d, row);
+            draw_tile(&d, row, count);
     }
-    camber_free(t->context, d.crossings.words);
+    camber_free(t->context, crossings);
     camber_free(t->context, d.state);
     return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }

@@ -300,7 +300,7 @@ mutant strip kernels/rasterize.cl "rows of cells that lie abreast, from the top"
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 mutant strip kernels/wind.cl "areas: all rows by the top of the first" 'of.top + (float)(row * CAMBER_TILE_PX)' 'of.top'
-mutant strip kernels/rasterize.cl "areas: a tile too late" '(place) <= left->column' '(place) < left->column'
+mutant strip kernels/rasterize.cl "areas: tiles that forget the corner" 'c.winding = camber_take_winding' 'c.winding = 0 * camber_take_winding'
 mutant strip kernels/bin_count.cl "areas: edges that no row of tiles knows" '+= camber_crosses_top(segment, y, &of)' \
     '+= 0u * camber_crosses_top(segment, y, &of)'
 

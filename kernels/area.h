@@ -14,7 +14,7 @@
  *     e2 ---|\-/       |           so that what wind counts and what a tile counts always fit together.
  *          +-----------+
  *
- * Lanes are rows of pixels here: the sums of sixteen rows go from left to right together. */
+ * Lanes are the pixels of a cell. An edge goes through few cells: in each it changes all pixels together. */
 #ifndef CAMBER_KERNELS_AREA_H
 #define CAMBER_KERNELS_AREA_H
 
@@ -22,6 +22,9 @@
 
 /* Nearer to nothing or to a whole pixel than this, an area is that: what sums of floats lose. */
 #define CAMBER_AREA_LEAST 1e-5f
+/* Edges that are less high cover nothing. Those that go less to the side, px a px down, are upright. */
+#define CAMBER_AREA_FLAT_PX 1e-12f
+#define CAMBER_AREA_UPRIGHT 1e-12f
 
 /* An edge from its upper end to its lower one. */
 typedef struct camber_ring_edge {
@@ -156,74 +159,98 @@ CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {
     return brush->mode >= CAMBER_BRUSH_AREA;
 }
 
-/* A row of pixels is about to be changed: a row of cells without edges so far changes nothing. */
+/* A brush of areas has two sums a pixel: what the edges in its cell change there, and what all in its row change from
+ * its cell on. */
+#define CAMBER_AREA_HERE 0
+#define CAMBER_AREA_ON 1
+
+/* A row of cells is about to be changed: without edges so far, it changes nothing. */
 CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
     if (c->area_rows >> row & 1u)
         return;
     c->area_rows |= 1u << row;
-    for (int x = 0; x < CAMBER_TILE_PX; x++)
-        for (int y = CAMBER_CELL_PX * row; y < CAMBER_CELL_PX * (row + 1); y++)
-            c->turns[x][y] = 0.0f;
+    for (int i = CAMBER_TILE_CELLS * row; i < CAMBER_TILE_CELLS * (row + 1); i++)
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            c->sums[i][CAMBER_AREA_HERE][v] = c->sums[i][CAMBER_AREA_ON][v] = CAMBER_REAL(0.0f);
 }
 
-/* Adds to a pixel and to all that are right of it. */
-CAMBER_FN void camber_area_add(camber_tile_state *c, int x, int y, float area) {
-    if (x < CAMBER_TILE_PX)
-        c->turns[x][y] += area;
+/* The tops of the pixels of a vector of a cell, px from the tile's top. */
+CAMBER_FN camber_real camber_area_tops(int row, int v) {
+    return (float)(CAMBER_CELL_PX * row) + camber_rows_of_cell(v);
 }
 
-/* Adds a piece of an edge within a row of pixels, between from and to, px from the tile's left side. height: of the
- * piece, with the edge's sign. Right of the piece all pixels change by `height`. */
-CAMBER_FN void camber_area_add_piece(camber_tile_state *c, int y, float from, float to, float height) {
-    const float left = CAMBER_LESS(from, to), right = CAMBER_MORE(from, to);
-    const int first = (int)left, last = (int)right;
-    const float room = (float)(first + 1) - left, rest = right - (float)last;
-    if (first == last) {
-        const float area = height * (room - 0.5f * (right - left));
-        camber_area_add(c, first, y, area);
-        camber_area_add(c, first + 1, y, height - area);
-        return;
-    }
-    const float a_px = height / (right - left);
-    float area = 0.5f * room * room * a_px, before = 0.0f;
-    for (int x = first; x < last; x++) {
-        camber_area_add(c, x, y, area - before);
-        before = area;
-        area = a_px * (room + (float)(x - first) + 0.5f);
-    }
-    area = height - 0.5f * rest * rest * a_px;
-    camber_area_add(c, last, y, area - before);
-    camber_area_add(c, last + 1, y, height - area);
+CAMBER_FN camber_real camber_between(camber_real x, float least, float most) {
+    const camber_real above = x > least ? x : CAMBER_REAL(least);
+    return above < most ? above : CAMBER_REAL(most);
 }
 
 /* From y on, px from the tile's top, the left side of the tile is wound around so many times more. */
-CAMBER_FN void camber_area_turn(camber_tile_state *c, float y, float times, int first, int end) {
-    const int whole = (int)y;
-    if (whole >= first && whole < end) {
-        camber_area_take_row(c, whole / CAMBER_CELL_PX);
-        camber_area_add(c, 0, whole, times * ((float)(whole + 1) - y));
-    }
-    for (int row = whole + 1 > first ? whole + 1 : first; row < end; row++) {
-        camber_area_take_row(c, row / CAMBER_CELL_PX);
-        camber_area_add(c, 0, row, times);
+CAMBER_FN void camber_area_turn(camber_tile_state *c, float y, float times, camber_tile_rows where) {
+    const int begin = (int)y / CAMBER_CELL_PX;
+    for (int row = begin > where.first ? begin : where.first; row <= where.last; row++) {
+        camber_area_take_row(c, row);
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            c->sums[CAMBER_TILE_CELLS * row][CAMBER_AREA_ON][v] +=
+                times * camber_between(camber_area_tops(row, v) + (1.0f - y), 0.0f, 1.0f);
     }
 }
 
-/* Adds the part of an edge that lies in the tile, positions px from the tile's corner, row of pixels by row. */
-CAMBER_FN void camber_area_add_rows(camber_tile_state *c, const camber_ring_edge *e, int first, int end) {
-    const float slope = (e->x1 - e->x0) / (e->y1 - e->y0);
-    const float least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
-    const int from = (int)e->y0 > first ? (int)e->y0 : first;
-    float top = (float)from > e->y0 ? (float)from : e->y0, x = e->x0 + (top - e->y0) * slope;
-    x = x < least ? least : x > most ? most : x;
-    for (int row = from; row < end && top < e->y1; row++) {
-        const float bottom = (float)(row + 1) < e->y1 ? (float)(row + 1) : e->y1;
-        float next = bottom < e->y1 ? e->x0 + (bottom - e->y0) * slope : e->x1;
-        next = next < least ? least : next > most ? most : next;
-        camber_area_take_row(c, row / CAMBER_CELL_PX);
-        camber_area_add_piece(c, row, x, next, e->down * (bottom - top));
-        top = bottom;
-        x = next;
+/* The piece of an edge in each row of pixels of a vector, px from the tile's corner. height: with the edge's sign. */
+typedef struct camber_edge_pieces {
+    camber_real left, right, wide, height;
+    float rise; /* half of how high the edge is a px to the side, with its sign; 0 where it is upright */
+} camber_edge_pieces;
+
+/* slope: px to the side a px down. */
+CAMBER_FN void camber_edge_pieces_of(const camber_ring_edge *e, float slope, camber_real tops, camber_edge_pieces *p) {
+    const camber_real from = camber_between(tops, e->y0, e->y1), to = camber_between(tops + 1.0f, e->y0, e->y1);
+    const float to_side = CAMBER_FABS(slope);
+    p->wide = (to - from) * to_side;
+    p->left = e->x0 + (0.5f * (from + to) - e->y0) * slope - 0.5f * p->wide;
+    p->right = p->left + p->wide;
+    p->height = (to - from) * e->down;
+}
+
+/* How much the pieces change their pixels, whose left sides are at x: the area that is right of them. */
+CAMBER_FN camber_real camber_edge_pieces_area(const camber_edge_pieces *p, camber_real x) {
+    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
+    camber_real from = x - p->left, to = from + 1.0f, past = x + 1.0f - p->right;
+    from = from > 0.0f ? from : none;
+    from = from < p->wide ? from : p->wide;
+    to = to > 0.0f ? to : none;
+    to = to < p->wide ? to : p->wide;
+    past = past > 0.0f ? past : none;
+    past = past < 1.0f ? past : one;
+    return p->rise * (to - from) * (to + from) + p->height * past;
+}
+
+/* Where an edge is at y, px from the tile's left side, as a column of cells. */
+CAMBER_FN int camber_edge_column(const camber_ring_edge *e, float slope, float y) {
+    const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y, x = e->x0 + (at - e->y0) * slope;
+    return x < 0.0f ? 0 : x >= (float)CAMBER_TILE_PX ? CAMBER_TILE_CELLS : (int)(x * (1.0f / CAMBER_CELL_PX));
+}
+
+/* Adds the part of an edge that lies in the tile, positions px from the tile's corner, row of cells by row. */
+CAMBER_FN void camber_area_add_rows(camber_tile_state *c, const camber_ring_edge *e, camber_tile_rows where) {
+    const float slope = (e->x1 - e->x0) / (e->y1 - e->y0), to_side = CAMBER_FABS(slope);
+    const int begin = (int)e->y0 / CAMBER_CELL_PX, end = (int)e->y1 / CAMBER_CELL_PX;
+    const int last = end < where.last ? end : where.last;
+    camber_edge_pieces p;
+    p.rise = to_side > CAMBER_AREA_UPRIGHT ? 0.5f * e->down / to_side : 0.0f;
+    for (int row = begin > where.first ? begin : where.first; row <= last; row++) {
+        const float top = (float)(CAMBER_CELL_PX * row);
+        const int upper = camber_edge_column(e, slope, top), lower = camber_edge_column(e, slope, top + CAMBER_CELL_PX);
+        const int from = upper < lower ? upper : lower, to = upper < lower ? lower : upper;
+        const int end_column = to < CAMBER_TILE_CELLS ? to + 1 : CAMBER_TILE_CELLS, i = CAMBER_TILE_CELLS * row;
+        camber_area_take_row(c, row);
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            camber_edge_pieces_of(e, slope, camber_area_tops(row, v), &p);
+            for (int x = from; x < end_column; x++)
+                c->sums[i + x][CAMBER_AREA_HERE][v] +=
+                    camber_edge_pieces_area(&p, (float)(CAMBER_CELL_PX * x) + camber_columns_of_cell(v));
+            if (end_column < CAMBER_TILE_CELLS)
+                c->sums[i + end_column][CAMBER_AREA_ON][v] += p.height;
+        }
     }
 }
 
@@ -236,7 +263,6 @@ CAMBER_FN float camber_edge_height(const camber_ring_edge *e, float x) {
 /* Adds an edge to the rows of cells of a tile that are drawn. */
 CAMBER_FN void camber_area_add_edge(camber_tile_state *c, CAMBER_GLOBAL const float *segment, camber_tile_rows where) {
     const float side = (float)CAMBER_TILE_PX;
-    const int first = CAMBER_CELL_PX * where.first, end = CAMBER_CELL_PX * (where.last + 1);
     camber_ring_edge e = camber_ring_edge_of(segment);
     if (e.y1 < where.top || e.y0 >= where.top + side)
         return;
@@ -254,24 +280,14 @@ CAMBER_FN void camber_area_add_edge(camber_tile_state *c, CAMBER_GLOBAL const fl
     if (from_left || to_left) {
         const float y = camber_edge_height(&e, 0.0f);
         if (y < side)
-            camber_area_turn(c, y, to_left ? e.down : -e.down, first, end);
+            camber_area_turn(c, y, to_left ? e.down : -e.down, where);
         e.x0 = from_left ? 0.0f : e.x0;
         e.y0 = from_left ? y : e.y0;
         e.x1 = to_left ? 0.0f : e.x1;
         e.y1 = to_left ? y : e.y1;
     }
-    if (e.x0 > side && e.x1 > side)
-        return;
-    if (e.x0 > side || e.x1 > side) {
-        const float y = camber_edge_height(&e, side);
-        const int from_right = e.x0 > side;
-        e.y0 = from_right ? y : e.y0;
-        e.x0 = from_right ? side : e.x0;
-        e.y1 = from_right ? e.y1 : y;
-        e.x1 = from_right ? e.x1 : side;
-    }
-    if (e.y0 < e.y1)
-        camber_area_add_rows(c, &e, first, end);
+    if (e.y1 - e.y0 > CAMBER_AREA_FLAT_PX && (e.x0 < side || e.x1 < side))
+        camber_area_add_rows(c, &e, where);
 }
 
 /* ---- The inside ---- */
@@ -288,76 +304,39 @@ CAMBER_FN camber_real camber_area_inside(camber_real sum, camber_u32 mode) {
     return inside < CAMBER_AREA_LEAST ? none : inside;
 }
 
-/* Puts four columns of a vector of rows, from row y on, into the cells that they belong to, of which i is the first. */
-CAMBER_FN void camber_area_put_cells(camber_tile_state *c, const camber_real *columns, int i, int y) {
-#if CAMBER_LANES == 1
-    for (int x = 0; x < CAMBER_CELL_PX; x++)
-        c->sums[i][0][CAMBER_CELL_PX * (y % CAMBER_CELL_PX) + x] = columns[x];
-#else
-#define CAMBER_ROW(n) columns[0].n, columns[1].n, columns[2].n, columns[3].n
-#if CAMBER_LANES == 16
-    c->sums[i][0][0] = (float16)(CAMBER_ROW(s0), CAMBER_ROW(s1), CAMBER_ROW(s2), CAMBER_ROW(s3));
-    c->sums[i + 8][0][0] = (float16)(CAMBER_ROW(s4), CAMBER_ROW(s5), CAMBER_ROW(s6), CAMBER_ROW(s7));
-    c->sums[i + 16][0][0] = (float16)(CAMBER_ROW(s8), CAMBER_ROW(s9), CAMBER_ROW(sa), CAMBER_ROW(sb));
-    c->sums[i + 24][0][0] = (float16)(CAMBER_ROW(sc), CAMBER_ROW(sd), CAMBER_ROW(se), CAMBER_ROW(sf));
-#else
-    c->sums[i][0][0] = (float8)(CAMBER_ROW(s0), CAMBER_ROW(s1));
-    c->sums[i][0][1] = (float8)(CAMBER_ROW(s2), CAMBER_ROW(s3));
-    c->sums[i + 8][0][0] = (float8)(CAMBER_ROW(s4), CAMBER_ROW(s5));
-    c->sums[i + 8][0][1] = (float8)(CAMBER_ROW(s6), CAMBER_ROW(s7));
-#endif
-#undef CAMBER_ROW
-#endif
-}
-
-/* Adds the turns of a vector of rows up, from row y on: the sums of their cells become what is inside of the pixels. */
-CAMBER_FN void camber_area_find_rows(camber_tile_state *c, int y) {
-    camber_real sum = CAMBER_REAL((float)c->winding), columns[CAMBER_CELL_PX];
-    for (int x = 0; x < CAMBER_TILE_PX; x++) {
-        sum += CAMBER_LOAD(0, c->turns[x] + y);
-        columns[x % CAMBER_CELL_PX] = camber_area_inside(sum, c->now.mode);
-        if (x % CAMBER_CELL_PX == CAMBER_CELL_PX - 1)
-            camber_area_put_cells(c, columns, y / CAMBER_CELL_PX * CAMBER_TILE_CELLS + x / CAMBER_CELL_PX, y);
+/* Adds up what the edges of a row of cells change, from left to right: the sums become what is inside of the pixels.
+ * Returns the cells that have any of it, a bit each. */
+CAMBER_FN camber_u32 camber_area_find_row(camber_tile_state *c, int row) {
+    camber_u32 found = 0;
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        camber_real sum = CAMBER_REAL((float)c->winding);
+        for (int x = 0; x < CAMBER_TILE_CELLS; x++) {
+            const int i = CAMBER_TILE_CELLS * row + x;
+            sum += c->sums[i][CAMBER_AREA_ON][v];
+            const camber_real inside = camber_area_inside(sum + c->sums[i][CAMBER_AREA_HERE][v], c->now.mode);
+            c->sums[i][CAMBER_AREA_HERE][v] = inside;
+            found |= CAMBER_ANY(inside > 0.0f) ? 1u << x : 0u;
+        }
     }
-}
-
-/* Finds the inside of all rows of cells that have edges. Rows that share a vector are taken together. */
-CAMBER_FN void camber_area_find_all(camber_tile_state *c) {
-    const int a_vector = CAMBER_LANES > CAMBER_CELL_PX ? CAMBER_LANES / CAMBER_CELL_PX : 1;
-    for (int row = 0; row < CAMBER_TILE_CELLS; row += a_vector) {
-        if (!(c->area_rows >> row & ((1u << a_vector) - 1u)))
-            continue;
-        for (int k = row; k < row + a_vector; k++)
-            camber_area_take_row(c, k);
-        for (int y = CAMBER_CELL_PX * row; y < CAMBER_CELL_PX * (row + a_vector); y += CAMBER_LANES)
-            camber_area_find_rows(c, y);
-    }
+    return found;
 }
 
 /* Finds the cells that have something inside of the brush's rings, and ends the rings. The sums of those that it
  * returns are the areas of their pixels then; those of *whole lie inside as a whole. */
 CAMBER_FN camber_u64 camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_u64 *whole) {
     const int is_inside = camber_most_of(camber_area_inside(CAMBER_REAL((float)c->winding), c->now.mode)) > 0.0f;
-    const camber_u32 with_edges = c->area_rows;
     camber_u64 found = 0;
     *whole = 0;
-    camber_area_find_all(c);
     for (int row = where.first; row <= where.last; row++) {
-        const int has_edges = (int)(with_edges >> row & 1u);
-        const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row) & ~(c->done | c->filled);
-        if (!has_edges && is_inside)
-            *whole |= cells;
-        for (camber_u64 left = has_edges ? cells : 0; left; left &= left - 1) {
-            const int i = camber_lowest(left);
-            camber_real most = c->sums[i][0][0];
-            for (int v = 1; v < CAMBER_VECTORS; v++)
-                most = CAMBER_MORE(c->sums[i][0][v], most);
-            found |= camber_most_of(most) > 0.0f ? (camber_u64)1 << i : 0;
-        }
+        if (c->area_rows >> row & 1u)
+            found |= (camber_u64)camber_area_find_row(c, row) << (CAMBER_TILE_CELLS * row);
+        else if (is_inside)
+            *whole |= (camber_u64)255 << (CAMBER_TILE_CELLS * row);
     }
+    *whole &= ~(c->done | c->filled);
     c->area_rows = 0;
     c->winding = 0;
-    return found;
+    return found & ~(c->done | c->filled);
 }
 
 /* Draws what the brush's rings have inside, before the brush is closed. */
@@ -368,7 +347,7 @@ CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
     for (camber_u64 left = cells; left; left &= left - 1) {
         const int i = camber_lowest(left);
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            camber_tile_put_over(c, i, v, c->sums[i][0][v]);
+            camber_tile_put_over(c, i, v, c->sums[i][CAMBER_AREA_HERE][v]);
     }
     for (; whole; whole &= whole - 1)
         camber_tile_put_whole(c, camber_lowest(whole));

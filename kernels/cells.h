@@ -18,6 +18,28 @@ typedef struct camber_tile_rows {
     int first, last;
 } camber_tile_rows;
 
+/* The columns and rows of the pixels of a vector of a cell. */
+#ifdef CAMBER_DEVICE
+constant float COLUMNS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+constant float ROWS[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+#endif
+
+CAMBER_FN camber_real camber_columns_of_cell(int v) {
+#ifdef CAMBER_DEVICE
+    return CAMBER_LOAD((size_t)v, COLUMNS);
+#else
+    return (float)(v % CAMBER_CELL_PX);
+#endif
+}
+
+CAMBER_FN camber_real camber_rows_of_cell(int v) {
+#ifdef CAMBER_DEVICE
+    return CAMBER_LOAD((size_t)v, ROWS);
+#else
+    return (float)(v / CAMBER_CELL_PX);
+#endif
+}
+
 /* ---- Boxes ---- */
 
 /* Where a segment lies in the picture: A, B, and how far around them it reaches, px. */

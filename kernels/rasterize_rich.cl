@@ -26,7 +26,7 @@ static inline void fill_with_images(camber_tile_state *c, const positions *at, d
             spot.distance = spot.reach_x = spot.reach_y = CAMBER_REAL(0.0f);
 #endif
             camber_fill_image(&m, &spot, rgba);
-            camber_tile_put_colors(c, i, v, is_whole ? CAMBER_REAL(1.0f) : c->sums[i][0][v], rgba);
+            camber_tile_put_colors(c, i, v, is_whole ? CAMBER_REAL(1.0f) : c->sums[i][CAMBER_AREA_HERE][v], rgba);
         }
         camber_tile_count_colors(c, i, is_whole);
     }

@@ -27,15 +27,12 @@ static inline void restore_planes(global const float *planes, camber_real *to, c
                     CAMBER_LOAD(plane_at(plane + k, i, v), planes);
 }
 
-/* Spills the turns of an area's rings into a plane, or restores them: of the rows of cells that have edges. */
-static inline void spill_turns(camber_tile_state *c, global float *plane, int spills) {
-    for (int y = 0; y < CAMBER_TILE_PX; y++)
-        for (int x = 0; x < CAMBER_TILE_PX && (c->area_rows >> (y / CAMBER_CELL_PX) & 1u); x++) {
-            if (spills)
-                plane[CAMBER_TILE_PX * y + x] = c->turns[x][y];
-            else
-                c->turns[x][y] = plane[CAMBER_TILE_PX * y + x];
-        }
+/* The cells whose sums are more than nothing: a union's, or of areas those in rows of cells that have edges. */
+static inline ulong cells_with_sums(const camber_tile_state *c) {
+    ulong cells = c->now.mode == CAMBER_BRUSH_UNION ? c->brushed : 0;
+    for (int j = 0; j < CAMBER_TILE_CELLS; j++)
+        cells |= c->area_rows >> j & 1u ? 255ul << (CAMBER_TILE_CELLS * j) : 0;
+    return cells;
 }
 
 /* Spills the state of rows of cells [first, last]. now: the brush, and which levels are open. */
@@ -54,9 +51,7 @@ static inline void spill_cells(camber_tile_state *c, global float *spill, camber
     }
     spill_planes(planes, c->brush[0], 0, 1, c->brushed);
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
-    if (c->now.mode == CAMBER_BRUSH_UNION)
-        spill_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
-    spill_turns(c, planes + s.sums * (camber_u32)(16 * CAMBER_CELLS), 1);
+    spill_planes(planes, c->sums[0][0], s.sums, 3, cells_with_sums(c));
     spill_planes(planes, c->level[CAMBER_GROUP][0][0], s.group, 4, c->touched[CAMBER_GROUP]);
     spill_planes(planes, c->level[CAMBER_LAYER][0][0], s.layer, 4, c->touched[CAMBER_LAYER]);
 #if CAMBER_RASTER_RICH
@@ -97,8 +92,6 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
     if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
     c->now = brushes[now & CAMBER_SPILL_BRUSH];
-    if (c->now.mode == CAMBER_BRUSH_UNION)
-        restore_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
     for (int j = first; j <= last; j++) {
         const camber_u32 word = rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
         if (rows[j] == CAMBER_SPILL_FULL)
@@ -106,7 +99,7 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
         c->winding = (int)word >> 1;
         c->area_rows |= (word & 1u) << j;
     }
-    spill_turns(c, planes + s.sums * (camber_u32)(16 * CAMBER_CELLS), 0);
+    restore_planes(planes, c->sums[0][0], s.sums, 3, cells_with_sums(c));
 #if CAMBER_RASTER_RICH
     if (c->now.mode == CAMBER_BRUSH_MASKED)
         restore_planes(planes, c->mask[0], s.layer + 4, 1, c->touched[CAMBER_LAYER]);

@@ -33,7 +33,7 @@ typedef uint8_t camber_u8;
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
     camber_real brush[CAMBER_CELLS][CAMBER_VECTORS]; /* let through */
-    /* A union's, of areas and of normals; of rings the first, what is inside of each pixel: area.h. */
+    /* A union's, of areas and of normals; of rings two, what their edges change: area.h. */
     camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
     camber_real level[CAMBER_LEVELS][CAMBER_CELLS][4][CAMBER_VECTORS];
@@ -41,10 +41,9 @@ typedef struct camber_tile_state {
     camber_u64 done;                            /* cells in which nothing below shows */
     camber_u64 filled;                          /* cells in which no more of the same brush shows */
     int is_open[CAMBER_LEVELS];
-    float turns[CAMBER_TILE_PX][CAMBER_TILE_PX]; /* by x and y: how the rings' edges change the winding from there on */
-    int winding;                                 /* of the brush's rings around the tile's top left corner */
-    camber_u32 area_rows;                        /* rows of cells in which edges have changed the winding; a bit each */
-    camber_u8 blend_count[CAMBER_CELLS];         /* segments that have been drawn into the cell */
+    int winding;                         /* of the brush's rings around the tile's top left corner */
+    camber_u32 area_rows;                /* rows of cells in which edges have changed the winding; a bit each */
+    camber_u8 blend_count[CAMBER_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
 #if CAMBER_HAS_MASKS
     camber_brush_ext brush_ext; /* the same brush's extension */

@@ -283,7 +283,8 @@ static void end_area(const drawn_tile *d) {
         const float x = d->where.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)),
                     y = d->where.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS));
         if ((cells | whole) >> i & 1)
-            put_images(c, &by, (cell_place){i, x - by.eye.x, y - by.eye.y}, whole >> i & 1 ? NULL : c->sums[i][0]);
+            put_images(c, &by, (cell_place){i, x - by.eye.x, y - by.eye.y},
+                       whole >> i & 1 ? NULL : c->sums[i][CAMBER_AREA_HERE]);
     }
 }
 

@@ -35,7 +35,7 @@ CAMBER_KERNEL(1, bin_count,
         const camber_u32 box = boxes[i];
         if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
             continue;
-        if ((camber_u32)i - c.first_edge < c.edge_count)
+        if ((camber_u32)i - c.first_edge < c.edge_count && camber_box_meets_top(box))
             count_in_rows(segments + CAMBER_SEGMENT_WORDS * i, box, of, own);
         if (camber_box_is_one_tile(box, of.columns)) {
             own[CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box)]++;

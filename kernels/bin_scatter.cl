@@ -42,7 +42,7 @@ CAMBER_KERNEL(1, bin_scatter,
         const camber_u32 box = boxes[i];
         if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
             continue;
-        if ((camber_u32)i - c.first_edge < c.edge_count)
+        if ((camber_u32)i - c.first_edge < c.edge_count && camber_box_meets_top(box))
             put_in_rows(segments + CAMBER_SEGMENT_WORDS * i, box, of, starts, own, lists, (camber_u32)i);
         if (camber_box_is_one_tile(box, of.columns)) {
             const camber_u32 tile = CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box);

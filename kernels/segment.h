@@ -108,6 +108,15 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
+/* Finds the direction of a vector; that of a dot is the x axis. Returns its length. */
+CAMBER_FN camber_real camber_direction(camber_real dx, camber_real dy, camber_real *ux, camber_real *uy) {
+    const camber_real one = CAMBER_REAL(1.0f), none = CAMBER_REAL(0.0f), length = CAMBER_SQRT(dx * dx + dy * dy);
+    const camber_real scale = one / (length > 0.0f ? length : one);
+    *ux = length > 0.0f ? dx * scale : one;
+    *uy = length > 0.0f ? dy * scale : none;
+    return length;
+}
+
 /* Makes the segment from A to B, which is half_width to either side. (px, py) is where the segment before it begins.
  * Both segments at a join turn the bisector from the direction of the first, so that both get the same bits for its
  * normal. */
@@ -115,13 +124,9 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
                                            camber_real bx, camber_real by, camber_words join_a, camber_words join_b,
                                            camber_real half_width, camber_u32 linear) {
     camber_segment s;
-    const camber_real one = CAMBER_REAL(1.0f), none = CAMBER_REAL(0.0f);
-    const camber_real dx = bx - ax, dy = by - ay, ex = ax - px, ey = ay - py;
-    const camber_real length = CAMBER_SQRT(dx * dx + dy * dy), before = CAMBER_SQRT(ex * ex + ey * ey);
-    const camber_real scale = one / (length > 0.0f ? length : one), scale_in = one / (before > 0.0f ? before : one);
-    s.ux = length > 0.0f ? dx * scale : one;
-    s.uy = length > 0.0f ? dy * scale : none;
-    const camber_real ix = before > 0.0f ? ex * scale_in : one, iy = before > 0.0f ? ey * scale_in : none;
+    camber_real ix, iy;
+    camber_direction(ax - px, ay - py, &ix, &iy);
+    const camber_real length = camber_direction(bx - ax, by - ay, &s.ux, &s.uy);
     const camber_real qa = camber_quarter_turn(join_a), qb = camber_quarter_turn(join_b);
     camber_real ca, sa, cb, sb;
     camber_half_turn(qa, &ca, &sa);
@@ -155,9 +160,34 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     return s;
 }
 
-/* Makes a segment the edge of a ring where its half width says so. */
-CAMBER_FN void camber_edge_segment(camber_segment *s) {
-    s->reach = s->half_width == CAMBER_EDGE_PX ? CAMBER_REAL(CAMBER_EDGE_REACH_PX) : s->reach;
+/* Makes the edge of a ring from A to B: a segment without width, joins and sides. */
+CAMBER_FN camber_segment camber_edge_segment(camber_real ax, camber_real ay, camber_real bx, camber_real by) {
+    const camber_real none = CAMBER_REAL(0.0f);
+    camber_segment s;
+    camber_direction(bx - ax, by - ay, &s.ux, &s.uy);
+    s.ax = ax;
+    s.ay = ay;
+    s.bx = bx;
+    s.by = by;
+    s.half_width = CAMBER_REAL(CAMBER_EDGE_PX);
+    s.reach = CAMBER_REAL(CAMBER_EDGE_REACH_PX);
+    s.nax = s.nay = s.nbx = s.nby = s.slope = s.curve = none;
+    s.flags = (camber_words)(0u);
+    return s;
+}
+
+/* Makes those of segments edges that have an edge's half width. */
+CAMBER_FN void camber_segments_with_edges(camber_segment *s) {
+    const camber_mask is_edge = s->half_width == CAMBER_EDGE_PX;
+    const camber_segment edge = camber_edge_segment(s->ax, s->ay, s->bx, s->by);
+    s->reach = is_edge ? edge.reach : s->reach;
+    s->nax = is_edge ? edge.nax : s->nax;
+    s->nay = is_edge ? edge.nay : s->nay;
+    s->nbx = is_edge ? edge.nbx : s->nbx;
+    s->nby = is_edge ? edge.nby : s->nby;
+    s->slope = is_edge ? edge.slope : s->slope;
+    s->curve = is_edge ? edge.curve : s->curve;
+    s->flags = is_edge ? edge.flags : s->flags;
 }
 
 /* The box of tiles that a segment may touch: x and y of the first tile, then x and y of the last, a byte each. left and
@@ -258,6 +288,11 @@ CAMBER_FN camber_u32 camber_crosses_top(CAMBER_GLOBAL const float *segment, camb
     const float top = of->top + (float)(y * CAMBER_TILE_PX), ay = segment[CAMBER_SEGMENT_AY],
                 by = segment[CAMBER_SEGMENT_BY];
     return segment[CAMBER_SEGMENT_HALF_WIDTH] == CAMBER_EDGE_PX && (ay < top) != (by < top);
+}
+
+/* Whether an edge with such a box may cross the top of a row of tiles. */
+CAMBER_FN camber_u32 camber_box_meets_top(camber_u32 box) {
+    return CAMBER_BOX_FIRST_Y(box) != CAMBER_BOX_LAST_Y(box) || CAMBER_BOX_FIRST_Y(box) == 0u;
 }
 
 #ifdef CAMBER_DEVICE

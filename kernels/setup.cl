@@ -138,43 +138,70 @@ typedef struct outputs {
     global float *arc_lengths, *planes;
 } outputs;
 
-/* Makes the segments of the records from `first` on. */
-static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
-                                 camber_setup_args r, outputs to) {
+/* A vector of records that may end segments, and those before them. */
+typedef struct ends {
+    lane_records b, before;
+    camber_real row[CAMBER_RASTER_ROW_WORDS], x, y; /* x, y: the translation */
+    camber_mask is_dot, is_drawn;
+} ends;
+
+/* Takes the records from `first` on. */
+static inline void take_ends(global const camber_u32 *records, global const float *rows, int first, camber_setup_args r,
+                             ends *e) {
     const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    lane_records b, before, second, third;
-    camber_real row[CAMBER_RASTER_ROW_WORDS];
-    take_records(records, first, r, &b);
-    take_records(records, first - 1, r, &before);
+    take_records(records, first, r, &e->b);
+    take_records(records, first - 1, r, &e->before);
+    const camber_words kind = e->b.join >> CAMBER_JOIN_KIND_SHIFT;
+    const camber_mask is_real = ((e->b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
+                                (CAMBER_LOAD(0, numbers) < (int)r.end - first);
+    const camber_mask goes_on = (e->b.info & (r.strips ? STARTS : CAMBER_POINT_FIRST)) == 0u;
+    e->is_dot = kind == CAMBER_KIND_DOT;
+    e->is_drawn = is_real & (r.strips ? goes_on : goes_on | e->is_dot);
+    take_rows(rows, r.first_row, e->b.info >> CAMBER_POINT_ROW_SHIFT, e->is_drawn, e->row);
+    e->is_drawn &= e->row[0] >= 0.0f;
+#if CAMBER_RASTER_PITCHED
+    e->x = e->row[1] - r.eye.x;
+    e->y = e->row[2] - r.eye.y;
+#else
+    e->x = e->row[1];
+    e->y = e->row[2];
+#endif
+}
+
+/* Makes their segments. */
+static inline camber_segment segments_of(global const camber_u32 *records, int first, camber_setup_args r,
+                                         const ends *e) {
+    const lane_records *b = &e->b, *before = &e->before;
+    const camber_real ax = CAMBER_AS_REAL(e->is_dot ? b->x : before->x) + e->x,
+                      ay = CAMBER_AS_REAL(e->is_dot ? b->y : before->y) + e->y, bx = CAMBER_AS_REAL(b->x) + e->x,
+                      by = CAMBER_AS_REAL(b->y) + e->y;
+    /* Rings come one after the other: mostly all are edges, or none. */
+    if (CAMBER_ALL((e->row[0] == CAMBER_EDGE_PX) | (e->is_drawn == 0)))
+        return camber_edge_segment(ax, ay, bx, by);
+    lane_records second, third;
     take_records(records, first - 2, r, &second);
     take_records(records, first - 3, r, &third);
-    const camber_words kind = b.join >> CAMBER_JOIN_KIND_SHIFT;
-    const camber_mask is_dot = kind == CAMBER_KIND_DOT, again = (before.info & CAMBER_RECORD_START) != 0u;
-    const camber_mask is_real = ((b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
-                                (CAMBER_LOAD(0, numbers) < (int)r.end - first);
-    const camber_mask ends = (b.info & (r.strips ? STARTS : CAMBER_POINT_FIRST)) == 0u,
-                      is_end = r.strips ? ends : ends | is_dot;
-    const camber_mask from_third = again & (before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
-    take_rows(rows, r.first_row, b.info >> CAMBER_POINT_ROW_SHIFT, is_real & is_end, row);
-#if CAMBER_RASTER_PITCHED
-    const camber_real x = row[1] - r.eye.x, y = row[2] - r.eye.y;
-#else
-    const camber_real x = row[1], y = row[2];
-#endif
-    const camber_real px = CAMBER_AS_REAL(from_third ? third.x : second.x) + x;
-    const camber_real py = CAMBER_AS_REAL(from_third ? third.y : second.y) + y;
-    const camber_real ax = CAMBER_AS_REAL(is_dot ? b.x : before.x) + x,
-                      ay = CAMBER_AS_REAL(is_dot ? b.y : before.y) + y;
-    camber_segment s = camber_segment_of(px, py, ax, ay, CAMBER_AS_REAL(b.x) + x, CAMBER_AS_REAL(b.y) + y,
-                                         is_dot ? b.join : before.join, b.join, row[0], r.linear);
-    camber_edge_segment(&s);
-    camber_mask is_drawn = is_real & is_end & (row[0] >= 0.0f);
+    const camber_mask from_third =
+        ((before->info & CAMBER_RECORD_START) != 0u) & (before->join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
+    camber_segment s = camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e->x,
+                                         CAMBER_AS_REAL(from_third ? third.y : second.y) + e->y, ax, ay, bx, by,
+                                         e->is_dot ? b->join : before->join, b->join, e->row[0], r.linear);
+    camber_segments_with_edges(&s);
+    return s;
+}
+
+/* Makes the segments of the records from `first` on, and writes them. */
+static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
+                                 camber_setup_args r, outputs to) {
+    ends e;
+    take_ends(records, rows, first, r, &e);
+    camber_segment s = segments_of(records, first, r, &e);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
     camber_plane plane;
-    is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
+    e.is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
 #endif
-    const camber_words box = camber_segment_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
+    const camber_words box = camber_segment_box(&s, e.is_drawn, r.left, r.top, r.columns, r.rows);
     CAMBER_STORE(box, 0, to.boxes);
     /* If a picture is drawn in several areas, most segments lie in others. */
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
@@ -188,7 +215,7 @@ static inline void make_segments(global const camber_u32 *records, global const 
     camber_real words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
                              s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
                              s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
-                             row[3]};
+                             e.row[3]};
     put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
 }
 

@@ -100,8 +100,9 @@ CAMBER_FN camber_u32 camber_put_crossings(int *turns, int first, int last, cambe
     return count;
 }
 
-/* Makes the crossings of a row of tiles of the list of edges that cross its top. Of edges that cross it in one column,
- * only the sum is left: mostly nothing. Returns how many crossings there are, at most one an edge. */
+/* Makes the crossings of a row of tiles of the list of segments that may be edges and cross its top. Of edges that
+ * cross it in one column, only the sum is left: mostly nothing. Returns how many crossings there are, at most one a
+ * segment. */
 CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER_GLOBAL const camber_u32 *list,
                                      camber_u32 edge_count, camber_tile_grid of, float top,
                                      CAMBER_GLOBAL camber_u32 *crossings) {
@@ -120,6 +121,8 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER
             brush = own;
         }
         const camber_ring_edge e = camber_ring_edge_of(segment);
+        if (segment[CAMBER_SEGMENT_HALF_WIDTH] != CAMBER_EDGE_PX || !camber_edge_crosses(&e, top))
+            continue;
         const int column = camber_column_after(camber_edge_crossing(&e, top), of.left, columns);
         if (column >= columns)
             continue;

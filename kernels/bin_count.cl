@@ -1,5 +1,5 @@
-/* bin_count: counts for each chunk of segments how many of them each tile has, and, behind the tiles, how many edges of
- * rings cross the top of each row of tiles. A work-item takes a chunk.
+/* bin_count: counts for each chunk of segments how many of them each tile has, and, behind the tiles, how many of
+ * those among which the edges of rings are may cross the top of each row of tiles. A work-item takes a chunk.
  * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]. Writes counts[chunks * lists]. */
 #include "segment.h"
 
@@ -12,13 +12,6 @@ static __attribute__((noinline)) void count_in_tiles(global const float *segment
         for (camber_u32 x = span & 255u; x <= span >> 8; x++)
             own[y * of.columns + x]++;
     }
-}
-
-/* Counts a segment in each row of tiles whose top it crosses as the edge of a ring. */
-static __attribute__((noinline)) void count_in_rows(global const float *segment, camber_u32 box, camber_tile_grid of,
-                                                    global camber_u32 *own) {
-    for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++)
-        own[of.columns * of.rows + y] += camber_crosses_top(segment, y, &of);
 }
 
 CAMBER_KERNEL(1, bin_count,
@@ -35,8 +28,9 @@ CAMBER_KERNEL(1, bin_count,
         const camber_u32 box = boxes[i];
         if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
             continue;
-        if ((camber_u32)i - c.first_edge < c.edge_count && camber_box_meets_top(box))
-            count_in_rows(segments + CAMBER_SEGMENT_WORDS * i, box, of, own);
+        if ((camber_u32)i - c.first_edge < c.edge_count)
+            for (camber_u32 y = camber_first_top(box); y <= CAMBER_BOX_LAST_Y(box); y++)
+                own[of.columns * of.rows + y]++;
         if (camber_box_is_one_tile(box, of.columns)) {
             own[CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box)]++;
             continue;

@@ -1,6 +1,6 @@
 /* bin_scatter: writes the list of each tile, its segments in drawing order. A work-item takes a chunk of segments. It
  * puts them where bin_count and bin_scan have made room, so that the order does not depend on the number of chunks.
- * Behind the tiles' lists come those of rows of tiles, whose tops edges of rings cross.
+ * Behind the tiles' lists come those of rows of tiles, whose tops edges of rings may cross.
  * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count], starts[lists]. Advances
  * counts[chunks * lists] to each chunk's end. Writes lists[starts[lists]]. */
 #include "segment.h"
@@ -18,17 +18,6 @@ static __attribute__((noinline)) void put_in_tiles(global const float *segment, 
     }
 }
 
-/* Puts segment i into the list of each row of tiles whose top it crosses as the edge of a ring. */
-static __attribute__((noinline)) void put_in_rows(global const float *segment, camber_u32 box, camber_tile_grid of,
-                                                  global const camber_u32 *starts, global camber_u32 *own,
-                                                  global camber_u32 *lists, camber_u32 i) {
-    for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
-        const camber_u32 list = of.columns * of.rows + y;
-        if (camber_crosses_top(segment, y, &of))
-            lists[starts[list] + own[list]++] = i;
-    }
-}
-
 CAMBER_KERNEL(1, bin_scatter,
               (global const float *restrict segments, global const camber_u32 *restrict boxes,
                global const camber_u32 *restrict starts, global camber_u32 *restrict counts,
@@ -42,8 +31,11 @@ CAMBER_KERNEL(1, bin_scatter,
         const camber_u32 box = boxes[i];
         if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
             continue;
-        if ((camber_u32)i - c.first_edge < c.edge_count && camber_box_meets_top(box))
-            put_in_rows(segments + CAMBER_SEGMENT_WORDS * i, box, of, starts, own, lists, (camber_u32)i);
+        if ((camber_u32)i - c.first_edge < c.edge_count)
+            for (camber_u32 y = camber_first_top(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
+                const camber_u32 list = of.columns * of.rows + y;
+                lists[starts[list] + own[list]++] = (camber_u32)i;
+            }
         if (camber_box_is_one_tile(box, of.columns)) {
             const camber_u32 tile = CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box);
             lists[starts[tile] + own[tile]++] = (camber_u32)i;

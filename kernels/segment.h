@@ -283,16 +283,9 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber
     return camber_row_span(segment, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
-/* Whether a segment is the edge of a ring that crosses the top of row y of tiles, which then has to know of it. */
-CAMBER_FN camber_u32 camber_crosses_top(CAMBER_GLOBAL const float *segment, camber_u32 y, const camber_tile_grid *of) {
-    const float top = of->top + (float)(y * CAMBER_TILE_PX), ay = segment[CAMBER_SEGMENT_AY],
-                by = segment[CAMBER_SEGMENT_BY];
-    return segment[CAMBER_SEGMENT_HALF_WIDTH] == CAMBER_EDGE_PX && (ay < top) != (by < top);
-}
-
-/* Whether an edge with such a box may cross the top of a row of tiles. */
-CAMBER_FN camber_u32 camber_box_meets_top(camber_u32 box) {
-    return CAMBER_BOX_FIRST_Y(box) != CAMBER_BOX_LAST_Y(box) || CAMBER_BOX_FIRST_Y(box) == 0u;
+/* The first row of tiles whose top a segment with such a box may cross; the last is that of the box. */
+CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
+    return CAMBER_BOX_FIRST_Y(box) == 0u ? 0u : CAMBER_BOX_FIRST_Y(box) + 1u;
 }
 
 #ifdef CAMBER_DEVICE

@@ -91,6 +91,16 @@ camber_status camber_raster_list_ranges(camber_context *context, const camber_ra
     return CAMBER_OK;
 }
 
+void camber_raster_find_edges(const camber_record_range *ranges, size_t range_count, size_t *first, size_t *end) {
+    *first = *end = 0;
+    for (size_t i = 0; i < range_count; i++) {
+        if (!ranges[i].is_area)
+            continue;
+        *first = *end == 0 ? ranges[i].base : *first;
+        *end = ranges[i].base + ranges[i].end - ranges[i].first;
+    }
+}
+
 unsigned camber_raster_variant(const camber_raster_scene *scene) {
     return (scene->brush_ext ? CAMBER_RASTER_RICH : 0u) | (scene->pitched ? CAMBER_RASTER_PITCHED : 0u);
 }

@@ -123,6 +123,8 @@ typedef struct camber_record_range {
 /* Lists the ranges of a scene, and how many segments they take. The caller frees *ranges with camber_free. */
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_record_range **ranges, size_t *range_count, size_t *segment_count);
+/* Finds the segments [*first, *end) outside which no edge of a ring lies: from 0 to 0 where there are no areas. */
+void camber_raster_find_edges(const camber_record_range *ranges, size_t range_count, size_t *first, size_t *end);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
                                            const camber_raster_area *area);
 enum { CAMBER_FILL_RECORDS = 2 };

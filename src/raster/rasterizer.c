@@ -416,19 +416,6 @@ static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     return status;
 }
 
-/* Finds the segments between which all edges of rings lie. */
-static void find_edges(camber_raster *raster, const listed_scene *p) {
-    raster->first_edge = p->segment_count;
-    raster->end_edge = 0;
-    for (size_t i = 0; i < p->range_count; i++) {
-        const camber_record_range *range = p->ranges + i;
-        if (!range->is_area)
-            continue;
-        raster->first_edge = range->base < raster->first_edge ? range->base : raster->first_edge;
-        raster->end_edge = range->base + range->end - range->first;
-    }
-}
-
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, cl_mem pixels) {
     camber_context *context = raster->device->context;
@@ -445,7 +432,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
         status = camber_raster_list_ranges(context, scene, &ranges, &p.range_count, &p.segment_count);
     p.ranges = ranges;
     raster->segment_count = p.segment_count;
-    find_edges(raster, &p);
+    camber_raster_find_edges(ranges, p.range_count, &raster->first_edge, &raster->end_edge);
     if (status == CAMBER_OK)
         status = prepare(raster, scene);
     if (status == CAMBER_OK)

@@ -141,16 +141,13 @@ static void add_to_list(const camber_twin *t, size_t segment, uint32_t *count, b
     ++*count;
 }
 
-/* The same as each_tile for the rows of tiles whose tops it crosses as the edge of a ring. */
+/* The same as each_tile for the rows of tiles whose tops it may cross as the edge of a ring. */
 static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
-    const float *words = t->stages->segments + CAMBER_SEGMENT_WORDS * segment;
-    const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
-    if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
+    if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box) || segment < t->first_edge || segment >= t->end_edge)
         return;
-    for (uint32_t y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++)
-        if (camber_crosses_top(words, y, &of))
-            add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
+    for (uint32_t y = camber_first_top(box); y <= CAMBER_BOX_LAST_Y(box); y++)
+        add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
 }
 
 /* Counts a segment in each tile that it meets, or puts it into their lists. */
@@ -163,8 +160,7 @@ static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bo
         for (uint32_t x = span & 255u; x <= span >> 8; x++)
             add_to_list(t, segment, counts + y * t->columns + x, fill);
     }
-    if (t->stages->list_count > t->stages->tile_count)
-        each_row(t, segment, counts, fill);
+    each_row(t, segment, counts, fill);
 }
 
 static camber_status make_lists(const camber_twin *t) {
@@ -191,15 +187,14 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
     camber_raster_stages made = {0};
     camber_record_range *ranges = NULL;
     size_t range_count = 0;
-    const camber_twin t = {
-        context, scene, area, &made, camber_raster_tiles(area->width), camber_raster_tiles(area->height)};
-    made.tile_count = made.list_count = (size_t)t.columns * t.rows;
-    for (size_t i = 0; i < scene->input_count; i++)
-        if (scene->inputs[i].is_area)
-            made.list_count = made.tile_count + t.rows;
+    camber_twin t = {context, scene, area, &made, camber_raster_tiles(area->width), camber_raster_tiles(area->height),
+                     0,       0};
     camber_status status = camber_raster_list_ranges(context, scene, &ranges, &range_count, &made.segment_count);
     if (status != CAMBER_OK)
         return status;
+    camber_raster_find_edges(ranges, range_count, &t.first_edge, &t.end_edge);
+    made.tile_count = (size_t)t.columns * t.rows;
+    made.list_count = made.tile_count + (t.end_edge ? t.rows : 0);
     made.segments = camber_alloc(context, made.segment_count, CAMBER_SEGMENT_WORDS * sizeof *made.segments);
     made.boxes = camber_alloc(context, made.segment_count, sizeof *made.boxes);
     if (scene->brush_ext)

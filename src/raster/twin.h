@@ -9,7 +9,8 @@ typedef struct camber_twin {
     const camber_raster_scene *scene;
     const camber_raster_area *area;
     camber_raster_stages *stages;
-    uint32_t columns, rows; /* tiles */
+    uint32_t columns, rows;      /* tiles */
+    size_t first_edge, end_edge; /* no edge of a ring lies outside these segments */
 } camber_twin;
 
 /* Draws the area's tiles from the lists; the second one in a picture with a pitch. */

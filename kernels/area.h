@@ -10,7 +10,7 @@
  *     e1 \ +-----------+           e2 enters through the left side: below that, the winding changes in whole rows.
  *         \|           |           e3 only changes what is right of it.
  *          \  e3 /     |
- *          |\   /      |           Whether an edge passes left of a corner is decided once, by camber_edge_crossing,
+ *          |\   /      |           Whether an edge passes left of a corner is decided once, by camber_edges_crossing,
  *     e2 ---|\-/       |           so that what wind counts and what a tile counts always fit together.
  *          +-----------+
  *
@@ -26,34 +26,31 @@
 #define CAMBER_AREA_FLAT_PX 1e-12f
 #define CAMBER_AREA_UPRIGHT 1e-12f
 
-/* An edge from its upper end to its lower one. */
-typedef struct camber_ring_edge {
-    float x0, y0, x1, y1;
-    float down; /* 1 where the ring goes down along it, else -1 */
-} camber_ring_edge;
+/* Edges, one a lane, from their upper ends to their lower ones. */
+typedef struct camber_ring_edges {
+    camber_real x0, y0, x1, y1;
+    camber_real down; /* 1 where the ring goes down along the edge, else -1 */
+} camber_ring_edges;
 
-CAMBER_FN camber_ring_edge camber_ring_edge_of(CAMBER_GLOBAL const float *segment) {
-    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], bx = segment[CAMBER_SEGMENT_BX],
-                by = segment[CAMBER_SEGMENT_BY];
-    const int down = by > ay || (by == ay && bx > ax);
-    camber_ring_edge e;
-    e.x0 = down ? ax : bx;
-    e.y0 = down ? ay : by;
-    e.x1 = down ? bx : ax;
-    e.y1 = down ? by : ay;
-    e.down = down ? 1.0f : -1.0f;
-    return e;
+CAMBER_FN void camber_ring_edges_of(camber_real ax, camber_real ay, camber_real bx, camber_real by,
+                                    camber_ring_edges *e) {
+    const camber_mask down = (by > ay) | ((by == ay) & (bx > ax));
+    e->x0 = down ? ax : bx;
+    e->y0 = down ? ay : by;
+    e->x1 = down ? bx : ax;
+    e->y1 = down ? by : ay;
+    e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f);
 }
 
-/* Whether an edge crosses the line at height y. One that ends on it does, and one that begins on it does not. */
-CAMBER_FN int camber_edge_crosses(const camber_ring_edge *e, float y) {
-    return e->y0 < y && e->y1 >= y;
+/* Whether edges cross the line at height y. One that ends on it does, and one that begins on it does not. */
+CAMBER_FN camber_mask camber_edges_cross(const camber_ring_edges *e, float y) {
+    return (e->y0 < y) & (e->y1 >= y);
 }
 
-/* Where it does. */
-CAMBER_FN float camber_edge_crossing(const camber_ring_edge *e, float y) {
-    const float x = e->x0 + (y - e->y0) * ((e->x1 - e->x0) / (e->y1 - e->y0));
-    const float least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
+/* Where they do. */
+CAMBER_FN camber_real camber_edges_crossing(const camber_ring_edges *e, float y) {
+    const camber_real x = e->x0 + (y - e->y0) * ((e->x1 - e->x0) / (e->y1 - e->y0));
+    const camber_real least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
     return x < least ? least : x > most ? most : x;
 }
 
@@ -120,13 +117,16 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER
             last = -1;
             brush = own;
         }
-        const camber_ring_edge e = camber_ring_edge_of(segment);
-        if (segment[CAMBER_SEGMENT_HALF_WIDTH] != CAMBER_EDGE_PX || !camber_edge_crosses(&e, top))
+        camber_ring_edges e; /* all lanes are this one */
+        camber_ring_edges_of(CAMBER_REAL(segment[CAMBER_SEGMENT_AX]), CAMBER_REAL(segment[CAMBER_SEGMENT_AY]),
+                             CAMBER_REAL(segment[CAMBER_SEGMENT_BX]), CAMBER_REAL(segment[CAMBER_SEGMENT_BY]), &e);
+        if (segment[CAMBER_SEGMENT_HALF_WIDTH] != CAMBER_EDGE_PX || !CAMBER_ANY(camber_edges_cross(&e, top)))
             continue;
-        const int column = camber_column_after(camber_edge_crossing(&e, top), of.left, columns);
+        const camber_real x = camber_edges_crossing(&e, top);
+        const int column = camber_column_after(camber_lane_of(&x, 0), of.left, columns);
         if (column >= columns)
             continue;
-        turns[column] += (int)e.down;
+        turns[column] += (int)camber_lane_of(&e.down, 0);
         first = column < first ? column : first;
         last = column > last ? column : last;
     }
@@ -198,99 +198,136 @@ CAMBER_FN void camber_area_turn(camber_tile_state *c, float y, float times, camb
     }
 }
 
-/* The piece of an edge in each row of pixels of a vector, px from the tile's corner. height: with the edge's sign. */
+/* How edges lie in a tile, one a lane, positions px from its corner. */
+typedef struct camber_tile_edges {
+    camber_ring_edges in;      /* from where they enter it at the top or through its left side */
+    camber_real slope;         /* px to the side a px down */
+    camber_real rise;          /* half of how high an edge is a px to the side, with its sign; 0 where it is upright */
+    camber_real turn, turn_at; /* the left side is wound around so many times more from there on */
+    camber_mask first, last;   /* rows of cells; the last lies before the first where an edge covers nothing */
+    camber_mask left, right;   /* columns of cells; CAMBER_TILE_CELLS: right of the tile */
+} camber_tile_edges;
+
+/* A position as a row or column of cells, of which there are `most`. */
+CAMBER_FN camber_mask camber_cell_at(camber_real at, camber_mask counts, float most) {
+    const camber_real none = CAMBER_REAL(0.0f), cell = (1.0f / CAMBER_CELL_PX) * at;
+    return CAMBER_TO_INTEGERS((counts & (cell > none)) ? (cell < most ? cell : CAMBER_REAL(most)) : none);
+}
+
+/* Cuts edges at the tile's left side. enters: those that it cuts. */
+CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camber_mask from_left) {
+    camber_ring_edges *e = &t->in;
+    const camber_real none = CAMBER_REAL(0.0f), side = CAMBER_REAL((float)CAMBER_TILE_PX);
+    const camber_real at = e->y0 - e->x0 * ((e->y1 - e->y0) / (e->x1 - e->x0));
+    const camber_real y = at < e->y0 ? e->y0 : at > e->y1 ? e->y1 : at;
+    const camber_mask leaves = enters & (from_left == 0);
+    enters &= from_left;
+    t->turn = enters ? -e->down : leaves ? e->down : none;
+    t->turn_at = (enters | leaves) ? y : none;
+    t->turn = t->turn_at < side ? t->turn : none;
+    e->x0 = enters ? none : e->x0;
+    e->y0 = enters ? y : e->y0;
+    e->x1 = leaves ? none : e->x1;
+    e->y1 = leaves ? y : e->y1;
+}
+
+/* Finds how the wanted ones of edges lie in a tile, or in those rows of its cells that are drawn. */
+CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask wanted, camber_tile_rows where,
+                                    camber_tile_edges *t) {
+    const float side = (float)CAMBER_TILE_PX, cells = (float)CAMBER_TILE_CELLS;
+    camber_ring_edges *e = &t->in;
+    const camber_mask crosses = camber_edges_cross(ring, where.top);
+    *e = *ring;
+    e->x0 = (crosses ? camber_edges_crossing(ring, where.top) : e->x0) - where.left;
+    e->x1 = e->x1 - where.left;
+    e->y0 = (crosses ? CAMBER_REAL(where.top) : e->y0) - where.top;
+    e->y1 = e->y1 - where.top;
+    const camber_mask from_left = e->x0 < 0.0f, to_left = e->x1 < 0.0f;
+    const camber_mask meets = wanted & (e->y1 >= 0.0f) & (e->y0 < side) & ((from_left & to_left) == 0);
+    camber_cut_at_left(t, meets & (from_left | to_left), from_left);
+    const camber_mask covers = meets & (e->y1 - e->y0 > CAMBER_AREA_FLAT_PX) & ((e->x0 < side) | (e->x1 < side));
+    const camber_real high = covers ? e->y1 - e->y0 : CAMBER_REAL(1.0f);
+    t->slope = (e->x1 - e->x0) / high;
+    const camber_real to_side = CAMBER_FABS(t->slope);
+    t->rise = to_side > CAMBER_AREA_UPRIGHT ? 0.5f * e->down / to_side : CAMBER_REAL(0.0f);
+    const camber_mask top = camber_cell_at(e->y0, covers, cells), bottom = camber_cell_at(e->y1, covers, cells);
+    t->first = top > where.first ? top : where.first;
+    t->last = covers ? (bottom < where.last ? bottom : where.last) : where.first - 1;
+    t->left = camber_cell_at(CAMBER_LESS(e->x0, e->x1), covers, cells);
+    t->right = camber_cell_at(CAMBER_MORE(e->x0, e->x1), covers, cells);
+}
+
+/* One of them. */
+typedef struct camber_tile_edge {
+    float x0, y0, y1, down, slope, rise;
+} camber_tile_edge;
+
+/* Where an edge is at y, as a column of cells. */
+CAMBER_FN int camber_edge_column(const camber_tile_edge *e, float y) {
+    const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y, x = e->x0 + (at - e->y0) * e->slope;
+    return x < 0.0f ? 0 : x >= (float)CAMBER_TILE_PX ? CAMBER_TILE_CELLS : (int)(x * (1.0f / CAMBER_CELL_PX));
+}
+
+/* The piece of an edge in each row of pixels of a vector. height: with the edge's sign. */
 typedef struct camber_edge_pieces {
     camber_real left, right, wide, height;
-    float rise; /* half of how high the edge is a px to the side, with its sign; 0 where it is upright */
 } camber_edge_pieces;
 
-/* slope: px to the side a px down. */
-CAMBER_FN void camber_edge_pieces_of(const camber_ring_edge *e, float slope, camber_real tops, camber_edge_pieces *p) {
+CAMBER_FN void camber_edge_pieces_of(const camber_tile_edge *e, camber_real tops, camber_edge_pieces *p) {
     const camber_real from = camber_between(tops, e->y0, e->y1), to = camber_between(tops + 1.0f, e->y0, e->y1);
-    const float to_side = CAMBER_FABS(slope);
-    p->wide = (to - from) * to_side;
-    p->left = e->x0 + (0.5f * (from + to) - e->y0) * slope - 0.5f * p->wide;
+    p->wide = (to - from) * CAMBER_FABS(e->slope);
+    p->left = e->x0 + (0.5f * (from + to) - e->y0) * e->slope - 0.5f * p->wide;
     p->right = p->left + p->wide;
     p->height = (to - from) * e->down;
 }
 
 /* How much the pieces change their pixels, whose left sides are at x: the area that is right of them. */
-CAMBER_FN camber_real camber_edge_pieces_area(const camber_edge_pieces *p, camber_real x) {
+CAMBER_FN camber_real camber_edge_pieces_area(const camber_tile_edge *e, const camber_edge_pieces *p, camber_real x) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
     camber_real from = x - p->left, to = from + 1.0f, past = x + 1.0f - p->right;
-    from = from > 0.0f ? from : none;
-    from = from < p->wide ? from : p->wide;
-    to = to > 0.0f ? to : none;
-    to = to < p->wide ? to : p->wide;
-    past = past > 0.0f ? past : none;
-    past = past < 1.0f ? past : one;
-    return p->rise * (to - from) * (to + from) + p->height * past;
+    from = CAMBER_MORE(from, none);
+    from = CAMBER_LESS(from, p->wide);
+    to = CAMBER_MORE(to, none);
+    to = CAMBER_LESS(to, p->wide);
+    past = CAMBER_MORE(past, none);
+    past = CAMBER_LESS(past, one);
+    return e->rise * (to - from) * (to + from) + p->height * past;
 }
 
-/* Where an edge is at y, px from the tile's left side, as a column of cells. */
-CAMBER_FN int camber_edge_column(const camber_ring_edge *e, float slope, float y) {
-    const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y, x = e->x0 + (at - e->y0) * slope;
-    return x < 0.0f ? 0 : x >= (float)CAMBER_TILE_PX ? CAMBER_TILE_CELLS : (int)(x * (1.0f / CAMBER_CELL_PX));
+/* Adds an edge to the columns [from, to] of a row of cells, and to all that is right of them. */
+CAMBER_FN void camber_area_add_row(camber_tile_state *c, const camber_tile_edge *e, int row, int from, int to) {
+    const int end = to < CAMBER_TILE_CELLS ? to + 1 : CAMBER_TILE_CELLS, i = CAMBER_TILE_CELLS * row;
+    camber_area_take_row(c, row);
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        camber_edge_pieces p;
+        camber_edge_pieces_of(e, camber_area_tops(row, v), &p);
+        for (int x = from; x < end; x++)
+            c->sums[i + x][CAMBER_AREA_HERE][v] +=
+                camber_edge_pieces_area(e, &p, (float)(CAMBER_CELL_PX * x) + camber_columns_of_cell(v));
+        if (end < CAMBER_TILE_CELLS)
+            c->sums[i + end][CAMBER_AREA_ON][v] += p.height;
+    }
 }
 
-/* Adds the part of an edge that lies in the tile, positions px from the tile's corner, row of cells by row. */
-CAMBER_FN void camber_area_add_rows(camber_tile_state *c, const camber_ring_edge *e, camber_tile_rows where) {
-    const float slope = (e->x1 - e->x0) / (e->y1 - e->y0), to_side = CAMBER_FABS(slope);
-    const int begin = (int)e->y0 / CAMBER_CELL_PX, end = (int)e->y1 / CAMBER_CELL_PX;
-    const int last = end < where.last ? end : where.last;
-    camber_edge_pieces p;
-    p.rise = to_side > CAMBER_AREA_UPRIGHT ? 0.5f * e->down / to_side : 0.0f;
-    for (int row = begin > where.first ? begin : where.first; row <= last; row++) {
-        const float top = (float)(CAMBER_CELL_PX * row);
-        const int upper = camber_edge_column(e, slope, top), lower = camber_edge_column(e, slope, top + CAMBER_CELL_PX);
-        const int from = upper < lower ? upper : lower, to = upper < lower ? lower : upper;
-        const int end_column = to < CAMBER_TILE_CELLS ? to + 1 : CAMBER_TILE_CELLS, i = CAMBER_TILE_CELLS * row;
-        camber_area_take_row(c, row);
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
-            camber_edge_pieces_of(e, slope, camber_area_tops(row, v), &p);
-            for (int x = from; x < end_column; x++)
-                c->sums[i + x][CAMBER_AREA_HERE][v] +=
-                    camber_edge_pieces_area(&p, (float)(CAMBER_CELL_PX * x) + camber_columns_of_cell(v));
-            if (end_column < CAMBER_TILE_CELLS)
-                c->sums[i + end_column][CAMBER_AREA_ON][v] += p.height;
+/* Adds edge k of a vector to the rows of cells of a tile that are drawn. */
+CAMBER_FN void camber_area_add_edge(camber_tile_state *c, const camber_tile_edges *t, int k, camber_tile_rows where) {
+    const float turn = camber_lane_of(&t->turn, k);
+    const int first = camber_integer_of(&t->first, k), last = camber_integer_of(&t->last, k);
+    const int left = camber_integer_of(&t->left, k), right = camber_integer_of(&t->right, k);
+    const camber_tile_edge e = {camber_lane_of(&t->in.x0, k), camber_lane_of(&t->in.y0, k),
+                                camber_lane_of(&t->in.y1, k), camber_lane_of(&t->in.down, k),
+                                camber_lane_of(&t->slope, k), camber_lane_of(&t->rise, k)};
+    if (turn != 0.0f)
+        camber_area_turn(c, camber_lane_of(&t->turn_at, k), turn, where);
+    for (int row = first; row <= last; row++) {
+        if (left == right) {
+            camber_area_add_row(c, &e, row, left, right);
+            continue;
         }
+        const float top = (float)(CAMBER_CELL_PX * row);
+        const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, top + CAMBER_CELL_PX);
+        camber_area_add_row(c, &e, row, CAMBER_LESS(upper, lower), CAMBER_MORE(upper, lower));
     }
-}
-
-/* Where between its ends an edge is at x. */
-CAMBER_FN float camber_edge_height(const camber_ring_edge *e, float x) {
-    const float y = e->y0 + (x - e->x0) * ((e->y1 - e->y0) / (e->x1 - e->x0));
-    return y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y;
-}
-
-/* Adds an edge to the rows of cells of a tile that are drawn. */
-CAMBER_FN void camber_area_add_edge(camber_tile_state *c, CAMBER_GLOBAL const float *segment, camber_tile_rows where) {
-    const float side = (float)CAMBER_TILE_PX;
-    camber_ring_edge e = camber_ring_edge_of(segment);
-    if (e.y1 < where.top || e.y0 >= where.top + side)
-        return;
-    if (camber_edge_crosses(&e, where.top)) {
-        e.x0 = camber_edge_crossing(&e, where.top);
-        e.y0 = where.top;
-    }
-    const int from_left = e.x0 < where.left, to_left = e.x1 < where.left;
-    e.x0 -= where.left;
-    e.x1 -= where.left;
-    e.y0 -= where.top;
-    e.y1 -= where.top;
-    if (from_left && to_left)
-        return;
-    if (from_left || to_left) {
-        const float y = camber_edge_height(&e, 0.0f);
-        if (y < side)
-            camber_area_turn(c, y, to_left ? e.down : -e.down, where);
-        e.x0 = from_left ? 0.0f : e.x0;
-        e.y0 = from_left ? y : e.y0;
-        e.x1 = to_left ? 0.0f : e.x1;
-        e.y1 = to_left ? y : e.y1;
-    }
-    if (e.y1 - e.y0 > CAMBER_AREA_FLAT_PX && (e.x0 < side || e.x1 < side))
-        camber_area_add_rows(c, &e, where);
 }
 
 /* ---- The inside ---- */

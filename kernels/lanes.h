@@ -106,6 +106,17 @@ CAMBER_FN float camber_float_of(camber_u32 bits) {
 /* The low 16 bits of join words, as numbers with a sign. */
 #define CAMBER_TURNS(joins) CAMBER_TO_REAL(CAMBER_AS_INTEGERS((joins) << 16) >> 16)
 
+#ifndef CAMBER_GLSL
+/* Lane k of a vector that lies in memory: of reals, and of integers. */
+CAMBER_FN float camber_lane_of(const camber_real *vector, int k) {
+    return ((const float *)vector)[k];
+}
+
+CAMBER_FN int camber_integer_of(const camber_mask *vector, int k) {
+    return ((const int *)vector)[k];
+}
+#endif
+
 /* The largest of a vector's lanes: of reals, and of integers. */
 #if CAMBER_LANES == 1
 CAMBER_FN float camber_most_of(camber_real x) {

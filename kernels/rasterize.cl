@@ -98,6 +98,42 @@ typedef struct tile_brushes {
 #endif
 } tile_brushes;
 
+/* Adds the edges that wait to the area. */
+static __attribute__((noinline)) void add_edges(camber_tile_state *c, global const float *segments,
+                                                camber_tile_rows where, sixteen *b) {
+    const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    for (uint k = b->count; k < SIXTEEN; k++)
+        b->which[k] = b->which[0];
+    for (uint v = 0; v < CAMBER_VECTORS && CAMBER_LANES * v < b->count; v++) {
+        const int left = (int)b->count - (int)(CAMBER_LANES * v), count = left < CAMBER_LANES ? left : CAMBER_LANES;
+        uint ends[4 * CAMBER_LANES];
+        camber_words taken[4], words[4];
+        camber_ring_edges e;
+        camber_tile_edges t;
+        for (uint k = 0; k < CAMBER_LANES; k++)
+            vstore4(as_uint4(vload4(CAMBER_SEGMENT_WORDS / 4 * (size_t)b->which[CAMBER_LANES * v + k], segments)), k,
+                    ends);
+        for (size_t i = 0; i < 4; i++)
+            taken[i] = CAMBER_LOAD(i, ends);
+        turn_fours_over(taken, words);
+        camber_ring_edges_of(CAMBER_AS_REAL(words[0]), CAMBER_AS_REAL(words[1]), CAMBER_AS_REAL(words[2]),
+                             CAMBER_AS_REAL(words[3]), &e);
+        camber_tile_edges_of(&e, CAMBER_LOAD(v, numbers) < (int)b->count, where, &t);
+        for (int k = 0; k < count; k++)
+            camber_area_add_edge(c, &t, k, where);
+    }
+    b->count = 0;
+}
+
+/* Draws the segments that wait, all of the brush that is drawn now. */
+static inline void draw_waiting(camber_tile_state *c, const positions *at, global const float *segments,
+                                camber_tile_rows where, sixteen *b) {
+    if (b->count != 0 && camber_brush_is_area(&c->now))
+        add_edges(c, segments, where, b);
+    else
+        draw_sixteen(c, at, segments, where, b);
+}
+
 /* Draws the area whose edges have been added. */
 static inline void end_area(camber_tile_state *c, const positions *at, const tile_brushes *from,
                             camber_tile_rows where) {
@@ -214,7 +250,7 @@ CAMBER_KERNEL(1, rasterize,
         ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 brush = as_uint(segment[CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
-            draw_sixteen(&c, &at, segments, where, &b);
+            draw_waiting(&c, &at, segments, where, &b);
             draw_areas_above(&c, &at, &from_brushes, where, &left_of, brush, current);
             if (camber_tile_is_full(&c))
                 break;
@@ -223,7 +259,9 @@ CAMBER_KERNEL(1, rasterize,
             current = brush;
         }
         if (camber_brush_is_area(&c.now)) {
-            camber_area_add_edge(&c, segment, where);
+            b.which[b.count++] = lists[k];
+            if (b.count == SIXTEEN)
+                add_edges(&c, segments, where, &b);
             continue;
         }
 #if CAMBER_RASTER_RICH
@@ -254,7 +292,7 @@ CAMBER_KERNEL(1, rasterize,
         if (camber_tile_is_full(&c))
             break;
     }
-    draw_sixteen(&c, &at, segments, where, &b);
+    draw_waiting(&c, &at, segments, where, &b);
     current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {

@@ -26,21 +26,6 @@ typedef struct lane_records {
     camber_words x, y, join, info;
 } lane_records;
 
-/* Turns four vectors of whole records over. */
-static inline void part_records(const camber_words *v, lane_records *taken) {
-#if CAMBER_LANES == 16
-    taken->x = (uint16)(v[0].s048c, v[1].s048c, v[2].s048c, v[3].s048c);
-    taken->y = (uint16)(v[0].s159d, v[1].s159d, v[2].s159d, v[3].s159d);
-    taken->join = (uint16)(v[0].s26ae, v[1].s26ae, v[2].s26ae, v[3].s26ae);
-    taken->info = (uint16)(v[0].s37bf, v[1].s37bf, v[2].s37bf, v[3].s37bf);
-#else
-    taken->x = (uint8)(v[0].s04, v[1].s04, v[2].s04, v[3].s04);
-    taken->y = (uint8)(v[0].s15, v[1].s15, v[2].s15, v[3].s15);
-    taken->join = (uint8)(v[0].s26, v[1].s26, v[2].s26, v[3].s26);
-    taken->info = (uint8)(v[0].s37, v[1].s37, v[2].s37, v[3].s37);
-#endif
-}
-
 /* Reads a vector of records from `first` on. Numbers outside the part stand for its nearest record. */
 static inline void take_records(global const camber_u32 *records, int first, camber_setup_args r, lane_records *taken) {
     camber_words v[4];
@@ -48,13 +33,18 @@ static inline void take_records(global const camber_u32 *records, int first, cam
         for (size_t i = 0; i < 4; i++)
             v[i] = CAMBER_LOAD(i, records + CAMBER_RECORD_WORDS * (size_t)first);
     } else {
-        uint words[4 * CAMBER_LANES];
+        uint of_lanes[4 * CAMBER_LANES];
         for (int k = 0; k < CAMBER_LANES; k++)
-            vstore4(record_at(records, first + k, r), (size_t)k, words);
+            vstore4(record_at(records, first + k, r), (size_t)k, of_lanes);
         for (size_t i = 0; i < 4; i++)
-            v[i] = CAMBER_LOAD(i, words);
+            v[i] = CAMBER_LOAD(i, of_lanes);
     }
-    part_records(v, taken);
+    camber_words words[4];
+    turn_fours_over(v, words);
+    taken->x = words[0];
+    taken->y = words[1];
+    taken->join = words[2];
+    taken->info = words[3];
 }
 
 /* Reads the rows of a vector of segments. Mostly they all have the same one. */

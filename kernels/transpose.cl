@@ -33,4 +33,19 @@ static inline void turn_over(camber_real *words) {
     }
 }
 
+/* Four vectors with four words of each lane in turn become four vectors of a word each. */
+static inline void turn_fours_over(const camber_words *v, camber_words *words) {
+#if CAMBER_LANES == 16
+    words[0] = (uint16)(v[0].s048c, v[1].s048c, v[2].s048c, v[3].s048c);
+    words[1] = (uint16)(v[0].s159d, v[1].s159d, v[2].s159d, v[3].s159d);
+    words[2] = (uint16)(v[0].s26ae, v[1].s26ae, v[2].s26ae, v[3].s26ae);
+    words[3] = (uint16)(v[0].s37bf, v[1].s37bf, v[2].s37bf, v[3].s37bf);
+#else
+    words[0] = (uint8)(v[0].s04, v[1].s04, v[2].s04, v[3].s04);
+    words[1] = (uint8)(v[0].s15, v[1].s15, v[2].s15, v[3].s15);
+    words[2] = (uint8)(v[0].s26, v[1].s26, v[2].s26, v[3].s26);
+    words[3] = (uint8)(v[0].s37, v[1].s37, v[2].s37, v[3].s37);
+#endif
+}
+
 #endif

@@ -262,6 +262,15 @@ typedef struct drawn_tile {
     uint32_t column;
 } drawn_tile;
 
+static void add_edge(camber_tile_state *c, const float *segment, camber_tile_rows where) {
+    camber_ring_edges e;
+    camber_tile_edges t;
+    camber_ring_edges_of(segment[CAMBER_SEGMENT_AX], segment[CAMBER_SEGMENT_AY], segment[CAMBER_SEGMENT_BX],
+                         segment[CAMBER_SEGMENT_BY], &e);
+    camber_tile_edges_of(&e, 1, where, &t);
+    camber_area_add_edge(c, &t, 0, where);
+}
+
 /* Draws the area whose edges have been added. */
 static void end_area(const drawn_tile *d) {
     const camber_raster_scene *scene = d->twin->scene;
@@ -328,7 +337,7 @@ static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
         }
         current = brush;
         if (camber_brush_is_area(&c->now))
-            camber_area_add_edge(c, segment, d->where);
+            add_edge(c, segment, d->where);
         else
             draw_segment(c, t, stages->lists[k], d->where);
     }

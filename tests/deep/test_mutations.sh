@@ -255,8 +255,8 @@ mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 
     'in_y = CAMBER_FABS(at->y) * scale'
 mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area * (1.0 - area)), area, area)' \
     'area * (1.0 - area)), 0.0, area)'
-mutant strip kernels/area.h "areas: edges through a tile's left side" 'to_left ? e.down : -e.down' '0.0f * e.down'
-mutant strip kernels/area.h "areas: pixels that an edge enters" '0.5f * room * room * a_px' '0.0f * room * a_px'
+mutant strip kernels/area.h "areas: edges through a tile's left side" 't->turn = enters ? -e->down' 't->turn = enters ? 0.0f * e->down'
+mutant strip kernels/area.h "areas: pixels that an edge enters" 'e->rise * (to - from) * (to + from)' '0.0f * e->rise * (to - from)'
 mutant strip kernels/area.h "areas: holes that fill" 'CAMBER_FABS(sum)' 'CAMBER_FABS(sum) + 1.0f'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
@@ -285,7 +285,7 @@ mutant strip kernels/emit.cl "arc lengths of the neighbour" 'as_uint(arc_lengths
 drawer=(--draw cl)
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
-mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &before)' 'first, r, &before)'
+mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &e->before)' 'first, r, &e->before)'
 mutant strip kernels/setup.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
     'first - 1, r, &second)'
 mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
@@ -301,11 +301,11 @@ mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];
 
 mutant strip kernels/wind.cl "areas: all rows by the top of the first" 'of.top + (float)(row * CAMBER_TILE_PX)' 'of.top'
 mutant strip kernels/rasterize.cl "areas: tiles that forget the corner" 'c.winding = camber_take_winding' 'c.winding = 0 * camber_take_winding'
-mutant strip kernels/bin_count.cl "areas: edges that no row of tiles knows" '+= camber_crosses_top(segment, y, &of)' \
-    '+= 0u * camber_crosses_top(segment, y, &of)'
 
 # ---- Coverage, tiles and cells, which these kernels and their twin share: pixels tell ----
 
+mutant strip kernels/segment.h "areas: edges that no row of tiles knows" '? 0u : CAMBER_BOX_FIRST_Y(box) + 1u' \
+    '? 0u : CAMBER_BOX_LAST_Y(box) + 1u'
 mutant strip kernels/tile_state.h "cells that are done too early" 'camber_most_of(most) < CAMBER_NOTHING_PX' \
     'camber_most_of(most) < 0.5f'
 mutant strip kernels/tile_state.h "what lies below shines through" 'c->level[level][i][3][v] = through * (1.0f - area)' \

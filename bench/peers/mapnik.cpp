@@ -1,5 +1,5 @@
-/* Mapnik's renderer over lines in memory: a line symbolizer as a style would have it, neither simplified nor smoothed.
- */
+/* Mapnik's renderer over lines or areas in memory: a symbolizer as a style would have it, neither simplified nor
+ * smoothed. */
 #include "peers/peer.h"
 
 #include <mapnik/agg_renderer.hpp>
@@ -21,43 +21,77 @@
 namespace {
 
 /* A map unit a pixel, y up. */
-std::shared_ptr<mapnik::memory_datasource> make_source(const camber_lines &lines) {
+template <typename line_type> line_type make_line(const camber_lines &lines, std::size_t polyline) {
+    const std::size_t first = lines.offsets[polyline], end = lines.offsets[polyline + 1];
+    line_type line;
+    line.reserve(end - first);
+    for (std::size_t k = first; k < end; k++)
+        line.emplace_back(static_cast<double>(lines.points[2 * k]),
+                          BENCH_SIDE_PX - static_cast<double>(lines.points[2 * k + 1]));
+    return line;
+}
+
+mapnik::geometry::polygon<double> make_area(const bench_peer_frame &frame, std::size_t area) {
+    mapnik::geometry::polygon<double> polygon;
+    for (std::size_t k = frame.areas[area]; k < frame.areas[area + 1]; k++) {
+        auto ring = make_line<mapnik::geometry::linear_ring<double>>(*frame.lines, k);
+#if MAPNIK_MAJOR_VERSION >= 4
+        polygon.push_back(std::move(ring));
+#else
+        if (k == frame.areas[area])
+            polygon.set_exterior_ring(std::move(ring));
+        else
+            polygon.add_hole(std::move(ring));
+#endif
+    }
+    return polygon;
+}
+
+std::shared_ptr<mapnik::memory_datasource> make_source(const bench_peer_frame &frame) {
+    const camber_lines &lines = *frame.lines;
     mapnik::parameters parameters;
     parameters["type"] = "memory";
     const auto source = std::make_shared<mapnik::memory_datasource>(parameters);
     const auto context = std::make_shared<mapnik::context_type>();
-    for (std::size_t i = 0; i < lines.polyline_count; i++) {
-        const std::size_t first = lines.offsets[i], end = lines.offsets[i + 1];
-        if (end - first < 2)
+    for (std::size_t i = 0; i < bench_peer_part_count(&frame); i++) {
+        if (!frame.areas && lines.offsets[i + 1] - lines.offsets[i] < 2)
             continue;
-        mapnik::geometry::line_string<double> line;
-        line.reserve(end - first);
-        for (std::size_t k = first; k < end; k++)
-            line.emplace_back(static_cast<double>(lines.points[2 * k]),
-                              BENCH_SIDE_PX - static_cast<double>(lines.points[2 * k + 1]));
         const mapnik::feature_ptr feature =
             mapnik::feature_factory::create(context, static_cast<mapnik::value_integer>(i + 1));
-        feature->set_geometry(std::move(line));
+        if (frame.areas)
+            feature->set_geometry(make_area(frame, i));
+        else
+            feature->set_geometry(make_line<mapnik::geometry::line_string<double>>(lines, i));
         source->push(feature);
     }
     return source;
 }
 
-mapnik::Map make_map(const camber_lines &lines, double width_px) {
-    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
-    map.set_background(mapnik::color(255, 255, 255));
+mapnik::rule make_rule(const bench_peer_frame &frame) {
+    mapnik::rule rule;
+    if (frame.areas) {
+        mapnik::polygon_symbolizer symbolizer;
+        mapnik::put(symbolizer, mapnik::keys::fill, mapnik::color(0, 0, 0));
+        rule.append(std::move(symbolizer));
+        return rule;
+    }
     mapnik::line_symbolizer symbolizer;
     mapnik::put(symbolizer, mapnik::keys::stroke, mapnik::color(0, 0, 0));
-    mapnik::put(symbolizer, mapnik::keys::stroke_width, width_px);
+    mapnik::put(symbolizer, mapnik::keys::stroke_width, static_cast<double>(frame.width_px));
     mapnik::put(symbolizer, mapnik::keys::stroke_linejoin, mapnik::line_join_enum::ROUND_JOIN);
     mapnik::put(symbolizer, mapnik::keys::stroke_linecap, mapnik::line_cap_enum::BUTT_CAP);
-    mapnik::rule rule;
     rule.append(std::move(symbolizer));
+    return rule;
+}
+
+mapnik::Map make_map(const bench_peer_frame &frame) {
+    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
+    map.set_background(mapnik::color(255, 255, 255));
     mapnik::feature_type_style style;
-    style.add_rule(std::move(rule));
+    style.add_rule(make_rule(frame));
     map.insert_style("lines", std::move(style));
     mapnik::layer layer("lines", "epsg:3857");
-    layer.set_datasource(make_source(lines));
+    layer.set_datasource(make_source(frame));
     layer.add_style("lines");
     map.add_layer(std::move(layer));
     map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
@@ -66,7 +100,7 @@ mapnik::Map make_map(const camber_lines &lines, double width_px) {
 
 double draw(const bench_peer_frame *frame) {
     try {
-        const mapnik::Map map = make_map(*frame->lines, static_cast<double>(frame->width_px));
+        const mapnik::Map map = make_map(*frame);
         const auto begin = std::chrono::steady_clock::now();
         mapnik::image_rgba8 image(BENCH_SIDE_PX, BENCH_SIDE_PX);
         mapnik::agg_renderer<mapnik::image_rgba8> renderer(map, image);

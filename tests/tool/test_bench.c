@@ -104,6 +104,27 @@ static void check_frames(const json_t *document) {
     }
 }
 
+/* Made scenes of areas: camber's picture is as near to the samples as they can tell, and every peer's is alike. */
+static void check_areas(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "areas"), "rows"), *row;
+    const size_t peers = json_object_size(json_object_get(document, "peers"));
+    size_t i;
+    assert_int_equal(json_array_size(rows), 2);
+    json_array_foreach(rows, i, row) {
+        const char *key;
+        json_t *peer;
+        assert_true(number_of(row, "cl_frame_ms") > number_of(row, "tessellate_ms"));
+        assert_true(number_of(row, "edges") > 3 * number_of(row, "areas"));
+        assert_true(number_of(row, "error") > 0 && number_of(row, "error") <= 0.15);
+        assert_int_equal(json_object_size(json_object_get(row, "peers")), peers);
+        json_object_foreach(json_object_get(row, "peers"), key, peer) {
+            if (!json_is_true(json_object_get(peer, "alike")))
+                fail_msg("%s fills other areas: it is off by %g of 255", key, number_of(peer, "error"));
+            assert_true(number_of(peer, "ms") > 0 && number_of(peer, "error") > 0);
+        }
+    }
+}
+
 static void check_network(const json_t *document) {
     const json_t *rows = json_object_get(section_of(document, "network"), "rows"), *row;
     size_t i;
@@ -138,6 +159,7 @@ static void test_document(void **state) {
     assert_non_null(json_object_get(json_object_get(document, "gl"), "renderer"));
     check_stages(document);
     check_frames(document);
+    check_areas(document);
     check_network(document);
     check_mosaic(document);
     json_decref(document);

@@ -30,6 +30,8 @@ typedef struct bench_scene {
     camber_lines lines;
     size_t segments;
     float width_px;
+    uint32_t *areas; /* as bench_peer_frame has them. NULL: lines */
+    size_t area_count;
 } bench_scene;
 
 typedef struct bench {
@@ -60,6 +62,7 @@ void bench_close(bench *b);
 
 typedef struct bench_frame_desc {
     const camber_lines *lines; /* everything is drawn; or else */
+    const bench_scene *areas;  /* all of them; or else */
     camber_network *network;   /* what the camera sees of it */
     camber_camera camera;
     float width_px;
@@ -114,7 +117,7 @@ typedef struct bench_yardstick {
 bench_yardstick bench_yardstick_measure(bench *b);
 
 /* The peer's frame in b->pictured: milliseconds, below 0 where it failed. */
-double bench_peer_draw(const bench *b, const bench_peer *peer, const camber_lines *lines, float width_px);
+double bench_peer_draw(const bench *b, const bench_peer *peer, const bench_scene *scene);
 
 /* ---- machine.c ---- */
 
@@ -130,6 +133,9 @@ bool bench_scenes_make(bench *b, const char *key);
 void bench_scenes_free(bench *b);
 /* NULL: not here. */
 const bench_scene *bench_scene_find(const bench *b, const char *key);
+/* As bench_scenes_make, of areas, for a section of their own. Gives how many there are. */
+size_t bench_areas_make(const bench *b, const char *key, bench_scene scenes[BENCH_SCENES_MAX]);
+void bench_areas_free(bench_scene *scenes, size_t count);
 /* Where the scene's map lies. false: it has none here. */
 bool bench_scene_path(const bench *b, const char *key, char *path, size_t size);
 /* Lays cities side by side to so many million points, in a file of its own at path, which the caller removes. ending:
@@ -161,7 +167,8 @@ extern const bench_section *const bench_sections[]; /* NULL behind the last */
 
 extern const bench_section bench_section_stages, bench_section_network, bench_section_frames, bench_section_zooms,
     bench_section_mosaic, bench_section_fly, bench_section_textures, bench_section_growth, bench_section_start,
-    bench_section_encode, bench_section_read, bench_section_tiles, bench_section_serve;
+    bench_section_encode, bench_section_read, bench_section_tiles, bench_section_serve, bench_section_areas,
+    bench_section_city;
 
 json_t *bench_result_new(void);
 typedef camber_status bench_scene_fn(bench *b, const bench_scene *scene, void *user, json_t *result);

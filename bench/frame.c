@@ -69,7 +69,8 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 }
 
 static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, taking *t, camber_frame_stats *stats) {
-    const camber_paint paint = {.width_px = desc->width_px, .color = {0, 0, 0, 1}};
+    const camber_fill fill = {.color = {0, 0, 0, 1}};
+    const camber_paint paint = {.width_px = desc->width_px, .color = {0, 0, 0, 1}, .fill = desc->areas ? &fill : NULL};
     const camber_pass pass = {
         .mesh = desc->in_cl ? b->cl_mesh : b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
     const camber_frame frame = {
@@ -92,10 +93,27 @@ static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, co
     return status;
 }
 
+static camber_status tessellate_areas(bench *b, const bench_frame_desc *desc, const camber_tessellation_desc *strokes) {
+    camber_polylines *rings = NULL;
+    const camber_areas_desc made = {.points = desc->areas->lines.points,
+                                    .point_count = desc->areas->lines.point_count,
+                                    .offsets = desc->areas->lines.offsets,
+                                    .ring_count = desc->areas->lines.polyline_count,
+                                    .rings = desc->areas->areas,
+                                    .area_count = desc->areas->area_count};
+    camber_status status = camber_areas_create(b->context, &made, &rings);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tessellate(desc->in_cl ? b->cl_mesh : b->mesh, rings, strokes);
+    camber_polylines_destroy(rings);
+    return status;
+}
+
 static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
     const camber_stroke stroke = {.width_px = desc->width_px};
     const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
     camber_mesh *mesh = desc->in_cl ? b->cl_mesh : b->mesh;
+    if (desc->areas)
+        return tessellate_areas(b, desc, &strokes);
     return desc->network ? camber_mesh_tessellate_network(mesh, desc->network, &desc->camera, &strokes)
                          : tessellate_lines(b, desc, &strokes);
 }
@@ -176,9 +194,13 @@ double bench_series_median(const bench_series *series) {
 
 /* ---- Peers ---- */
 
-double bench_peer_draw(const bench *b, const bench_peer *peer, const camber_lines *lines, float width_px) {
-    const bench_peer_frame frame = {
-        .lines = lines, .width_px = width_px, .avx2_only = b->avx2_only, .rgba = b->pictured};
+double bench_peer_draw(const bench *b, const bench_peer *peer, const bench_scene *scene) {
+    const bench_peer_frame frame = {.lines = &scene->lines,
+                                    .width_px = scene->width_px,
+                                    .areas = scene->areas,
+                                    .area_count = scene->area_count,
+                                    .avx2_only = b->avx2_only,
+                                    .rgba = b->pictured};
     return peer->draw(&frame);
 }
 
@@ -191,7 +213,7 @@ bench_yardstick bench_yardstick_measure(bench *b) {
         return (bench_yardstick){"memcpy of 1 GB", 2e3 / bench_copy_gb_s(b)};
     bench_series series = {.count = 0};
     for (int run = 0; run < RUNS; run++)
-        bench_series_add(&series, bench_peer_draw(b, bench_peers[0], &walks->lines, walks->width_px));
+        bench_series_add(&series, bench_peer_draw(b, bench_peers[0], walks));
     return (bench_yardstick){strcmp(bench_peers[0]->key, "cairo") == 0 ? "Cairo's long walks"
                                                                        : "the first peer's long walks",
                              bench_series_median(&series)};

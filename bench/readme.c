@@ -1,9 +1,10 @@
 /* The numbers of README.md and docs/performance.md, so that nobody types them.
  *
  * Input: JSON documents of benchmarks, each of another kind of processor. Output: a text file, rewritten between pairs
- * of markers. There are two blocks: "frames" is the one table of README.md, "measured" is everything else. A file may
- * hold either or both. What depends most on the processor stands side by side, a group of columns a document; all else
- * is the first document's. Prose is wrapped at LINE_COLUMNS columns, as all documents are. */
+ * of markers. There are three blocks: "frames" is the one table of README.md, "areas" that of docs/areas.md, "measured"
+ * is everything else. A file may hold any of them. What depends most on the processor stands side by side, a group of
+ * columns a document; all else is the first document's. Prose is wrapped at LINE_COLUMNS columns, as all documents are.
+ */
 #include "bench.h"
 
 #include "base/base.h"
@@ -122,7 +123,8 @@ static void put_dates(const page *p, const run *r) {
     json_t *section;
     json_object_foreach((json_t *)r->sections, key, section) {
         const char *own = bench_text(section, "date");
-        if (!*own || strncmp(own, date, day) == 0)
+        const bool elsewhere = strcmp(key, "areas") == 0 || strcmp(key, "city") == 0; /* in a block with its own date */
+        if (!*own || strncmp(own, date, day) == 0 || elsewhere)
             continue;
         fprintf(p->to, "%s`%s` (%.10s)", before, key, own);
         before = ", ";
@@ -361,6 +363,43 @@ static void put_fly(const page *p) {
         bench_text(row, "city"), bench_number(row, "frames"), bench_number(row, "width"), bench_number(row, "height"));
 }
 
+/* ---- Areas: the table of docs/areas.md ---- */
+
+/* Camber's milliseconds and error; of each library how many times as long its better way takes, and its error. */
+static void put_areas_row(const page *p, const json_t *row) {
+    const double frame_ms = bench_number(row, "cl_frame_ms");
+    const json_t *peers = json_object_get(row, "peers");
+    fprintf(p->to, "| %s |", bench_text(row, "scene"));
+    put_count(bench_number(row, "edges"), p->to);
+    fprintf(p->to, " %.1f, %.3f |", frame_ms, bench_number(row, "error"));
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %.1f, %.3f |", bench_best_peer(peers, p->libraries[k]) / frame_ms,
+                bench_number(json_object_get(peers, bench_best_way(peers, p->libraries[k])), "error"));
+    fputs("\n", p->to);
+}
+
+static void put_areas(const page *p) {
+    const run *r = p->runs;
+    size_t i;
+    const json_t *row;
+    fputs("| areas | edges | camber: ms |", p->to);
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %s |", bench_text(json_object_get(r->peers, p->libraries[k]), "name"));
+    put_rule(3 + p->library_count, p->to);
+    json_array_foreach(rows_of(r, "areas"), i, row) put_areas_row(p, row);
+    fputs("\nFrames of 2048 x 2048 px, all areas black and one path, from rings in memory to pixels in memory. Peers: "
+          "how "
+          "many times as long in their better way. Behind each: the mean error beside 16 x 16 samples a pixel, of 255.",
+          p->to);
+    json_array_foreach(rows_of(r, "city"), i, row)
+        fprintf(p->to, "%s %s in %.1f ms, Mapnik in %.1f times that",
+                i ? ";" : " The style city, areas and lines:", bench_text(row, "scene"),
+                bench_number(row, "cl_frame_ms"), bench_number(row, "mapnik_ms") / bench_number(row, "cl_frame_ms"));
+    fputs(json_array_size(rows_of(r, "city")) ? ".\n\n" : "\n\n", p->to);
+    put_machine(p, r);
+    fprintf(p->to, ", %.10s.\n", bench_text(json_object_get(r->sections, "areas"), "date"));
+}
+
 static void put_textures(const page *p) {
     size_t i;
     const json_t *row;
@@ -481,6 +520,7 @@ static const struct block {
     void (*put)(const page *p);
 } blocks[] = {
     {"<!-- frames: made by ./dev bench --readme -->\n", "<!-- /frames -->\n", put_frames},
+    {"<!-- areas: made by ./dev bench --readme -->\n", "<!-- /areas -->\n", put_areas},
     {"<!-- measured: made by ./dev bench --readme -->\n", "<!-- /measured -->\n", put_measured},
 };
 
@@ -590,8 +630,8 @@ static bool rewrite_file(page *p, const char *path) {
                       camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &text, &size) == CAMBER_OK &&
                       rewrite(p, text, path);
     if (!done)
-        fprintf(stderr, "camber_bench: %s: cannot be written, or lacks one of the lines\n%s%s", path, blocks[0].begin,
-                blocks[1].begin);
+        fprintf(stderr, "camber_bench: %s: cannot be written, or lacks one of the lines\n%s%s%s", path, blocks[0].begin,
+                blocks[1].begin, blocks[2].begin);
     if (context)
         camber_free(context, text);
     camber_context_destroy(context);

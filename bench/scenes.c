@@ -1,4 +1,5 @@
-/* The scenes: roads of real cities and random walks that turn like roads, as polylines in pixels of one square. */
+/* The scenes: roads of real cities and random walks that turn like roads, as polylines in pixels of one square; areas
+ * of such places, and made ones. */
 #include "bench.h"
 
 #include "base/base.h"
@@ -12,23 +13,27 @@
 /* ---- Random walks ---- */
 
 /* In the context's memory, as those of cities are. */
+static bool take_made(camber_context *context, const camber_made_scene *scene, camber_lines *lines) {
+    camber_lines made = {
+        .context = context, .point_count = scene->point_count, .polyline_count = scene->polyline_count};
+    made.offsets = camber_alloc(context, made.polyline_count + 1, sizeof *made.offsets);
+    made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
+    const bool done = made.offsets && made.points;
+    if (done) {
+        memcpy(made.offsets, scene->offsets, (made.polyline_count + 1) * sizeof *made.offsets);
+        memcpy(made.points, scene->points, made.point_count * 2 * sizeof *made.points);
+        *lines = made;
+    } else {
+        camber_lines_destroy(&made);
+    }
+    return done;
+}
+
 static bool make_walks(camber_context *context, size_t polyline_count, double step_px, camber_lines *lines) {
     camber_made_scene scene;
     bool done = camber_road_walks_make(polyline_count, BENCH_SIDE_PX, step_px, &scene);
-    if (done) {
-        camber_lines made = {
-            .context = context, .point_count = scene.point_count, .polyline_count = scene.polyline_count};
-        made.offsets = camber_alloc(context, made.polyline_count + 1, sizeof *made.offsets);
-        made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
-        done = made.offsets && made.points;
-        if (done) {
-            memcpy(made.offsets, scene.offsets, (made.polyline_count + 1) * sizeof *made.offsets);
-            memcpy(made.points, scene.points, made.point_count * 2 * sizeof *made.points);
-            *lines = made;
-        } else {
-            camber_lines_destroy(&made);
-        }
-    }
+    if (done)
+        done = take_made(context, &scene, lines);
     camber_made_scene_free(&scene);
     return done;
 }
@@ -48,6 +53,10 @@ typedef struct city {
     uint32_t *offsets; /* polyline_count + 1 */
     size_t point_count, polyline_count, point_capacity, offset_capacity;
     OGRCoordinateTransformationH to_degrees; /* NULL: they are */
+    bool of_areas;                           /* else of lines */
+    const char *where;                       /* which areas of OpenStreetMap; NULL: all */
+    uint32_t *areas;                         /* area_count + 1 */
+    size_t area_count, area_capacity;
 } city;
 
 static bool add_line(city *c, OGRGeometryH line) {
@@ -69,15 +78,45 @@ static bool add_line(city *c, OGRGeometryH line) {
     return true;
 }
 
+/* Turns the last polyline, a ring, clockwise as seen, or the other way. */
+static void turn_ring(city *c, bool clockwise) {
+    const size_t first = c->offsets[c->polyline_count - 1], end = c->offsets[c->polyline_count];
+    double area = 0;
+    for (size_t i = first; i + 1 < end; i++)
+        area += (c->points[2 * i] - c->points[2 * i + 2]) * (c->points[2 * i + 1] + c->points[2 * i + 3]);
+    for (size_t i = first, k = end; (area > 0) != clockwise && i + 1 < k; i++) {
+        k--;
+        for (size_t axis = 0; axis < 2; axis++) {
+            const double kept = c->points[2 * i + axis];
+            c->points[2 * i + axis] = c->points[2 * k + axis];
+            c->points[2 * k + axis] = kept;
+        }
+    }
+}
+
+static bool add_area(city *c, OGRGeometryH polygon) {
+    if (!camber_grow(c->context, &c->areas, &c->area_capacity, c->area_count + 2, sizeof *c->areas))
+        return false;
+    for (int i = 0; i < OGR_G_GetGeometryCount(polygon); i++) {
+        if (!add_line(c, OGR_G_GetGeometryRef(polygon, i)))
+            return false;
+        turn_ring(c, i == 0);
+    }
+    c->areas[0] = 0;
+    c->areas[++c->area_count] = (uint32_t)c->polyline_count;
+    return true;
+}
+
 static bool add_geometry(city *c, OGRGeometryH geometry) {
     if (!geometry)
         return true;
     const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+    const bool many = type == (c->of_areas ? wkbMultiPolygon : wkbMultiLineString);
     bool done = true;
-    if (type == wkbLineString)
-        done = add_line(c, geometry);
-    for (int i = 0; type == wkbMultiLineString && done && i < OGR_G_GetGeometryCount(geometry); i++)
-        done = add_line(c, OGR_G_GetGeometryRef(geometry, i));
+    if (type == (c->of_areas ? wkbPolygon : wkbLineString))
+        done = c->of_areas ? add_area(c, geometry) : add_line(c, geometry);
+    for (int i = 0; many && done && i < OGR_G_GetGeometryCount(geometry); i++)
+        done = add_geometry(c, OGR_G_GetGeometryRef(geometry, i));
     return done;
 }
 
@@ -106,8 +145,8 @@ static bool read_city(city *c, const char *path) {
     GDALDatasetH file = GDALOpenEx(path, GDAL_OF_VECTOR, NULL, options, NULL);
     bool done = file != NULL;
     if (file && strcmp(GDALGetDriverShortName(GDALGetDatasetDriver(file)), "OSM") == 0) {
-        OGRLayerH layer = GDALDatasetGetLayerByName(file, "lines");
-        OGR_L_SetAttributeFilter(layer, "highway IS NOT NULL");
+        OGRLayerH layer = GDALDatasetGetLayerByName(file, c->of_areas ? "multipolygons" : "lines");
+        OGR_L_SetAttributeFilter(layer, c->of_areas ? c->where : "highway IS NOT NULL");
         done = add_layer(c, layer);
     } else if (file && GDALDatasetGetLayerByName(file, "roads")) {
         done = add_layer(c, GDALDatasetGetLayerByName(file, "roads"));
@@ -160,6 +199,16 @@ static bool make_city(camber_context *context, const char *path, camber_lines *l
     return done;
 }
 
+static bool make_city_areas(camber_context *context, const char *path, const char *where, bench_scene *scene) {
+    city c = {.context = context, .of_areas = true, .where = where};
+    const bool done = read_city(&c, path) && fit(&c, &scene->lines);
+    scene->areas = c.areas;
+    scene->area_count = c.area_count;
+    camber_free(context, c.points);
+    camber_free(context, c.offsets);
+    return done;
+}
+
 #else
 
 static bool make_city(camber_context *context, const char *path, camber_lines *lines) {
@@ -167,6 +216,11 @@ static bool make_city(camber_context *context, const char *path, camber_lines *l
     (void)path;
     (void)lines;
     return false;
+}
+
+static bool make_city_areas(camber_context *context, const char *path, const char *where, bench_scene *scene) {
+    (void)where;
+    return make_city(context, path, &scene->lines);
 }
 
 #endif
@@ -253,4 +307,100 @@ void bench_scenes_free(bench *b) {
     for (size_t i = 0; i < b->scene_count; i++)
         camber_lines_destroy(&b->scenes[i].lines);
     b->scene_count = 0;
+}
+
+/* ---- Areas ---- */
+
+/* Ends the ring that has been added, which is an area. */
+static void end_area(camber_made_scene *made) {
+    const size_t first = made->polyline_count ? made->offsets[made->polyline_count] : 0;
+    if (!made->failed && made->point_count > first)
+        camber_made_scene_point(made, (double)made->points[2 * first], (double)made->points[2 * first + 1]);
+    camber_made_scene_end(made, 0);
+}
+
+/* Houses of 3 to 6 px, each turned its own way, a cell of a grid each. */
+static void add_houses(camber_made_scene *made, size_t count) {
+    const size_t across = (size_t)ceil(sqrt((double)count));
+    const double cell = (double)BENCH_SIDE_PX / (double)across;
+    for (size_t i = 0; i < count; i++) {
+        const double x = cell * ((double)(i % across) + 0.5), y = cell * ((double)(i / across) + 0.5);
+        const double angle = 0.7 * (double)(i % 101), radius = cell * (0.33 + 0.0017 * (double)(i % 97));
+        for (int corner = 0; corner < 4; corner++) {
+            const double turn = angle + corner * 1.5707963267948966 + (corner % 2 ? 0.3 : 0);
+            camber_made_scene_point(made, x + radius * cos(turn), y + radius * sin(turn));
+        }
+        end_area(made);
+    }
+}
+
+/* One island whose shore has waves of all lengths. */
+static void add_island(camber_made_scene *made, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const double turn = 6.283185307179586 * (double)i / (double)count;
+        double radius = 700;
+        for (double wave = 5; wave < (double)count / 8; wave *= 2.7)
+            radius += 700 / (wave + 3) * sin(floor(wave) * turn + wave);
+        camber_made_scene_point(made, 1024 + radius * cos(turn), 1024 + radius * sin(turn));
+    }
+    end_area(made);
+}
+
+typedef struct area_source {
+    const char *key, *name, *file; /* NULL: made */
+    const char *where;             /* an OGR filter; NULL: all areas */
+    void (*add)(camber_made_scene *made, size_t count);
+    size_t count;
+} area_source;
+
+static const area_source area_sources[] = {
+    {.key = "nyc", .name = "New York", .file = "nyc.osm.pbf"},
+    {.key = "helsinki", .name = "Helsinki", .file = "Helsinki-1327152.osm.pbf"},
+    {.key = "liechtenstein",
+     .name = "land use",
+     .file = "liechtenstein-latest.osm.pbf",
+     .where = "landuse IS NOT NULL"},
+    {.key = "houses", .name = "100,000 houses", .add = add_houses, .count = 100000},
+    {.key = "island", .name = "an island", .add = add_island, .count = 1000000},
+};
+
+static bool make_areas(const bench *b, const area_source *from, bench_scene *scene) {
+    camber_made_scene made = {.name = from->name};
+    from->add(&made, b->size == BENCH_TINY ? from->count / 100 : from->count);
+    scene->area_count = made.polyline_count;
+    scene->areas = camber_alloc(b->context, made.polyline_count + 1, sizeof *scene->areas);
+    for (size_t i = 0; scene->areas && i <= scene->area_count; i++)
+        scene->areas[i] = (uint32_t)i;
+    const bool done = !made.failed && scene->areas && take_made(b->context, &made, &scene->lines);
+    camber_made_scene_free(&made);
+    return done;
+}
+
+static bool make_area_scene(const bench *b, const area_source *from, bench_scene *scene) {
+    char path[1024];
+    *scene = (bench_scene){.key = from->key, .name = from->name};
+    snprintf(path, sizeof path, "%s/data/%s", b->data ? b->data : "", from->file ? from->file : "");
+    const bool done = from->file ? make_city_areas(b->context, path, from->where, scene) : make_areas(b, from, scene);
+    if (!done)
+        fprintf(stderr, "camber_bench: areas of %s are left out\n", from->name);
+    scene->segments = done ? scene->lines.point_count - scene->lines.polyline_count : 0;
+    return done;
+}
+
+size_t bench_areas_make(const bench *b, const char *key, bench_scene scenes[BENCH_SCENES_MAX]) {
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof area_sources / sizeof *area_sources; i++) {
+        const area_source *from = area_sources + i;
+        const bool here = from->file ? b->data && b->size != BENCH_TINY : b->size != BENCH_QUICK;
+        if (here && (!key || strcmp(key, from->key) == 0) && make_area_scene(b, from, scenes + count))
+            count++;
+    }
+    return count;
+}
+
+void bench_areas_free(bench_scene *scenes, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        camber_free(scenes[i].lines.context, scenes[i].areas);
+        camber_lines_destroy(&scenes[i].lines);
+    }
 }

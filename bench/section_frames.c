@@ -73,7 +73,7 @@ static camber_status draw_ours(trial *t, bool counts) {
 
 static void draw_peers(trial *t, bool counts) {
     for (size_t i = 0; i < bench_peer_count && i < PEERS_MAX; i++) {
-        const double ms = bench_peer_draw(t->b, bench_peers[i], &t->scene->lines, t->scene->width_px);
+        const double ms = bench_peer_draw(t->b, bench_peers[i], t->scene);
         if (!counts)
             t->differences[i] = ms > 0 ? difference_of(t->b->picture, t->b->pictured) : -1;
         else if (ms > 0)

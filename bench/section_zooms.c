@@ -63,12 +63,13 @@ static camber_status measure_view(const trial *t, int zoom, float width_px, json
     desc.camera.x = t->middle[0];
     desc.camera.y = t->middle[1];
     desc.camera.scale_px = ldexp(1, zoom);
+    const bench_scene seen = {.lines = t->seen, .width_px = width_px};
     bench_series draw = {.count = 0}, frame = {.count = 0}, peer = {.count = 0};
     camber_status status = CAMBER_OK;
     for (int run = -1; run < RUNS && status == CAMBER_OK; run++) {
         bench_frame_times times = {0};
         status = bench_frame(b, &desc, &times);
-        const double peer_ms = bench_peer_count ? bench_peer_draw(b, bench_peers[0], &t->seen, width_px) : 0;
+        const double peer_ms = bench_peer_count ? bench_peer_draw(b, bench_peers[0], &seen) : 0;
         if (run < 0)
             continue;
         bench_series_add(&draw, times.draw_ms);

@@ -1,4 +1,5 @@
-/* Anti-Grain Geometry: conv_stroke into the scanline rasterizer, every polyline by itself or all of them in one. */
+/* Anti-Grain Geometry: conv_stroke or rings into the scanline rasterizer, every part by itself or all of them in one.
+ */
 #include "peers/peer.h"
 
 #include <agg_conv_stroke.h>
@@ -36,13 +37,18 @@ class line_source {
 using pixels = agg::pixfmt_rgba32;
 using rasterizer = agg::rasterizer_scanline_aa<>;
 
-void add_line(rasterizer &cells, const camber_lines &lines, std::size_t polyline, double width_px) {
+void add_line(rasterizer &cells, const bench_peer_frame &frame, std::size_t polyline) {
+    const camber_lines &lines = *frame.lines;
     const std::size_t first = lines.offsets[polyline], end = lines.offsets[polyline + 1];
     if (end - first < 2)
         return;
     line_source source(lines.points + 2 * first, end - first);
+    if (frame.areas) {
+        cells.add_path(source);
+        return;
+    }
     agg::conv_stroke<line_source> stroke(source);
-    stroke.width(width_px);
+    stroke.width(static_cast<double>(frame.width_px));
     stroke.line_join(agg::round_join);
     stroke.line_cap(agg::butt_cap);
     cells.add_path(stroke);
@@ -57,8 +63,9 @@ double draw(const bench_peer_frame *frame, bool one_path) {
     rasterizer cells(one_path ? 65536 : 1024); /* blocks of cells: all lines at once take more than its usual limit */
     cells.clip_box(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX);
     agg::scanline_u8 scanline;
-    for (std::size_t i = 0; i < frame->lines->polyline_count; i++) {
-        add_line(cells, *frame->lines, i, static_cast<double>(frame->width_px));
+    for (std::size_t i = 0; i < bench_peer_part_count(frame); i++) {
+        for (std::size_t k = bench_peer_first_of(frame, i); k < bench_peer_first_of(frame, i + 1); k++)
+            add_line(cells, *frame, k);
         if (!one_path)
             agg::render_scanlines_aa_solid(cells, scanline, base, agg::rgba8(0, 0, 0));
     }

@@ -1,4 +1,5 @@
-/* Blend2D: every polyline stroked by itself, or all of them as one path; by one thread, and by as many as there are. */
+/* Blend2D: every polyline stroked or every area filled by itself, or all of them as one path; by one thread, and by as
+ * many as there are. */
 #include "peers/peer.h"
 
 #include <blend2d/blend2d.h>
@@ -27,17 +28,23 @@ void add_line(BLPath &path, const camber_lines &lines, std::size_t polyline) {
         path.line_to(static_cast<double>(lines.points[2 * k]), static_cast<double>(lines.points[2 * k + 1]));
 }
 
-BLResult stroke_all(BLContext &context, const camber_lines &lines, bool one_path) {
+BLResult put(BLContext &context, const BLPath &path, bool area) {
+    const BLRgba32 black(0xff000000u);
+    return area ? context.fill_path(path, black) : context.stroke_path(path, black);
+}
+
+BLResult put_all(BLContext &context, const bench_peer_frame &frame, bool one_path) {
     BLPath path;
     BLResult result = BL_SUCCESS;
-    for (std::size_t i = 0; i < lines.polyline_count && result == BL_SUCCESS; i++) {
-        add_line(path, lines, i);
+    for (std::size_t i = 0; i < bench_peer_part_count(&frame) && result == BL_SUCCESS; i++) {
+        for (std::size_t k = bench_peer_first_of(&frame, i); k < bench_peer_first_of(&frame, i + 1); k++)
+            add_line(path, *frame.lines, k);
         if (one_path)
             continue;
-        result = context.stroke_path(path, BLRgba32(0xff000000u));
+        result = put(context, path, frame.areas != nullptr);
         path.clear();
     }
-    return one_path ? context.stroke_path(path, BLRgba32(0xff000000u)) : result;
+    return one_path ? put(context, path, frame.areas != nullptr) : result;
 }
 
 void set_stroke(BLContext &context, float width_px) {
@@ -47,10 +54,11 @@ void set_stroke(BLContext &context, float width_px) {
     context.set_flatten_tolerance(tolerance_px);
 }
 
-BLResult draw_lines_on(BLContext &context, const bench_peer_frame &frame, bool one_path) {
+BLResult draw_on(BLContext &context, const bench_peer_frame &frame, bool one_path) {
     context.fill_all(BLRgba32(0xffffffffu));
     set_stroke(context, frame.width_px);
-    return stroke_all(context, *frame.lines, one_path);
+    context.set_fill_rule(BL_FILL_RULE_NON_ZERO);
+    return put_all(context, frame, one_path);
 }
 
 /* A context that may not use all of the processor compiles its code by itself, and keeps it for no other context: it
@@ -65,7 +73,10 @@ BLResult compile(BLContext &context, const bench_peer_frame &frame, bool one_pat
     line.polyline_count = 1;
     bench_peer_frame small = frame;
     small.lines = &line;
-    const BLResult result = draw_lines_on(context, small, one_path);
+    const uint32_t area[] = {0, 1};
+    small.areas = frame.areas ? area : nullptr;
+    small.area_count = 1;
+    const BLResult result = draw_on(context, small, one_path);
     return result == BL_SUCCESS ? context.flush(BL_CONTEXT_FLUSH_SYNC) : result;
 }
 
@@ -89,7 +100,7 @@ double draw(const bench_peer_frame *frame, unsigned threads, bool one_path) {
         begin = std::chrono::steady_clock::now();
     }
     if (result == BL_SUCCESS)
-        result = draw_lines_on(context, *frame, one_path);
+        result = draw_on(context, *frame, one_path);
     context.end();
     const auto end = std::chrono::steady_clock::now();
     return result == BL_SUCCESS ? std::chrono::duration<double, std::milli>(end - begin).count() : -1;

@@ -1,4 +1,5 @@
-/* Cairo's image surface: every polyline stroked by itself, or all of them as one path, which gives their true union. */
+/* Cairo's image surface: every polyline stroked or every area filled by itself, or all of them as one path, which gives
+ * their true union. */
 #include "peers/peer.h"
 
 #include "base/base.h"
@@ -33,12 +34,14 @@ static double draw(const bench_peer_frame *frame, bool one_path) {
     cairo_set_line_width(cairo, (double)frame->width_px);
     cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
     cairo_set_tolerance(cairo, 0.25);
-    for (size_t i = 0; i < frame->lines->polyline_count; i++) {
-        add_line(cairo, frame->lines, i);
+    void (*const put)(cairo_t *) = frame->areas ? cairo_fill : cairo_stroke;
+    for (size_t i = 0; i < bench_peer_part_count(frame); i++) {
+        for (size_t k = bench_peer_first_of(frame, i); k < bench_peer_first_of(frame, i + 1); k++)
+            add_line(cairo, frame->lines, k);
         if (!one_path)
-            cairo_stroke(cairo);
+            put(cairo);
     }
-    cairo_stroke(cairo);
+    put(cairo);
     cairo_surface_flush(surface);
     const double ms = camber_now_ms() - begin;
     const bool done = cairo_status(cairo) == CAIRO_STATUS_SUCCESS;

@@ -1,5 +1,6 @@
-/* Mapnik's renderer over lines in memory: a line symbolizer as a style would have it, neither simplified nor smoothed.
- */
+/* Mapnik's renderer over lines or areas in memory: a symbolizer as a style would have it, neither simplified nor
+ * smoothed. */
+#include "peers/layers.h"
 #include "peers/peer.h"
 
 #include <mapnik/agg_renderer.hpp>
@@ -17,66 +18,177 @@
 #include <chrono>
 #include <cstring>
 #include <exception>
+#include <string>
 
 namespace {
 
 /* A map unit a pixel, y up. */
-std::shared_ptr<mapnik::memory_datasource> make_source(const camber_lines &lines) {
+template <typename line_type>
+line_type make_line(const camber_lines &lines, std::size_t polyline, double shift_px = 0) {
+    const std::size_t first = lines.offsets[polyline], end = lines.offsets[polyline + 1];
+    line_type line;
+    line.reserve(end - first);
+    for (std::size_t k = first; k < end; k++)
+        line.emplace_back(static_cast<double>(lines.points[2 * k]) - shift_px,
+                          BENCH_SIDE_PX + shift_px - static_cast<double>(lines.points[2 * k + 1]));
+    return line;
+}
+
+/* Of an outer ring and its holes: the polylines [first, end). */
+mapnik::geometry::polygon<double> make_area(const camber_lines &lines, std::size_t first, std::size_t end,
+                                            double shift_px = 0) {
+    mapnik::geometry::polygon<double> polygon;
+    for (std::size_t k = first; k < end; k++) {
+        auto ring = make_line<mapnik::geometry::linear_ring<double>>(lines, k, shift_px);
+#if MAPNIK_MAJOR_VERSION >= 4
+        polygon.push_back(std::move(ring));
+#else
+        if (k == first)
+            polygon.set_exterior_ring(std::move(ring));
+        else
+            polygon.add_hole(std::move(ring));
+#endif
+    }
+    return polygon;
+}
+
+std::shared_ptr<mapnik::memory_datasource> make_source(const bench_peer_frame &frame) {
+    const camber_lines &lines = *frame.lines;
     mapnik::parameters parameters;
     parameters["type"] = "memory";
     const auto source = std::make_shared<mapnik::memory_datasource>(parameters);
     const auto context = std::make_shared<mapnik::context_type>();
-    for (std::size_t i = 0; i < lines.polyline_count; i++) {
-        const std::size_t first = lines.offsets[i], end = lines.offsets[i + 1];
-        if (end - first < 2)
+    for (std::size_t i = 0; i < bench_peer_part_count(&frame); i++) {
+        if (!frame.areas && lines.offsets[i + 1] - lines.offsets[i] < 2)
             continue;
-        mapnik::geometry::line_string<double> line;
-        line.reserve(end - first);
-        for (std::size_t k = first; k < end; k++)
-            line.emplace_back(static_cast<double>(lines.points[2 * k]),
-                              BENCH_SIDE_PX - static_cast<double>(lines.points[2 * k + 1]));
         const mapnik::feature_ptr feature =
             mapnik::feature_factory::create(context, static_cast<mapnik::value_integer>(i + 1));
-        feature->set_geometry(std::move(line));
+        if (frame.areas)
+            feature->set_geometry(make_area(lines, frame.areas[i], frame.areas[i + 1]));
+        else
+            feature->set_geometry(make_line<mapnik::geometry::line_string<double>>(lines, i));
         source->push(feature);
     }
     return source;
 }
 
-mapnik::Map make_map(const camber_lines &lines, double width_px) {
-    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
-    map.set_background(mapnik::color(255, 255, 255));
+mapnik::rule make_rule(const bench_peer_frame &frame) {
+    mapnik::rule rule;
+    if (frame.areas) {
+        mapnik::polygon_symbolizer symbolizer;
+        mapnik::put(symbolizer, mapnik::keys::fill, mapnik::color(0, 0, 0));
+        rule.append(std::move(symbolizer));
+        return rule;
+    }
     mapnik::line_symbolizer symbolizer;
     mapnik::put(symbolizer, mapnik::keys::stroke, mapnik::color(0, 0, 0));
-    mapnik::put(symbolizer, mapnik::keys::stroke_width, width_px);
+    mapnik::put(symbolizer, mapnik::keys::stroke_width, static_cast<double>(frame.width_px));
     mapnik::put(symbolizer, mapnik::keys::stroke_linejoin, mapnik::line_join_enum::ROUND_JOIN);
     mapnik::put(symbolizer, mapnik::keys::stroke_linecap, mapnik::line_cap_enum::BUTT_CAP);
-    mapnik::rule rule;
     rule.append(std::move(symbolizer));
+    return rule;
+}
+
+mapnik::Map make_map(const bench_peer_frame &frame) {
+    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
+    map.set_background(mapnik::color(255, 255, 255));
     mapnik::feature_type_style style;
-    style.add_rule(std::move(rule));
+    style.add_rule(make_rule(frame));
     map.insert_style("lines", std::move(style));
     mapnik::layer layer("lines", "epsg:3857");
-    layer.set_datasource(make_source(lines));
+    layer.set_datasource(make_source(frame));
     layer.add_style("lines");
     map.add_layer(std::move(layer));
     map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
     return map;
 }
 
+double render(const mapnik::Map &map, uint8_t *rgba) {
+    const auto begin = std::chrono::steady_clock::now();
+    mapnik::image_rgba8 image(BENCH_SIDE_PX, BENCH_SIDE_PX);
+    mapnik::agg_renderer<mapnik::image_rgba8> renderer(map, image);
+    renderer.apply();
+    const auto end = std::chrono::steady_clock::now();
+    std::memcpy(rgba, image.bytes(), image.size());
+    return std::chrono::duration<double, std::milli>(end - begin).count();
+}
+
 double draw(const bench_peer_frame *frame) {
     try {
-        const mapnik::Map map = make_map(*frame->lines, static_cast<double>(frame->width_px));
-        const auto begin = std::chrono::steady_clock::now();
-        mapnik::image_rgba8 image(BENCH_SIDE_PX, BENCH_SIDE_PX);
-        mapnik::agg_renderer<mapnik::image_rgba8> renderer(map, image);
-        renderer.apply();
-        const auto end = std::chrono::steady_clock::now();
-        std::memcpy(frame->rgba, image.bytes(), image.size());
-        return std::chrono::duration<double, std::milli>(end - begin).count();
+        return render(make_map(*frame), frame->rgba);
     } catch (const std::exception &) {
         return -1;
     }
+}
+
+/* ---- Layers of a style ---- */
+
+mapnik::color color_of(const camber_color &color) {
+    const auto level = [](float share) { return static_cast<uint8_t>(255 * share + 0.5f); };
+    return mapnik::color(level(color.r), level(color.g), level(color.b), level(color.a));
+}
+
+/* Twice its area, above 0 where it runs clockwise as seen. */
+double area_of(const camber_lines &lines, std::size_t ring) {
+    double area = 0;
+    for (std::size_t k = lines.offsets[ring]; k + 1 < lines.offsets[ring + 1]; k++) {
+        const float *p = lines.points + 2 * k;
+        area += static_cast<double>(p[0]) * static_cast<double>(p[3]) -
+                static_cast<double>(p[2]) * static_cast<double>(p[1]);
+    }
+    return area;
+}
+
+std::shared_ptr<mapnik::memory_datasource> make_source(const bench_layer &layer) {
+    mapnik::parameters parameters;
+    parameters["type"] = "memory";
+    const auto source = std::make_shared<mapnik::memory_datasource>(parameters);
+    const auto context = std::make_shared<mapnik::context_type>();
+    std::size_t next;
+    for (std::size_t i = layer.first; i < layer.end; i = next) {
+        next = i + 1;
+        while (layer.area && next < layer.end && area_of(*layer.lines, next) <= 0)
+            next++;
+        if (layer.lines->offsets[i + 1] - layer.lines->offsets[i] < 2)
+            continue;
+        const mapnik::feature_ptr feature =
+            mapnik::feature_factory::create(context, static_cast<mapnik::value_integer>(i + 1));
+        if (layer.area)
+            feature->set_geometry(make_area(*layer.lines, i, next, layer.shift_px));
+        else
+            feature->set_geometry(make_line<mapnik::geometry::line_string<double>>(*layer.lines, i, layer.shift_px));
+        source->push(feature);
+    }
+    return source;
+}
+
+mapnik::rule make_rule(const bench_layer &layer) {
+    mapnik::rule rule;
+    if (layer.area) {
+        mapnik::polygon_symbolizer symbolizer;
+        mapnik::put(symbolizer, mapnik::keys::fill, color_of(layer.color));
+        rule.append(std::move(symbolizer));
+        return rule;
+    }
+    mapnik::line_symbolizer symbolizer;
+    mapnik::put(symbolizer, mapnik::keys::stroke, color_of(layer.color));
+    mapnik::put(symbolizer, mapnik::keys::stroke_width, static_cast<double>(layer.width_px));
+    mapnik::put(symbolizer, mapnik::keys::stroke_linejoin, mapnik::line_join_enum::ROUND_JOIN);
+    mapnik::put(symbolizer, mapnik::keys::stroke_linecap,
+                layer.cap == CAMBER_CAP_ROUND ? mapnik::line_cap_enum::ROUND_CAP : mapnik::line_cap_enum::BUTT_CAP);
+    rule.append(std::move(symbolizer));
+    return rule;
+}
+
+void add_layer(mapnik::Map &map, const bench_layer &layer, const std::string &name) {
+    mapnik::feature_type_style style;
+    style.add_rule(make_rule(layer));
+    style.set_opacity(layer.opacity);
+    map.insert_style(name, std::move(style));
+    mapnik::layer made(name, "epsg:3857");
+    made.set_datasource(make_source(layer));
+    made.add_style(name);
+    map.add_layer(std::move(made));
 }
 
 const char *version() {
@@ -88,5 +200,19 @@ const char *build() {
 }
 
 } // namespace
+
+extern "C" double bench_mapnik_layers(const bench_layer *layers, std::size_t count, camber_color background,
+                                      uint8_t *rgba) {
+    try {
+        mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
+        map.set_background(color_of(background));
+        for (std::size_t i = 0; i < count; i++)
+            add_layer(map, layers[i], std::to_string(i));
+        map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
+        return render(map, rgba);
+    } catch (const std::exception &) {
+        return -1;
+    }
+}
 
 extern "C" const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", "", version, build, draw};

@@ -1,5 +1,6 @@
 /* A renderer that a user could pick instead: it draws the same polylines, black on white, with round joins and butt
- * caps, each polyline open, to a picture in memory on the CPU. C and C++ read this. */
+ * caps, each polyline open, to a picture in memory on the CPU. Or it fills the same areas, by the non-zero rule. C and
+ * C++ read this. */
 #ifndef CAMBER_BENCH_PEERS_PEER_H
 #define CAMBER_BENCH_PEERS_PEER_H
 
@@ -16,6 +17,10 @@ enum { BENCH_SIDE_PX = 2048 };
 typedef struct bench_peer_frame {
     const camber_lines *lines; /* in pixels */
     float width_px;
+    /* Area i has the polylines [areas[i], areas[i + 1]), rings whose last point is the first: outer ones wind one way,
+     * holes the other. NULL: lines are stroked. */
+    const uint32_t *areas;
+    size_t area_count;
     bool avx2_only; /* a peer that makes its code at run time makes none that needs more than AVX2 */
     uint8_t *rgba;  /* BENCH_SIDE_PX rows of as many pixels of four bytes, whose first three will be equal */
 } bench_peer_frame;
@@ -37,6 +42,15 @@ extern const bench_peer *const bench_peers[];
 extern const size_t bench_peer_count;
 /* "Mapnik (libmapnik-dev), ...": what is not built in. "": nothing is missing. */
 extern const char *const bench_peers_missing;
+
+/* Parts are drawn one after the other, unless everything is one path: lines, or areas with their holes. */
+static inline size_t bench_peer_part_count(const bench_peer_frame *frame) {
+    return frame->areas ? frame->area_count : frame->lines->polyline_count;
+}
+
+static inline size_t bench_peer_first_of(const bench_peer_frame *frame, size_t part) {
+    return frame->areas ? frame->areas[part] : part;
+}
 
 extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_agg, bench_peer_agg_path, bench_peer_mapnik,
     bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads, bench_peer_blend2d_threads_path,

@@ -1,6 +1,6 @@
-/* ThorVG's CPU engine, a shape a polyline: by one thread, and by as many as there are, which outline the shapes while
- * the calling one fills them. All polylines in one shape take some 40 times as long, so that way is left out: the cells
- * of a row are a list that is walked for each cell. */
+/* ThorVG's CPU engine, a shape a polyline or an area: by one thread, and by as many as there are, which outline the
+ * shapes while the calling one fills them. All polylines in one shape take some 40 times as long, so that way is left
+ * out: the cells of a row are a list that is walked for each cell. */
 #include "peers/peer.h"
 
 #include <thorvg.h>
@@ -11,15 +11,23 @@
 
 namespace {
 
-tvg::Shape *make_shape(const bench_peer_frame &frame, std::size_t polyline) {
-    const camber_lines &lines = *frame.lines;
-    tvg::Shape *shape = tvg::Shape::gen();
+void add_line(tvg::Shape *shape, const camber_lines &lines, std::size_t polyline) {
     for (std::size_t k = lines.offsets[polyline]; k < lines.offsets[polyline + 1]; k++) {
         const float x = lines.points[2 * k], y = lines.points[2 * k + 1];
         if (k == lines.offsets[polyline])
             shape->moveTo(x, y);
         else
             shape->lineTo(x, y);
+    }
+}
+
+tvg::Shape *make_shape(const bench_peer_frame &frame, std::size_t part) {
+    tvg::Shape *shape = tvg::Shape::gen();
+    for (std::size_t k = bench_peer_first_of(&frame, part); k < bench_peer_first_of(&frame, part + 1); k++)
+        add_line(shape, *frame.lines, k);
+    if (frame.areas) {
+        shape->fill(0, 0, 0);
+        return shape;
     }
     shape->strokeWidth(frame.width_px);
     shape->strokeFill(0, 0, 0);
@@ -28,12 +36,12 @@ tvg::Shape *make_shape(const bench_peer_frame &frame, std::size_t polyline) {
     return shape;
 }
 
-/* A white ground, and the lines over it: the library's own form of them. */
+/* A white ground, and the lines or areas over it: the library's own form of them. */
 std::vector<tvg::Shape *> make_shapes(const bench_peer_frame &frame) {
     std::vector<tvg::Shape *> shapes{tvg::Shape::gen()};
     shapes[0]->appendRect(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX);
     shapes[0]->fill(255, 255, 255);
-    for (std::size_t i = 0; i < frame.lines->polyline_count; i++)
+    for (std::size_t i = 0; i < bench_peer_part_count(&frame); i++)
         shapes.push_back(make_shape(frame, i));
     return shapes;
 }

@@ -209,3 +209,124 @@ bool camber_oracle_stroke(camber_oracle_window *window, const float *points, siz
     free(p);
     return true;
 }
+
+/* ---- Areas ---- */
+
+typedef struct crossing {
+    int sample; /* of the row, the first that lies to the right */
+    int winding;
+} crossing;
+
+/* Edges by the row of pixels that they begin in, as indices of their first points. */
+typedef struct edge_rows {
+    size_t *first; /* height + 1 */
+    size_t *edges;
+    size_t *active; /* edges that reach into the row at hand */
+    size_t active_count;
+    crossing *crossings;
+} edge_rows;
+
+/* The first row of pixels that an edge touches; height: none. */
+static int first_row_of(const float *p, int height) {
+    const double top = fmin((double)p[1], (double)p[3]), bottom = fmax((double)p[1], (double)p[3]);
+    return bottom <= 0 || top >= height || top == bottom ? height : top < 0 ? 0 : (int)top;
+}
+
+/* Counts edges by row, or puts them where the counts say. */
+static void sort_edges(const camber_lines *rings, int height, edge_rows *rows, bool put) {
+    for (size_t k = 0; k < rings->polyline_count; k++)
+        for (size_t i = rings->offsets[k]; i + 1 < rings->offsets[k + 1]; i++) {
+            const int row = first_row_of(rings->points + 2 * i, height);
+            if (row < height && put)
+                rows->edges[rows->first[row]++] = i;
+            else if (row < height)
+                rows->first[row + 1]++;
+        }
+}
+
+static bool open_edges(const camber_lines *rings, int height, edge_rows *rows) {
+    rows->first = calloc((size_t)height + 2, sizeof *rows->first);
+    rows->edges = malloc((rings->point_count + 1) * sizeof *rows->edges);
+    rows->active = malloc((rings->point_count + 1) * sizeof *rows->active);
+    rows->crossings = malloc((rings->point_count + 1) * sizeof *rows->crossings);
+    if (!rows->first || !rows->edges || !rows->active || !rows->crossings)
+        return false;
+    sort_edges(rings, height, rows, false);
+    for (int row = 0; row < height; row++)
+        rows->first[row + 1] += rows->first[row];
+    sort_edges(rings, height, rows, true);
+    for (int row = height; row > 0; row--)
+        rows->first[row] = rows->first[row - 1];
+    rows->first[0] = 0;
+    return true;
+}
+
+static void close_edges(edge_rows *rows) {
+    free(rows->first);
+    free(rows->edges);
+    free(rows->active);
+    free(rows->crossings);
+}
+
+static int compare_crossings(const void *a, const void *b) {
+    return ((const crossing *)a)->sample - ((const crossing *)b)->sample;
+}
+
+/* Where the edges at hand cross a row of samples, whose first lies at x = start, from left to right. */
+static size_t cross_row(const camber_lines *rings, edge_rows *rows, double y, double start, int samples) {
+    size_t count = 0;
+    for (size_t i = 0; i < rows->active_count; i++) {
+        const float *p = rings->points + 2 * rows->active[i];
+        const double x0 = (double)p[0], y0 = (double)p[1], x1 = (double)p[2], y1 = (double)p[3];
+        if ((y0 <= y) == (y1 <= y))
+            continue;
+        const double x = x0 + (y - y0) / (y1 - y0) * (x1 - x0), sample = ceil((x - start) * SIDE);
+        const int at = sample < 0 ? 0 : sample > samples ? samples : (int)sample;
+        rows->crossings[count++] = (crossing){at, y1 > y0 ? 1 : -1};
+    }
+    qsort(rows->crossings, count, sizeof *rows->crossings, compare_crossings);
+    return count;
+}
+
+/* Adds samples [first, end) of a row to the shares of its pixels. */
+static void add_samples(float *shares, int first, int end) {
+    const float one = 1.0f / (SIDE * SIDE);
+    while (first < end) {
+        const int pixel = first / SIDE, next = (pixel + 1) * SIDE < end ? (pixel + 1) * SIDE : end;
+        shares[pixel] += one * (float)(next - first);
+        first = next;
+    }
+}
+
+static void fill_row(const camber_lines *rings, edge_rows *rows, bool odd, int width, int row, float *shares) {
+    size_t kept = 0;
+    for (size_t i = 0; i < rows->active_count; i++) {
+        const float *p = rings->points + 2 * rows->active[i];
+        if (fmaxf(p[1], p[3]) > (float)row)
+            rows->active[kept++] = rows->active[i];
+    }
+    for (size_t i = rows->first[row]; i < rows->first[row + 1]; i++)
+        rows->active[kept++] = rows->edges[i];
+    rows->active_count = kept;
+    for (int k = 0; k < SIDE; k++) {
+        /* A row's samples lie at their own place of their columns, so that upright edges are met by 256 levels. */
+        const size_t count = cross_row(rings, rows, row + (k + 0.5) / SIDE, sample_at(0, k), width * SIDE);
+        int winding = 0;
+        for (size_t i = 0; i < count; i++) {
+            winding += rows->crossings[i].winding;
+            if (odd ? winding % 2 != 0 : winding != 0)
+                add_samples(shares, rows->crossings[i].sample,
+                            i + 1 < count ? rows->crossings[i + 1].sample : width * SIDE);
+        }
+    }
+}
+
+bool camber_oracle_fill(const camber_lines *rings, bool odd, int width, int height, float *shares) {
+    edge_rows rows = {.active_count = 0};
+    const bool done = open_edges(rings, height, &rows);
+    memset(shares, 0, (size_t)width * (size_t)height * sizeof *shares);
+    for (int row = 0; row < height && done; row++)
+        fill_row(rings, &rows, odd, width, row, shares + (size_t)row * (size_t)width);
+    close_edges(&rows);
+    return done;
+}

@@ -6,6 +6,8 @@
  *                                  miter: the kite of point, corners and tip; past the limit the bevel
  *                                  bevel: the triangle of point and corners
  *   the caps                       round: half a disc; square: half a width more of the rectangle
+ *
+ * And about areas: a sample is inside by how often the rings wind around it.
  */
 #ifndef CAMBER_VALIDATE_ORACLE_H
 #define CAMBER_VALIDATE_ORACLE_H
@@ -40,6 +42,11 @@ void camber_oracle_close(camber_oracle_window *window);
  */
 bool camber_oracle_stroke(camber_oracle_window *window, const float *points, size_t count,
                           const camber_oracle_style *style);
+
+/* The share of each pixel, 0 to 1, that rings wind around a number of times that is not 0 in sum; odd: an odd number.
+ * Rings end where they begin. By 16 rows of 16 samples a pixel, and by where the rings' edges cross these rows.
+ * shares: width * height, rows from the top down. false: out of memory. */
+bool camber_oracle_fill(const camber_lines *rings, bool odd, int width, int height, float *shares);
 
 /* 0 to 1, of the pixel whose corner is x0 + column, y0 + row. */
 double camber_oracle_coverage(const camber_oracle_window *window, int column, int row);

@@ -190,7 +190,7 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const cambe
 
 /* ---- Drawing ---- */
 
-enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130, PICTURES = 3 };
+enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130, PICTURES = 5 };
 typedef uint8_t picture[4 * PICTURE_WIDTH * PICTURE_HEIGHT];
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
@@ -219,12 +219,15 @@ static camber_paint rich_paint(int row, float width_px) {
 }
 
 /* Pictures of the lines, opaque and in a united layer over a translucent fill, seen from above and at an angle, and
- * with all that paints have. */
+ * with all that paints have. Then the same lines as rings of areas, by both rules and with an image, between lines. */
 static bool draw(camber_device *device, camber_context *context, const camber_made_scene *s,
                  const camber_stroke *strokes, picture pictures[PICTURES]) {
     const camber_polylines_desc desc = camber_made_scene_polylines(s);
     const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .has_arc_length = true};
-    camber_paint paints[3][ROWS];
+    const camber_fill fills[] = {{.color = {1, 0, 0, 0.5f}},
+                                 {.color = {0, 1, 0, 1}, .rule = CAMBER_FILL_EVENODD},
+                                 {.color = {0, 0, 0, 1}, .image = &small_image, .bearing_deg = 30}};
+    camber_paint paints[4][ROWS];
     camber_polylines *polylines = NULL;
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
@@ -232,6 +235,7 @@ static bool draw(camber_device *device, camber_context *context, const camber_ma
         paints[0][i] = (camber_paint){.width_px = strokes[i].width_px, .color = {0, 0, 0.1f * (float)i, 1}};
         paints[1][i] = (camber_paint){.width_px = 0.1f * strokes[i].width_px, .color = {1, 1, 1, 0.5f}};
         paints[2][i] = rich_paint(i, strokes[i].width_px);
+        paints[3][i] = i % 4 == 3 ? paints[1][i] : (camber_paint){.fill = fills + i % 4};
     }
     bool good = camber_polylines_create(context, &desc, &polylines) == CAMBER_OK &&
                 camber_renderer_create(device, NULL, NULL, &renderer) == CAMBER_OK &&
@@ -243,12 +247,17 @@ static bool draw(camber_device *device, camber_context *context, const camber_ma
     const camber_pass rich_passes[] = {
         {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 0, 0, 1}, .image = &small_image, .bearing_deg = 30}},
         {.mesh = mesh, .paints = paints[2], .paint_count = ROWS}};
+    const camber_pass areas = {.mesh = mesh, .paints = paints[3], .paint_count = ROWS, .opacity = 0.7f};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
     good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;
     good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
     frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = rich_passes, .pass_count = 2};
     good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
+    frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = &areas, .pass_count = 1};
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[3], NULL) == CAMBER_OK;
+    frame.pitch_deg = 75;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[4], NULL) == CAMBER_OK;
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     camber_polylines_destroy(polylines);

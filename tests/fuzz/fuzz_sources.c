@@ -11,7 +11,10 @@ static const char head[] = "{\"version\": 8, \"sources\": {\"s\": {\"type\": \"g
 static const char tail[] =
     "}}, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": [\"case\", "
     "[\"==\", [\"get\", \"highway\"], \"primary\"], 8, [\"has\", \"level\"], [\"to-number\", [\"get\", \"level\"], 1], "
-    "2], \"line-color\": [\"to-color\", [\"get\", \"name\"], \"red\"]}}]}";
+    "2], \"line-color\": [\"to-color\", [\"get\", \"name\"], \"red\"]}}, "
+    "{\"id\": \"areas\", \"type\": \"fill\", \"source\": \"s\", \"layout\": {\"fill-sort-key\": [\"get\", \"level\"]}, "
+    "\"paint\": {\"fill-color\": [\"to-color\", [\"get\", \"name\"], \"blue\"], \"fill-outline-color\": \"#123\", "
+    "\"fill-translate\": [3, -2]}}]}";
 
 static void read_sources(fuzz_run *run, const camber_style *style) {
     const camber_view_desc view = {.width = 200, .height = 100, .bearing_deg = run->hash & 1 ? 30.0 : 0.0};

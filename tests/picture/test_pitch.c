@@ -2,6 +2,8 @@
  * nothing with the shaders and kernels but where the camera stands. */
 #include "pictures.h"
 
+#include "validate/random.h"
+
 enum { WIDE = 160, HIGH = 120, SAMPLES = 16, POINTS_MAX = 40 };
 static const double PITCHES[] = {30, 60, 80, 85};
 enum { PITCH_COUNT = 4 };
@@ -99,6 +101,12 @@ static uint32_t far_row(double pitch_deg) {
     return row;
 }
 
+static double edge_distance(const float a[2], const float b[2], const double p[2]) {
+    const double ax = (double)a[0], ay = (double)a[1], dx = (double)b[0] - ax, dy = (double)b[1] - ay;
+    const double t = ((p[0] - ax) * dx + (p[1] - ay) * dy) / (dx * dx + dy * dy), near = fmin(fmax(t, 0), 1);
+    return hypot(p[0] - ax - near * dx, p[1] - ay - near * dy);
+}
+
 /* Whether a pixel is far from the line: it shows a quadrangle of the plane that lies around its middle. */
 static bool is_apart(const figure *f, double pitch_deg, double x, double y) {
     double middle[2], corner[2], depth, reach = 4 * (double)f->width_px;
@@ -109,14 +117,9 @@ static bool is_apart(const figure *f, double pitch_deg, double x, double y) {
             return false;
         reach = fmax(reach, 4 * (double)f->width_px + hypot(corner[0] - middle[0], corner[1] - middle[1]));
     }
-    for (size_t i = 0; i + 1 < f->count; i++) {
-        const double ax = (double)f->points[2 * i], ay = (double)f->points[2 * i + 1];
-        const double dx = (double)f->points[2 * i + 2] - ax, dy = (double)f->points[2 * i + 3] - ay;
-        const double t = ((middle[0] - ax) * dx + (middle[1] - ay) * dy) / (dx * dx + dy * dy);
-        const double near = fmin(fmax(t, 0), 1);
-        if (hypot(middle[0] - ax - near * dx, middle[1] - ay - near * dy) < reach)
+    for (size_t i = 0; i + 1 < f->count; i++)
+        if (edge_distance(f->points + 2 * i, f->points + 2 * i + 2, middle) < reach)
             return false;
-    }
     return true;
 }
 
@@ -313,6 +316,105 @@ static void test_horizon(void **state) {
     }
 }
 
+/* ---- Areas ---- */
+
+enum { RINGS = 40, CORNERS = 9 };
+
+/* Stars all over the plane, some of them far larger than the picture, which cross themselves and each other. */
+static camber_mesh *make_stars(const fixture *s, camber_renderer *renderer, uint64_t seed,
+                               float points[2 * RINGS * CORNERS]) {
+    uint32_t offsets[RINGS + 1] = {0};
+    const camber_stroke stroke = {.width_px = 0};
+    const camber_tessellation_desc how = {.strokes = &stroke, .stroke_count = 1};
+    camber_polylines *areas = NULL;
+    camber_mesh *mesh = NULL;
+    for (uint32_t i = 0; i < RINGS; i++) {
+        const double x = camber_random_between(&seed, -400, 560), y = camber_random_between(&seed, -500, 160);
+        const double radius = camber_random_between(&seed, 3, i % 10 ? 60 : 300), turn = (double)i;
+        for (uint32_t k = 0; k < CORNERS; k++) {
+            const double angle = turn + 2 * SCENE_PI * k * (i % 3 + 1) / CORNERS;
+            points[2 * (CORNERS * i + k)] = (float)(x + radius * cos(angle));
+            points[2 * (CORNERS * i + k) + 1] = (float)(y + radius * sin(angle));
+        }
+        offsets[i + 1] = CORNERS * (i + 1);
+    }
+    const camber_areas_desc desc = {
+        .points = points, .point_count = RINGS * CORNERS, .offsets = offsets, .ring_count = RINGS};
+    assert_int_equal(camber_areas_create(s->context, &desc, &areas), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, renderer, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, areas, &how), CAMBER_OK);
+    camber_polylines_destroy(areas);
+    return mesh;
+}
+
+/* How often the stars, which all run one way, wind around a place of the plane. */
+static int wind(const float points[2 * RINGS * CORNERS], const double place[2]) {
+    int winding = 0;
+    for (uint32_t i = 0; i < RINGS * CORNERS; i++) {
+        const float *a = points + 2 * i, *b = points + 2 * (i % CORNERS == CORNERS - 1 ? i + 1 - CORNERS : i + 1);
+        if (((double)a[1] <= place[1]) == ((double)b[1] <= place[1]))
+            continue;
+        const double t = (place[1] - (double)a[1]) / ((double)b[1] - (double)a[1]);
+        if ((double)a[0] + t * ((double)b[0] - (double)a[0]) > place[0])
+            winding += b[1] > a[1] ? 1 : -1;
+    }
+    return winding;
+}
+
+/* Whether a pixel that no edge comes near is inside, 1, or not, 0; -1: an edge may cross it. */
+static int inside_of(const float *points, double pitch_deg, bool odd, uint32_t x, uint32_t y) {
+    double middle[2], corner[2], depth, reach = 0.1;
+    if (!meet(pitch_deg, x + 0.5, y + 0.5, middle, &depth))
+        return -1;
+    for (int k = 0; k < 4; k++) {
+        if (!meet(pitch_deg, x - 0.1 + 1.2 * (k % 2), y - 0.1 + 1.2 * (k / 2), corner, &depth))
+            return -1;
+        reach = fmax(reach, hypot(corner[0] - middle[0], corner[1] - middle[1]));
+    }
+    for (uint32_t i = 0; i < RINGS * CORNERS; i++) {
+        const uint32_t next = i % CORNERS == CORNERS - 1 ? i + 1 - CORNERS : i + 1;
+        if (edge_distance(points + 2 * i, points + 2 * next, middle) < reach)
+            return -1;
+    }
+    const int winding = wind(points, middle);
+    return odd ? winding % 2 != 0 : winding != 0;
+}
+
+/* No pixel is full that has nothing of an area, nor empty that is inside: an edge that two stages saw otherwise would
+ * leave a streak to the right of it. */
+static void test_area_streaks(void **state) {
+    const fixture *s = *state;
+    camber_renderer *renderer = fixture_any(s);
+    static float points[2 * RINGS * CORNERS];
+    size_t total[2] = {0, 0};
+    for (int i = 0; i < 3 * PITCH_COUNT; i++) {
+        const double pitch_deg = PITCHES[i % PITCH_COUNT];
+        const camber_fill fill = {.color = {1, 1, 1, 1}, .rule = i % 2 ? CAMBER_FILL_EVENODD : CAMBER_FILL_NONZERO};
+        const camber_paint paint = {.fill = &fill};
+        camber_mesh *mesh = make_stars(s, renderer, (uint64_t)i + 1, points);
+        const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
+        const camber_frame frame = {
+            .width = WIDE, .height = HIGH, .passes = &pass, .pass_count = 1, .pitch_deg = pitch_deg};
+        picture p = picture_draw(renderer, &frame);
+        size_t counts[2] = {0, 0};
+        for (uint32_t k = far_row(pitch_deg) * WIDE; k < WIDE * HIGH; k++) {
+            const int inside = inside_of(points, pitch_deg, fill.rule == CAMBER_FILL_EVENODD, k % WIDE, k / WIDE);
+            const int alpha = picture_at(&p, k % WIDE, k / WIDE)[3];
+            if (inside < 0)
+                continue;
+            counts[inside]++;
+            if (alpha != 255 * inside)
+                fail_msg("pitch %g: pixel %u, %u has an alpha of %d", pitch_deg, k % WIDE, k / WIDE, alpha);
+        }
+        printf("# areas at %g degrees: %zu pixels outside, %zu inside\n", pitch_deg, counts[0], counts[1]);
+        assert_true(counts[0] + counts[1] > 300);
+        total[0] += counts[0], total[1] += counts[1];
+        picture_free(&p);
+        camber_mesh_destroy(mesh);
+    }
+    assert_true(total[0] > 10000 && total[1] > 10000);
+}
+
 /* ---- Along the line ---- */
 
 /* Each dash by itself. */
@@ -506,10 +608,10 @@ static void test_bad_pitch(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_oracle),     cmocka_unit_test(test_nearly_flat), cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_backends),   cmocka_unit_test(test_horizon),     cmocka_unit_test(test_dashes),
-        cmocka_unit_test(test_far_dashes), cmocka_unit_test(test_network),     cmocka_unit_test(test_window),
-        cmocka_unit_test(test_bad_pitch),
+        cmocka_unit_test(test_oracle),   cmocka_unit_test(test_nearly_flat), cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_backends), cmocka_unit_test(test_horizon),     cmocka_unit_test(test_area_streaks),
+        cmocka_unit_test(test_dashes),   cmocka_unit_test(test_far_dashes),  cmocka_unit_test(test_network),
+        cmocka_unit_test(test_window),   cmocka_unit_test(test_bad_pitch),
     };
     return FIXTURE_RUN(tests);
 }

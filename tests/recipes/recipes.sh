@@ -109,7 +109,7 @@ ROADS
     demo)
         echo 'cp -a /checkout camber && cd camber'
         block demo | grep -v '^\./dev test'
-        echo 'test -s build/santa_cruz.png && test -s build/santa_cruz_downtown.png'
+        echo 'test -s build/monaco_light.png && test -s build/monaco_dark.png'
         echo 'cmake --install build && ldconfig && camber --version'
         ;;
     packages)

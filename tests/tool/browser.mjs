@@ -31,25 +31,33 @@ export function cornerAt([longitude, latitude], zoom) {
 }
 
 // Compares two PNGs in a page that allows data: URLs. `most` is the largest difference of a channel, `off` counts the
-// pixels that differ, `colors` the colours of the second.
-export function comparePictures(page, shown, drawn) {
-    return page.evaluate(async pictures => {
+// pixels that differ, `wide` those that do by more than so many levels with all eight neighbours: more than an edge.
+// `mean` is that of the channels, and `colors` counts the colours of the second.
+export function comparePictures(page, shown, drawn, levels = 8) {
+    return page.evaluate(async ([levels, ...pictures]) => {
         const [a, b] = await Promise.all(pictures.map(async bytes => {
             const image = await createImageBitmap(await (await fetch('data:image/png;base64,' + bytes)).blob());
             const canvas = new OffscreenCanvas(image.width, image.height).getContext('2d');
             canvas.drawImage(image, 0, 0);
             return canvas.getImageData(0, 0, image.width, image.height);
         }));
-        let most = 0, off = 0;
+        let most = 0, off = 0, wide = 0, sum = 0;
+        const far = new Uint8Array(a.width * a.height);
         const colors = new Set();
         for (let i = 0; i < a.data.length; i += 4) {
             let apart = 0;
-            for (let c = 0; c < 3; c++)
+            for (let c = 0; c < 3; c++) {
                 apart = Math.max(apart, Math.abs(a.data[i + c] - b.data[i + c]));
+                sum += Math.abs(a.data[i + c] - b.data[i + c]);
+            }
             most = Math.max(most, apart);
             off += apart > 0;
+            far[i / 4] = apart > levels;
             colors.add(b.data[i] << 16 | b.data[i + 1] << 8 | b.data[i + 2]);
         }
-        return {most, off, colors: colors.size, same: a.width === b.width && a.height === b.height};
-    }, [shown.toString('base64'), drawn.toString('base64')]);
+        const around = [-1, 0, 1].flatMap(row => [-1, 0, 1].map(column => row * a.width + column));
+        for (let i = a.width + 1; i < far.length - a.width - 1; i++)
+            wide += around.every(step => far[i + step]);
+        return {most, off, wide, mean: sum / (a.data.length / 4 * 3), colors: colors.size, same: a.width === b.width && a.height === b.height};
+    }, [levels, shown.toString('base64'), drawn.toString('base64')]);
 }

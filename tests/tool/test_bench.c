@@ -104,6 +104,37 @@ static void check_frames(const json_t *document) {
     }
 }
 
+/* Made scenes of areas: camber's picture is as near to the samples as they can tell, and every peer's is alike. */
+static void check_areas(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "areas"), "rows"), *row;
+    const size_t peers = json_object_size(json_object_get(document, "peers"));
+    size_t i;
+    assert_int_equal(json_array_size(rows), 2);
+    json_array_foreach(rows, i, row) {
+        const char *key;
+        json_t *peer;
+        assert_true(number_of(row, "cl_frame_ms") > number_of(row, "tessellate_ms"));
+        assert_true(number_of(row, "edges") > 3 * number_of(row, "areas"));
+        assert_true(number_of(row, "error") > 0 && number_of(row, "error") <= 0.15);
+        assert_int_equal(json_object_size(json_object_get(row, "peers")), peers);
+        json_object_foreach(json_object_get(row, "peers"), key, peer) {
+            if (!json_is_true(json_object_get(peer, "alike")))
+                fail_msg("%s fills other areas: it is off by %g of 255", key, number_of(peer, "error"));
+            assert_true(number_of(peer, "ms") > 0 && number_of(peer, "error") > 0);
+        }
+    }
+}
+
+/* The demo's city by camber and by Mapnik: one picture, but for how each rounds and joins. */
+static void check_city(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "city"), "rows"), *row = json_array_get(rows, 0);
+    if (!json_object_get(json_object_get(document, "peers"), "mapnik"))
+        return;
+    assert_int_equal(json_array_size(rows), 1);
+    assert_true(number_of(row, "cl_frame_ms") > number_of(row, "tessellate_ms") && number_of(row, "mapnik_ms") > 0);
+    assert_true(number_of(row, "layers") > 10 && number_of(row, "difference") < 1);
+}
+
 static void check_network(const json_t *document) {
     const json_t *rows = json_object_get(section_of(document, "network"), "rows"), *row;
     size_t i;
@@ -138,6 +169,8 @@ static void test_document(void **state) {
     assert_non_null(json_object_get(json_object_get(document, "gl"), "renderer"));
     check_stages(document);
     check_frames(document);
+    check_areas(document);
+    check_city(document);
     check_network(document);
     check_mosaic(document);
     json_decref(document);
@@ -308,6 +341,9 @@ static void test_readme(void **state) {
     assert_non_null(strstr(text, " AVX2: OpenCL |"));
     assert_null(strstr(text, " AVX2: ms |"));
     assert_non_null(strstr(text, "<!-- /measured -->\n# tail\n"));
+    publish("# head\n<!-- areas: made by ./dev bench --readme -->\nold\n<!-- /areas -->\n# tail\n", text, sizeof text);
+    assert_non_null(strstr(text, "\n| 100,000 houses | 4,000 | "));
+    assert_non_null(strstr(text, "<!-- /areas -->\n# tail\n"));
     write_text(README, "# head\n# tail\n");
     assert_int_equal(run("--readme '" MADE "' '" README "'"), 1);
     assert_true(said("lacks one of the lines"));

@@ -23,13 +23,15 @@ bool camber_mesh_is_built(void) {
 
 #ifdef CAMBER_MESHOPT
 
-enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_FLOAT = 5126, GLTF_ARRAY_BUFFER = 34962, GLTF_STRIP = 5 };
-enum { HEIGHT_STEP = 8 }; /* units between sets, so that plain viewers see which is above */
+enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_FLOAT = 5126, GLTF_STRIP = 5 };
+/* Outlines lie on eighths of a px at the tile's zoom; sets lie a px above each other, so that plain viewers see which is
+ * above. */
+enum { OUTLINE_STEPS = 8 };
 
 /* As it stands in the file. */
 typedef struct vertex {
-    int16_t position[3], padding; /* x, height, y */
-    int16_t point[4];             /* x, y, row, flags */
+    int16_t position[3], padding; /* x, height, y, in eighths of a px */
+    int16_t point[4];             /* x, y in units, row, flags */
     uint8_t color[4];             /* linear */
 } vertex;
 _Static_assert(sizeof(vertex) == 20, "vertices lie side by side");
@@ -55,7 +57,7 @@ typedef struct encoder {
 
 /* How plain viewers see a row: as its topmost layer does where it is drawn first. */
 typedef struct look {
-    double half_width, offset; /* units */
+    double half_width, offset; /* eighths of a px */
     int height;
     uint8_t color[4];
 } look;
@@ -68,18 +70,17 @@ static uint8_t linear_byte(float srgb) {
 static look look_of(const encoder *e, uint32_t row, size_t set_index) {
     const camber_plan *whole = &e->plan->zoom->plan;
     const camber_plan_set *set = whole->sets + set_index;
-    const double units = (double)e->tile->units / e->tile->tile_px;
     look found = {.height = 0};
     for (size_t n = 0, layer = set->first_layer; n < set->layer_count; n++, layer = whole->layers[layer].next)
         for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
             const camber_paint paint = camber_mesh_plan_paint(e->plan, layer, row, s);
             const camber_color color = paint.color;
+            const double shrunk = OUTLINE_STEPS * exp2(-camber_mesh_sample_zoom(s));
             if (!(paint.width_px > 0.0f))
                 continue;
             const float width = paint.gap_px > 0.0f ? paint.gap_px + 2.0f * paint.width_px : paint.width_px;
-            found.half_width = 0.5 * (double)width * exp2(-camber_mesh_sample_zoom(s)) * units;
-            found.offset =
-                (double)camber_mesh_plan_offset(e->plan, layer, row, s) * exp2(-camber_mesh_sample_zoom(s)) * units;
+            found.half_width = 0.5 * (double)width * shrunk;
+            found.offset = (double)camber_mesh_plan_offset(e->plan, layer, row, s) * shrunk;
             found.color[0] = linear_byte(color.r);
             found.color[1] = linear_byte(color.g);
             found.color[2] = linear_byte(color.b);
@@ -88,9 +89,9 @@ static look look_of(const encoder *e, uint32_t row, size_t set_index) {
     return found;
 }
 
-static int16_t to_units(double value) {
-    const double units = floor(value + 0.5);
-    return (int16_t)(units > 32767.0 ? 32767.0 : units < -32767.0 ? -32767.0 : units);
+static int16_t to_steps(double value) {
+    const double steps = floor(value + 0.5);
+    return (int16_t)(steps > 32767.0 ? 32767.0 : steps < -32767.0 ? -32767.0 : steps);
 }
 
 /* The direction from one record to another; false: they lie at one place. */
@@ -105,6 +106,7 @@ static bool direction(const camber_mesh_record *a, const camber_mesh_record *b, 
 static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
     const camber_mesh_record *r = e->tile->records + i;
     const bool is_ring = r->flags & CAMBER_MESH_RING;
+    const double steps = (double)(OUTLINE_STEPS * e->tile->tile_px) / e->tile->units, x = r->x * steps, y = r->y * steps;
     double in[2], out[2];
     const bool has_in = (!(r->flags & CAMBER_MESH_FIRST) || is_ring) && direction(r - 1, r, in);
     const bool has_out = (!(r->flags & CAMBER_MESH_LAST) || is_ring) && direction(r, r + 1, out);
@@ -115,13 +117,13 @@ static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
     const double across[2] = {-(a[1] + b[1]) * by, (a[0] + b[0]) * by};
     for (int side = 0; side < 2; side++) {
         const double away = (side ? -1.0 : 1.0) * l->half_width + l->offset;
-        pair[side].position[0] = to_units(r->x + across[0] * away);
+        pair[side].position[0] = to_steps(x + across[0] * away);
         pair[side].position[1] = (int16_t)l->height;
-        pair[side].position[2] = to_units(r->y + across[1] * away);
+        pair[side].position[2] = to_steps(y + across[1] * away);
     }
     if (!has_in && !has_out) /* a dot is a square */
         for (int side = 0; side < 2; side++)
-            pair[side].position[0] = to_units(r->x + (r->flags & CAMBER_MESH_FIRST ? -1.0 : 1.0) * l->half_width);
+            pair[side].position[0] = to_steps(x + (r->flags & CAMBER_MESH_FIRST ? -1.0 : 1.0) * l->half_width);
 }
 
 /* ---- Vertices ---- */
@@ -183,7 +185,7 @@ static camber_status make_vertices(encoder *e) {
             look *l = looks + tile->records[i].row;
             if (!l->color[3])
                 *l = look_of(e, tile->rows[tile->records[i].row], tile->ranges[range].set);
-            l->height = HEIGHT_STEP * (int)(range + 1);
+            l->height = OUTLINE_STEPS * (int)(range + 1);
             make_pair(e, i, l);
         }
     }
@@ -221,9 +223,12 @@ static void append(encoder *e, json_t *array, json_t *value) {
     e->ok &= json_array_append_new(array, value) == 0;
 }
 
-/* A number with so many digits as a picture can tell. */
+/* A number to a thousandth; of px above 10 to a hundredth, and so on: four digits, as many as a picture can tell. */
 static json_t *number(double value) {
-    const double rounded = floor(value * 1e4 + 0.5) / 1e4;
+    double step = 1e-3;
+    for (double most = 10.0; fabs(value) >= most && most < 1e4; most *= 10.0)
+        step *= 10.0;
+    const double rounded = floor(value / step + 0.5) * step;
     return rounded == floor(rounded) ? json_integer((json_int_t)rounded) : json_real(rounded);
 }
 
@@ -331,8 +336,8 @@ static json_t *layer_json(encoder *e, size_t layer, const camber_mesh_range *ran
         json_decref(paints);
         return NULL;
     }
-    json_t *object = json_pack("{s:s, s:I, s:I, s:o}", "id", own->look.layer->id, "first", (json_int_t)range->first,
-                               "count", (json_int_t)(range->end - range->first), "paints", paints);
+    json_t *object = json_pack("{s:s, s:[I, I], s:o}", "id", own->look.layer->id, "range", (json_int_t)range->first,
+                               (json_int_t)(range->end - range->first), "paints", paints);
     if (opacity < 1.0)
         set(e, object, "opacity", number(opacity));
     if (own->look.layer->overlap != CAMBER_OVERLAP_FLATTEN)
@@ -362,7 +367,7 @@ static json_t *rows_json(encoder *e) {
 }
 
 static json_t *extras_json(encoder *e) {
-    json_t *layers = json_array(), *zooms = json_array(), *background = json_array();
+    json_t *layers = json_array(), *background = json_array();
     const camber_plan *whole = &e->plan->zoom->plan;
     for (size_t i = 0; i < whole->layer_count; i++)
         for (size_t k = 0; k < e->tile->range_count; k++) {
@@ -373,13 +378,10 @@ static json_t *extras_json(encoder *e) {
         }
     for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
         const camber_plan *own = s + 1 < CAMBER_MESH_SAMPLES ? e->plan->samples + s : whole;
-        append(e, zooms, number(camber_mesh_sample_zoom(s)));
         append(e, background, own->background.a > 0.0f ? color_text(own->background) : json_null());
     }
-    json_t *extras = json_pack("{s:i, s:I, s:I, s:I, s:I, s:o, s:o, s:o}", "z", e->place->zoom, "x",
-                               (json_int_t)e->place->column, "y", (json_int_t)e->place->row, "units",
-                               (json_int_t)e->tile->units, "tilePx", (json_int_t)e->tile->tile_px, "zooms", zooms, "rows",
-                               rows_json(e), "layers", layers);
+    json_t *extras = json_pack("{s:i, s:I, s:I, s:o, s:o}", "z", e->place->zoom, "units", (json_int_t)e->tile->units,
+                               "tilePx", (json_int_t)e->tile->tile_px, "rows", rows_json(e), "layers", layers);
     if (e->place->ratio < 1.0 || e->place->ratio > 1.0)
         set(e, extras, "ratio", number(e->place->ratio));
     set_samples(e, extras, "background", background, json_null());
@@ -388,12 +390,19 @@ static json_t *extras_json(encoder *e) {
 
 /* ---- The parts of glTF ---- */
 
-static json_t *view_json(size_t offset, size_t packed_offset, size_t packed_bytes, size_t count, size_t stride) {
-    return json_pack("{s:i, s:I, s:I, s:I, s:i, s:{s:{s:i, s:I, s:I, s:I, s:I, s:s}}}", "buffer", 1, "byteOffset",
-                     (json_int_t)offset, "byteLength", (json_int_t)(count * stride), "byteStride", (json_int_t)stride,
-                     "target", GLTF_ARRAY_BUFFER, "extensions", "EXT_meshopt_compression", "buffer", 0, "byteOffset",
-                     (json_int_t)packed_offset, "byteLength", (json_int_t)packed_bytes, "byteStride", (json_int_t)stride,
-                     "count", (json_int_t)count, "mode", "ATTRIBUTES");
+/* Offsets of 0 go without saying. */
+static json_t *view_json(encoder *e, size_t offset, size_t packed_offset, size_t packed_bytes, size_t stride) {
+    const size_t count = 2 * e->tile->record_count;
+    json_t *packed =
+        json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)packed_bytes, "byteStride",
+                  (json_int_t)stride, "count", (json_int_t)count, "mode", "ATTRIBUTES");
+    if (packed_offset)
+        set(e, packed, "byteOffset", json_integer((json_int_t)packed_offset));
+    json_t *view = json_pack("{s:i, s:I, s:I, s:{s:o}}", "buffer", 1, "byteLength", (json_int_t)(count * stride),
+                             "byteStride", (json_int_t)stride, "extensions", "EXT_meshopt_compression", packed);
+    if (offset)
+        set(e, view, "byteOffset", json_integer((json_int_t)offset));
+    return view;
 }
 
 static json_t *accessor_json(int view, size_t offset, int component, size_t count, const char *type) {
@@ -422,7 +431,7 @@ static json_t *accessors_json(encoder *e) {
 }
 
 static json_t *node_json(const encoder *e) {
-    const double world = 40075016.685578488, tile = world / exp2(e->place->zoom), scale = tile / e->tile->units;
+    const double world = 40075016.685578488, tile = world / exp2(e->place->zoom), scale = tile / (OUTLINE_STEPS * e->tile->tile_px);
     return json_pack("{s:i, s:[f, i, f], s:[f, f, f]}", "mesh", 0, "translation",
                      ((double)e->place->column + 0.5) * tile - 0.5 * world, 0,
                      ((double)e->place->row + 0.5) * tile - 0.5 * world, "scale", scale, scale, scale);
@@ -438,27 +447,25 @@ static bool is_translucent(const encoder *e) {
 static json_t *root_json(encoder *e) {
     const size_t count = 2 * e->tile->record_count, start = (e->vertex_bytes + 3) / 4 * 4;
     const size_t raw_bytes = count * (sizeof *e->vertices + (e->alongs ? sizeof *e->alongs : 0));
-    char generator[32];
-    snprintf(generator, sizeof generator, "camber %s", camber_version());
-    json_t *views = json_pack("[o]", view_json(0, 0, e->vertex_bytes, count, sizeof *e->vertices));
+    json_t *views = json_pack("[o]", view_json(e, 0, 0, e->vertex_bytes, sizeof *e->vertices));
     if (e->alongs)
-        append(e, views,
-               view_json(count * sizeof *e->vertices, start, e->along_bytes, count, sizeof *e->alongs));
+        append(e, views, view_json(e, count * sizeof *e->vertices, start, e->along_bytes, sizeof *e->alongs));
     json_t *attributes = json_pack("{s:i, s:i, s:i}", "POSITION", 0, "_POINT", 1, "COLOR_0", 2);
     if (e->alongs)
         set(e, attributes, "_ALONG", json_integer(3));
-    json_t *root = json_pack("{s:{s:s, s:s}}", "asset", "version", "2.0", "generator", generator);
+    json_t *root = json_pack("{s:{s:s}}", "asset", "version", "2.0");
     set(e, root, "extensionsUsed",
         json_pack("[s, s, s]", "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_materials_unlit"));
     set(e, root, "extensionsRequired", json_pack("[s, s]", "KHR_mesh_quantization", "EXT_meshopt_compression"));
     set(e, root, "scene", json_integer(0));
     set(e, root, "scenes", json_pack("[{s:[i]}]", "nodes", 0));
     set(e, root, "nodes", json_pack("[o]", node_json(e)));
-    set(e, root, "materials",
-        json_pack("[{s:b, s:s, s:{s:{}}}]", "doubleSided", 1, "alphaMode", is_translucent(e) ? "BLEND" : "OPAQUE",
-                  "extensions", "KHR_materials_unlit"));
+    json_t *material = json_pack("{s:b, s:{s:{}}}", "doubleSided", 1, "extensions", "KHR_materials_unlit");
+    if (is_translucent(e))
+        set(e, material, "alphaMode", json_string("BLEND"));
+    set(e, root, "materials", json_pack("[o]", material));
     set(e, root, "meshes",
-        json_pack("[{s:s, s:[{s:i, s:i, s:o}], s:o}]", "name", "lines", "primitives", "mode", GLTF_STRIP, "material", 0,
+        json_pack("[{s:[{s:i, s:i, s:o}], s:o}]", "primitives", "mode", GLTF_STRIP, "material", 0,
                   "attributes", attributes, "extras", extras_json(e)));
     set(e, root, "accessors", accessors_json(e));
     set(e, root, "bufferViews", views);
@@ -502,7 +509,7 @@ camber_status camber_mesh_tile_encode(const camber_mesh_tile *tile, const camber
         status = compress(&e);
     if (status == CAMBER_OK) {
         json_t *root = root_json(&e);
-        char *json = root && e.ok ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(12)) : NULL;
+        char *json = root && e.ok ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(10)) : NULL;
         status = json ? write_file(&e, json, bytes, size_bytes)
                       : camber_fail(e.context, CAMBER_ERROR_MEMORY, "tiles: no memory for the style of a mesh tile");
         free(json);

@@ -116,7 +116,7 @@ static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
     const double cosine = a[0] * b[0] + a[1] * b[1], by = 1.0 / fmax(1.0 + cosine, 0.25);
     const double across[2] = {-(a[1] + b[1]) * by, (a[0] + b[0]) * by};
     for (int side = 0; side < 2; side++) {
-        const double away = (side ? -1.0 : 1.0) * l->half_width + l->offset;
+        const double away = (side ? 1.0 : -1.0) * l->half_width + l->offset; /* y goes down: left, then right */
         pair[side].position[0] = to_steps(x + across[0] * away);
         pair[side].position[1] = (int16_t)l->height;
         pair[side].position[2] = to_steps(y + across[1] * away);
@@ -460,7 +460,7 @@ static json_t *root_json(encoder *e) {
     set(e, root, "scene", json_integer(0));
     set(e, root, "scenes", json_pack("[{s:[i]}]", "nodes", 0));
     set(e, root, "nodes", json_pack("[o]", node_json(e)));
-    json_t *material = json_pack("{s:b, s:{s:{}}}", "doubleSided", 1, "extensions", "KHR_materials_unlit");
+    json_t *material = json_pack("{s:{s:{}}}", "extensions", "KHR_materials_unlit");
     if (is_translucent(e))
         set(e, material, "alphaMode", json_string("BLEND"));
     set(e, root, "materials", json_pack("[o]", material));

@@ -193,7 +193,8 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
     }
     while (status == CAMBER_OK && p->engine->desc.meshes && camber_encode_queue_is_busy(p->queue))
         status = write_ready(p, true); /* meshes are encoded by the zoom's plan */
-    camber_tiles_engine_forget(p->engine, s->tasks[first].zoom);
+    if (status == CAMBER_OK)
+        camber_tiles_engine_forget(p->engine, s->tasks[first].zoom);
     return status;
 }
 
@@ -256,7 +257,8 @@ static camber_status try_all(pyramid *p) {
         for (end = i; end < s->count && s->tasks[end].zoom == s->tasks[i].zoom; end++)
             ;
         status = try_zoom(p, i, end);
-        camber_tiles_engine_forget(p->engine, s->tasks[i].zoom);
+        if (status == CAMBER_OK)
+            camber_tiles_engine_forget(p->engine, s->tasks[i].zoom);
     }
     p->stats.units = s->count;
     p->stats.points = 0;

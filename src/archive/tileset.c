@@ -29,9 +29,9 @@ typedef struct tileset {
     const camber_archive_plan *plan;
     camber_tileset_writer write;
     void *user;
-    int levels;     /* of a subtree */
-    uint8_t *bits;  /* of one: its tiles, its contents, its children, each at a multiple of 8 bytes */
-    size_t bytes;   /* of tiles, and of contents */
+    int levels;    /* of a subtree */
+    uint8_t *bits; /* of one: its tiles, its contents, its children, each at a multiple of 8 bytes */
+    size_t bytes;  /* of tiles, and of contents */
     size_t child_bytes;
 } tileset;
 
@@ -83,9 +83,9 @@ static camber_status list_roots(const tileset *t, int level, roots *list) {
 
 /* ---- Bits ---- */
 
-static uint64_t morton(uint32_t x, uint32_t y, int bits) {
+static uint64_t morton(uint32_t x, uint32_t y, unsigned bits) {
     uint64_t number = 0;
-    for (int i = 0; i < bits; i++)
+    for (unsigned i = 0; i < bits; i++)
         number |= (uint64_t)(x >> i & 1) << (2 * i) | (uint64_t)(y >> i & 1) << (2 * i + 1);
     return number;
 }
@@ -98,14 +98,14 @@ static void set_bit(uint8_t *bits, uint64_t at) {
 static void set_tile(const tileset *t, int level, int zoom, uint64_t place, bool content) {
     uint32_t column, row;
     camber_pmtiles_locate(place, zoom, &column, &row);
-    const int depth = zoom - level;
+    const unsigned depth = (unsigned)(zoom - level);
     const uint32_t mask = ((uint32_t)1 << depth) - 1;
     const uint64_t own = morton(column & mask, row & mask, depth);
     if (content)
         set_bit(t->bits + t->bytes, (((uint64_t)1 << (2 * depth)) - 1) / 3 + own);
     else
         set_bit(t->bits + 2 * t->bytes, own); /* a child: the root of another subtree */
-    for (int k = content ? depth : depth - 1; k >= 0; k--)
+    for (unsigned k = content ? depth + 1 : depth; k-- > 0;)
         set_bit(t->bits, (((uint64_t)1 << (2 * k)) - 1) / 3 + (own >> (2 * (depth - k))));
 }
 

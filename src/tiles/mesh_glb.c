@@ -1,8 +1,8 @@
 /* Encodes mesh tiles as binary glTF 2.0, quantised and compressed. docs/mesh-tiles.md has the layout.
  *
- * Input: the records of a tile. Output: a file of one primitive, a strip with two vertices a record: the line's left and
- * right edge at the tile's zoom, for plain viewers, and in both the record itself, for shaders. Ghosts between lines have
- * a vertex of the line before and one of the line behind, so that the triangles there have no area. */
+ * Input: the records of a tile. Output: a file of one primitive, a strip with two vertices a record: the line's left
+ * and right edge at the tile's zoom, for plain viewers, and in both the record itself, for shaders. Ghosts between
+ * lines have a vertex of the line before and one of the line behind, so that the triangles there have no area. */
 #include "tiles/mesh_tile.h"
 
 #include <jansson.h>
@@ -24,8 +24,8 @@ bool camber_mesh_is_built(void) {
 #ifdef CAMBER_MESHOPT
 
 enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_FLOAT = 5126, GLTF_STRIP = 5 };
-/* Outlines lie on eighths of a px at the tile's zoom; sets lie a px above each other, so that plain viewers see which is
- * above. */
+/* Outlines lie on eighths of a px at the tile's zoom; sets lie a px above each other, so that plain viewers see which
+ * is above. */
 enum { OUTLINE_STEPS = 8 };
 
 /* As it stands in the file. */
@@ -45,9 +45,9 @@ typedef struct encoder {
     const camber_mesh_tile *tile;
     const camber_mesh_plan *plan;
     const camber_mesh_place *place;
-    vertex *vertices; /* two a record */
-    along *alongs;    /* two a record. NULL: none */
-    uint8_t *packed;  /* both, compressed */
+    vertex *vertices;                 /* two a record */
+    along *alongs;                    /* two a record. NULL: none */
+    uint8_t *packed;                  /* both, compressed */
     size_t vertex_bytes, along_bytes; /* of them */
     int16_t low[3], high[3];          /* of positions */
     bool ok;                          /* there was memory for all of the JSON */
@@ -106,7 +106,8 @@ static bool direction(const camber_mesh_record *a, const camber_mesh_record *b, 
 static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
     const camber_mesh_record *r = e->tile->records + i;
     const bool is_ring = r->flags & CAMBER_MESH_RING;
-    const double steps = (double)(OUTLINE_STEPS * e->tile->tile_px) / e->tile->units, x = r->x * steps, y = r->y * steps;
+    const double steps = (double)(OUTLINE_STEPS * e->tile->tile_px) / e->tile->units, x = r->x * steps,
+                 y = r->y * steps;
     double in[2], out[2];
     const bool has_in = (!(r->flags & CAMBER_MESH_FIRST) || is_ring) && direction(r - 1, r, in);
     const bool has_out = (!(r->flags & CAMBER_MESH_LAST) || is_ring) && direction(r, r + 1, out);
@@ -131,7 +132,7 @@ static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
 static void make_pair(encoder *e, size_t i, const look *l) {
     const camber_mesh_record *r = e->tile->records + i;
     vertex *pair = e->vertices + 2 * i;
-    if (!(r->flags & CAMBER_MESH_GHOST))
+    if (!(r->flags & CAMBER_MESH_SENTINEL))
         place(e, i, l, pair);
     for (int side = 0; side < 2; side++) {
         const int16_t point[4] = {r->x, r->y, (int16_t)r->row, (int16_t)r->flags};
@@ -142,19 +143,19 @@ static void make_pair(encoder *e, size_t i, const look *l) {
     }
 }
 
-/* Puts the vertices of ghosts onto those beside them. */
-static void place_ghosts(encoder *e) {
+/* Puts the vertices of sentinels onto those beside them. */
+static void place_sentinels(encoder *e) {
     const camber_mesh_record *records = e->tile->records;
     const size_t count = e->tile->record_count;
     for (size_t i = 0; i < count; i++) {
-        if (!(records[i].flags & CAMBER_MESH_GHOST))
+        if (!(records[i].flags & CAMBER_MESH_SENTINEL))
             continue;
         vertex *pair = e->vertices + 2 * i;
         size_t next = i;
-        while (next < count && (records[next].flags & CAMBER_MESH_GHOST))
+        while (next < count && (records[next].flags & CAMBER_MESH_SENTINEL))
             next++;
         const vertex *before = i > 0 ? pair - 1 : e->vertices + 2 * next;
-        const bool is_last = next == count || next > i + 1; /* of two ghosts the first stays behind */
+        const bool is_last = next == count || next > i + 1; /* of two sentinels the first stays behind */
         const vertex *behind = is_last ? before : e->vertices + 2 * next;
         memcpy(pair[0].position, before->position, sizeof before->position);
         memcpy(pair[1].position, behind->position, sizeof behind->position);
@@ -176,7 +177,8 @@ static camber_status make_vertices(encoder *e) {
     const camber_mesh_tile *tile = e->tile;
     look *looks = camber_alloc_zero(e->context, tile->row_count, sizeof *looks);
     if (!looks || !(e->vertices = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->vertices)) ||
-        (tile->has_arc_length && !(e->alongs = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->alongs)))) {
+        (tile->has_arc_length &&
+         !(e->alongs = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->alongs)))) {
         camber_free(e->context, looks);
         return CAMBER_ERROR_MEMORY;
     }
@@ -190,10 +192,10 @@ static camber_status make_vertices(encoder *e) {
         }
     }
     for (size_t i = 0; i < tile->record_count; i++)
-        if (tile->records[i].flags & CAMBER_MESH_GHOST)
+        if (tile->records[i].flags & CAMBER_MESH_SENTINEL)
             make_pair(e, i, looks + tile->records[i].row);
     camber_free(e->context, looks);
-    place_ghosts(e);
+    place_sentinels(e);
     measure(e);
     return CAMBER_OK;
 }
@@ -280,7 +282,7 @@ static void set_along(encoder *e, json_t *object, const camber_paint *paint) {
 /* The paint of a row in a layer. NULL: it is not drawn at any sample. */
 static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     enum { WIDTH, OPACITY, GAP, BLUR, OFFSET, UNIT, COLOR, MOVE, LISTS };
-    static const char *const names[LISTS] = {"width", "opacity", "gap",   "blur",
+    static const char *const names[LISTS] = {"width",  "opacity",  "gap",   "blur",
                                              "offset", "dashUnit", "color", "translate"};
     json_t *lists[LISTS], *object = json_object();
     camber_paint seen = {0}, paints[CAMBER_MESH_SAMPLES];
@@ -393,9 +395,8 @@ static json_t *extras_json(encoder *e) {
 /* Offsets of 0 go without saying. */
 static json_t *view_json(encoder *e, size_t offset, size_t packed_offset, size_t packed_bytes, size_t stride) {
     const size_t count = 2 * e->tile->record_count;
-    json_t *packed =
-        json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)packed_bytes, "byteStride",
-                  (json_int_t)stride, "count", (json_int_t)count, "mode", "ATTRIBUTES");
+    json_t *packed = json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)packed_bytes,
+                               "byteStride", (json_int_t)stride, "count", (json_int_t)count, "mode", "ATTRIBUTES");
     if (packed_offset)
         set(e, packed, "byteOffset", json_integer((json_int_t)packed_offset));
     json_t *view = json_pack("{s:i, s:I, s:I, s:{s:o}}", "buffer", 1, "byteLength", (json_int_t)(count * stride),
@@ -431,7 +432,8 @@ static json_t *accessors_json(encoder *e) {
 }
 
 static json_t *node_json(const encoder *e) {
-    const double world = 40075016.685578488, tile = world / exp2(e->place->zoom), scale = tile / (OUTLINE_STEPS * e->tile->tile_px);
+    const double world = 40075016.685578488, tile = world / exp2(e->place->zoom),
+                 scale = tile / (OUTLINE_STEPS * e->tile->tile_px);
     return json_pack("{s:i, s:[f, i, f], s:[f, f, f]}", "mesh", 0, "translation",
                      ((double)e->place->column + 0.5) * tile - 0.5 * world, 0,
                      ((double)e->place->row + 0.5) * tile - 0.5 * world, "scale", scale, scale, scale);
@@ -465,8 +467,8 @@ static json_t *root_json(encoder *e) {
         set(e, material, "alphaMode", json_string("BLEND"));
     set(e, root, "materials", json_pack("[o]", material));
     set(e, root, "meshes",
-        json_pack("[{s:[{s:i, s:i, s:o}], s:o}]", "primitives", "mode", GLTF_STRIP, "material", 0,
-                  "attributes", attributes, "extras", extras_json(e)));
+        json_pack("[{s:[{s:i, s:i, s:o}], s:o}]", "primitives", "mode", GLTF_STRIP, "material", 0, "attributes",
+                  attributes, "extras", extras_json(e)));
     set(e, root, "accessors", accessors_json(e));
     set(e, root, "bufferViews", views);
     set(e, root, "buffers",
@@ -491,7 +493,7 @@ static camber_status write_file(encoder *e, const char *json, uint8_t **bytes, s
     if (!file)
         return CAMBER_ERROR_MEMORY;
     uint8_t *to = put_u32(put_u32(put_u32(file, 0x46546c67u), 2), total); /* glTF */
-    to = put_u32(put_u32(to, text), 0x4e4f534au);                        /* JSON */
+    to = put_u32(put_u32(to, text), 0x4e4f534au);                         /* JSON */
     memset(to, ' ', text);
     memcpy(to, json, length);
     to = put_u32(put_u32(to + text, padded), 0x004e4942u); /* BIN */

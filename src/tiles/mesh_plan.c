@@ -122,9 +122,9 @@ static size_t list_rows(const camber_mesh_plan *plan, const camber_plan_set *set
     for (size_t n = 0, layer = set->first_layer; n < set->layer_count; n++, layer = plan->zoom->plan.layers[layer].next)
         for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
             const size_t at = plan->sample_layers[s * layers + layer];
-            rows[count++] = at == SIZE_MAX ? CAMBER_NO_ROW
-                                           : row_of(plan_at(plan, s), plan_at(plan, s)->layers[at].set,
-                                                    plan->pair_classes[pair]);
+            rows[count++] = at == SIZE_MAX
+                                ? CAMBER_NO_ROW
+                                : row_of(plan_at(plan, s), plan_at(plan, s)->layers[at].set, plan->pair_classes[pair]);
         }
     return count * sizeof *rows;
 }

@@ -31,8 +31,12 @@ static camber_status list_lines(camber_mesh_picture *picture) {
             if (!camber_grow(data->context, &picture->lines, &capacity, picture->line_count + 1,
                              sizeof *picture->lines))
                 return CAMBER_ERROR_MEMORY;
-            picture->lines[picture->line_count++] = (camber_mesh_line){
-                .first = count, .pair = r->last >> CAMBER_POINT_ROW_SHIFT, .x0 = r->x, .y0 = r->y, .x1 = r->x, .y1 = r->y};
+            picture->lines[picture->line_count++] = (camber_mesh_line){.first = count,
+                                                                       .pair = r->last >> CAMBER_POINT_ROW_SHIFT,
+                                                                       .x0 = r->x,
+                                                                       .y0 = r->y,
+                                                                       .x1 = r->x,
+                                                                       .y1 = r->y};
         }
         if (!picture->line_count)
             continue;
@@ -71,7 +75,7 @@ typedef struct cutter {
     double half;               /* of the tile, px */
     double limit;              /* of what 16 bits hold, px from the centre */
     double scale;              /* units a px */
-    bool ghost_is_used;        /* the last ghost has the neighbour of a ring */
+    bool sentinel_is_used;     /* the last sentinel has the neighbour of a ring */
     bool failed;               /* no memory */
 } cutter;
 
@@ -119,36 +123,38 @@ static int16_t quantise(double px, double scale) {
 
 static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
     camber_mesh_tile *tile = c->tile;
-    if (c->failed || !camber_grow(tile->context, &tile->records, &tile->record_capacity, tile->record_count + 1,
-                                  sizeof *tile->records)) {
+    if (c->failed ||
+        !camber_grow(tile->context, &tile->records, &tile->record_capacity, tile->record_count + 1,
+                     sizeof *tile->records) ||
+        !tile->records) {
         c->failed = true;
         return;
     }
-    const camber_mesh_record made = {quantise(at.x, c->scale), quantise(at.y, c->scale), row, (uint16_t)flags,
-                                     at.along_px,              at.total_px};
-    const camber_mesh_record *last = tile->record_count ? tile->records + tile->record_count - 1 : NULL;
+    const camber_mesh_record made = {
+        quantise(at.x, c->scale), quantise(at.y, c->scale), row, (uint16_t)flags, at.along_px, at.total_px};
+    camber_mesh_record *last = tile->record_count ? tile->records + tile->record_count - 1 : NULL;
     const bool repeats = last && last->x == made.x && last->y == made.y;
-    if (!(flags & (CAMBER_MESH_GHOST | CAMBER_MESH_FIRST)) && repeats) {
+    if (!(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST)) && repeats) {
         if (!(flags & CAMBER_MESH_LAST))
             return;
         if (!(last->flags & CAMBER_MESH_FIRST)) {
-            tile->records[tile->record_count - 1].flags |= (uint16_t)flags;
+            last->flags |= (uint16_t)flags;
             return;
         }
     }
     tile->records[tile->record_count++] = made;
-    tile->segments += !(flags & (CAMBER_MESH_GHOST | CAMBER_MESH_FIRST));
+    tile->segments += !(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST));
 }
 
-/* Puts the ghost before a line, unless that of the line before serves for it. */
-static void put_ghost_before(cutter *c, cut_point first, uint16_t row, bool is_ring) {
-    if (!c->tile->record_count || (is_ring && c->ghost_is_used))
-        put(c, first, row, CAMBER_MESH_GHOST);
+/* Puts the sentinel before a line, unless that of the line before serves for it. */
+static void put_sentinel_before(cutter *c, cut_point first, uint16_t row, bool is_ring) {
+    if (!c->tile->record_count || (is_ring && c->sentinel_is_used))
+        put(c, first, row, CAMBER_MESH_SENTINEL);
 }
 
-static void put_ghost_behind(cutter *c, cut_point at, uint16_t row, bool is_ring) {
-    put(c, at, row, CAMBER_MESH_GHOST);
-    c->ghost_is_used = is_ring;
+static void put_sentinel_behind(cutter *c, cut_point at, uint16_t row, bool is_ring) {
+    put(c, at, row, CAMBER_MESH_SENTINEL);
+    c->sentinel_is_used = is_ring;
 }
 
 /* A line that may be cut into several. */
@@ -195,7 +201,7 @@ static void number_row(cutter *c, line_walk *w) {
 static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags) {
     if (!w->has_row)
         number_row(c, w);
-    put_ghost_before(c, start, w->row, false);
+    put_sentinel_before(c, start, w->row, false);
     put(c, start, w->row, CAMBER_MESH_FIRST | flags);
 }
 
@@ -220,7 +226,7 @@ static void put_runs(cutter *c, line_walk *w, size_t first, size_t end) {
         const bool own_end = i + 1 == segments && !ends_cut;
         put(c, stop, w->row, ends ? CAMBER_MESH_LAST | end_flags(c, w, i + 1, own_end) : 0u);
         if (ends)
-            put_ghost_behind(c, stop, w->row, false);
+            put_sentinel_behind(c, stop, w->row, false);
         runs = !ends;
     }
 }
@@ -230,12 +236,14 @@ static void put_whole_ring(cutter *c, line_walk *w) {
     const size_t segments = w->line->count - 1;
     camber_mesh_tile *tile = c->tile;
     number_row(c, w);
-    put_ghost_before(c, point_at(c, w->line, 0), w->row, true);
+    put_sentinel_before(c, point_at(c, w->line, 0), w->row, true);
     const size_t first = tile->record_count;
     for (size_t i = 0; i <= segments; i++)
         put(c, point_at(c, w->line, i), w->row,
-            i == 0 ? CAMBER_MESH_FIRST | CAMBER_MESH_RING : i == segments ? CAMBER_MESH_LAST | CAMBER_MESH_RING : 0u);
-    put_ghost_behind(c, point_at(c, w->line, 0), w->row, true);
+            i == 0          ? CAMBER_MESH_FIRST | CAMBER_MESH_RING
+            : i == segments ? CAMBER_MESH_LAST | CAMBER_MESH_RING
+                            : 0u);
+    put_sentinel_behind(c, point_at(c, w->line, 0), w->row, true);
     if (c->failed)
         return;
     camber_mesh_record *begin = tile->records + first, *behind = tile->records + tile->record_count - 1;

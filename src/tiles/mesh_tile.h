@@ -1,5 +1,5 @@
-/* Mesh tiles: the lines of a picture of tiles, cut into tiles, quantised and encoded as GLB. docs/mesh-tiles.md has what a
- * tile is made of. */
+/* Mesh tiles: the lines of a picture of tiles, cut into tiles, quantised and encoded as GLB. docs/mesh-tiles.md has
+ * what a tile is made of. */
 #ifndef CAMBER_TILES_MESH_TILE_H
 #define CAMBER_TILES_MESH_TILE_H
 
@@ -9,10 +9,10 @@
 
 /* Flags of a record. */
 enum {
-    CAMBER_MESH_GHOST = 1, /* it stands between polylines */
+    CAMBER_MESH_SENTINEL = 1, /* it stands between polylines */
     CAMBER_MESH_FIRST = 2,
     CAMBER_MESH_LAST = 4,
-    CAMBER_MESH_RING = 8, /* with FIRST and LAST: the ghosts beside them have the neighbours */
+    CAMBER_MESH_RING = 8, /* with FIRST and LAST: the sentinels beside them have the neighbours */
     CAMBER_MESH_CUT = 16, /* with FIRST and LAST: the line goes on outside */
 };
 
@@ -53,7 +53,7 @@ typedef struct camber_mesh_range {
 typedef struct camber_mesh_tile {
     camber_context *context;
     uint32_t units, tile_px;
-    camber_mesh_record *records; /* record_count, ghosts first and last; none where no line touches the tile */
+    camber_mesh_record *records; /* record_count, sentinels first and last; none where no line touches the tile */
     size_t record_count, record_capacity;
     uint32_t *rows; /* row_count: rows of the plan */
     size_t row_count, row_capacity;
@@ -65,8 +65,8 @@ typedef struct camber_mesh_tile {
     size_t row_slot_count;
 } camber_mesh_tile;
 
-/* Cuts tile x, y of a picture, counted from its north-western one. *tile keeps its room from one call to the next; free it
- * with camber_mesh_tile_free. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Cuts tile x, y of a picture, counted from its north-western one. *tile keeps its room from one call to the next; free
+ * it with camber_mesh_tile_free. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_picture *picture, uint32_t tile_px,
                                    uint32_t x, uint32_t y, camber_mesh_tile *tile);
 void camber_mesh_tile_free(camber_mesh_tile *tile);

@@ -302,7 +302,9 @@ static int find_center_zoom(const camber_tiles_area *area) {
 
 static camber_tile_type type_of(const pyramid *p) {
     const camber_encoding encoding = p->desc->encoding;
-    return p->engine->desc.meshes ? CAMBER_TILE_GLB : encoding == CAMBER_ENCODING_WEBP ? CAMBER_TILE_WEBP : CAMBER_TILE_PNG;
+    return p->engine->desc.meshes             ? CAMBER_TILE_GLB
+           : encoding == CAMBER_ENCODING_WEBP ? CAMBER_TILE_WEBP
+                                              : CAMBER_TILE_PNG;
 }
 
 static camber_status fail_renewed(const pyramid *p, const char *names) {

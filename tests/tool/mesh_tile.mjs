@@ -4,7 +4,7 @@ import {existsSync} from 'node:fs';
 import {join} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
-export const GHOST = 1, FIRST = 2, LAST = 4, RING = 8, CUT = 16;
+export const SENTINEL = 1, FIRST = 2, LAST = 4, RING = 8, CUT = 16;
 
 // The decoder; null: npm's three is not installed.
 export async function loadDecoder() {

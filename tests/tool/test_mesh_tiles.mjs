@@ -6,7 +6,7 @@ import {execFileSync, spawnSync} from 'node:child_process';
 import {mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
-import {FIRST, GHOST, LAST, loadDecoder, readTile, recordsOf} from './mesh_tile.mjs';
+import {FIRST, SENTINEL, LAST, loadDecoder, readTile, recordsOf} from './mesh_tile.mjs';
 
 const [tool, input, folder] = process.argv.slice(2);
 const decoder = await loadDecoder();
@@ -72,19 +72,19 @@ for (const tile of tiles) {
 check(tiles.length > 100, 'there are tiles', tiles.length);
 check(issues.length === 0, 'each is valid, compressed and decoded', issues.slice(0, 5));
 
-// ---- Well formed: ghosts around lines, rows and ranges within their tables ----
+// ---- Well formed: sentinels around lines, rows and ranges within their tables ----
 
 const wrong = [];
 for (const tile of tiles) {
     const read = readTile(decoder, tile.bytes), records = recordsOf(read), {layers, rows} = read.extras;
-    if (!(records[0].flags & GHOST) || !(records.at(-1).flags & GHOST))
-        wrong.push([tile.name, 'no ghost at an end']);
+    if (!(records[0].flags & SENTINEL) || !(records.at(-1).flags & SENTINEL))
+        wrong.push([tile.name, 'no sentinel at an end']);
     records.forEach(({flags, row}, i) => {
         const before = records[i - 1]?.flags ?? 0;
-        if (i > 0 && !(flags & GHOST) && Boolean(flags & FIRST) !== Boolean(before & GHOST))
-            wrong.push([tile.name, 'a line that does not begin behind a ghost', i]);
-        if ((flags & GHOST) && i > 0 && !(before & (GHOST | LAST)))
-            wrong.push([tile.name, 'a line that does not end before a ghost', i]);
+        if (i > 0 && !(flags & SENTINEL) && Boolean(flags & FIRST) !== Boolean(before & SENTINEL))
+            wrong.push([tile.name, 'a line that does not begin behind a sentinel', i]);
+        if ((flags & SENTINEL) && i > 0 && !(before & (SENTINEL | LAST)))
+            wrong.push([tile.name, 'a line that does not end before a sentinel', i]);
         if (row < 0 || row >= rows.length)
             wrong.push([tile.name, 'no such row', row]);
     });
@@ -138,7 +138,7 @@ let points = 0;
 for (const tile of compared.filter((_, i) => i % Math.ceil(compared.length / 12) === 0)) {
     const read = readTile(decoder, tile.bytes), records = recordsOf(read), own = pointsOfView(tile.place);
     const scale = read.extras.tilePx / read.extras.units, inside = ([x, y]) => Math.max(Math.abs(x), Math.abs(y)) < PX / 2;
-    const kept = records.filter(({flags}) => !(flags & GHOST)).map(({x, y}) => [x * scale, y * scale]);
+    const kept = records.filter(({flags}) => !(flags & SENTINEL)).map(({x, y}) => [x * scale, y * scale]);
     apart[0] = Math.max(apart[0], farthest(kept.filter(inside), own));
     apart[1] = Math.max(apart[1], farthest(own.filter(inside), kept));
     points += kept.length;

@@ -1,4 +1,5 @@
-/* Mesh tiles: lines cut and quantised, and what stands between them. No device: a picture of records is made by hand. */
+/* Mesh tiles: lines cut and quantised, and what stands between them. No device: a picture of records is made by hand.
+ */
 #include "tiles/mesh_tile.h"
 
 #include "kernels/layout.h"
@@ -83,7 +84,7 @@ static void test_units(void **state) {
     assert_int_equal(f.tile.units, CAMBER_MESH_UNITS);
     assert_int_equal(f.tile.record_count, 6);
     assert_int_equal(f.tile.segments, 3);
-    assert_true(f.tile.records[0].flags == CAMBER_MESH_GHOST && f.tile.records[5].flags == CAMBER_MESH_GHOST);
+    assert_true(f.tile.records[0].flags == CAMBER_MESH_SENTINEL && f.tile.records[5].flags == CAMBER_MESH_SENTINEL);
     check(&f, 1, -16384, -16384, CAMBER_MESH_FIRST);
     check(&f, 2, 0, 0, 0);
     check(&f, 3, 129, 0, 0); /* 128.5 and -0.5 */
@@ -104,13 +105,13 @@ static void test_leaves(void **state) {
     assert_int_equal(f.tile.record_count, 7);
     check(&f, 1, -15104, -15104, CAMBER_MESH_FIRST);
     check(&f, 2, -15104, 22016, CAMBER_MESH_LAST | CAMBER_MESH_CUT);
-    assert_int_equal(f.tile.records[3].flags, CAMBER_MESH_GHOST);
+    assert_int_equal(f.tile.records[3].flags, CAMBER_MESH_SENTINEL);
     check(&f, 4, -8704, 22016, CAMBER_MESH_FIRST | CAMBER_MESH_CUT);
     check(&f, 5, -8704, -15104, CAMBER_MESH_LAST);
     end(&f);
 }
 
-/* What 16 bits do not hold is cut where it leaves them, on the line. */
+/* A segment that leaves what 16 bits hold is cut there, on the line. */
 static void test_far(void **state) {
     (void)state;
     static const float points[][2] = {{-1000, -1000}, {1256, 1256}};
@@ -169,7 +170,7 @@ static void test_small(void **state) {
     end(&f);
 }
 
-/* A ring's ghosts have its neighbours. One that leaves the tile is a line that begins where it comes back. */
+/* A ring's sentinels have its neighbours. One that leaves the tile is a line that begins where it comes back. */
 static void test_ring(void **state) {
     (void)state;
     static const float whole[][2] = {{100, 100}, {150, 100}, {150, 150}, {100, 150}, {100, 100}};
@@ -178,10 +179,10 @@ static void test_ring(void **state) {
     make(&f, whole, 5, CAMBER_POINT_RING, CAMBER_POINT_RING);
     cut(&f);
     assert_int_equal(f.tile.record_count, 7);
-    check(&f, 0, -3584, 2816, CAMBER_MESH_GHOST);
+    check(&f, 0, -3584, 2816, CAMBER_MESH_SENTINEL);
     check(&f, 1, -3584, -3584, CAMBER_MESH_FIRST | CAMBER_MESH_RING);
     check(&f, 5, -3584, -3584, CAMBER_MESH_LAST | CAMBER_MESH_RING);
-    check(&f, 6, 2816, -3584, CAMBER_MESH_GHOST);
+    check(&f, 6, 2816, -3584, CAMBER_MESH_SENTINEL);
     end(&f);
     make(&f, cut_off, 5, CAMBER_POINT_RING, CAMBER_POINT_RING);
     cut(&f);
@@ -207,8 +208,8 @@ static void test_cut_by_picture(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units), cmocka_unit_test(test_leaves), cmocka_unit_test(test_far),
-        cmocka_unit_test(test_wide),  cmocka_unit_test(test_beside), cmocka_unit_test(test_small),
+        cmocka_unit_test(test_units), cmocka_unit_test(test_leaves),         cmocka_unit_test(test_far),
+        cmocka_unit_test(test_wide),  cmocka_unit_test(test_beside),         cmocka_unit_test(test_small),
         cmocka_unit_test(test_ring),  cmocka_unit_test(test_cut_by_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

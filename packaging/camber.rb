@@ -14,6 +14,7 @@ class Camber < Formula
   depends_on "jansson"
   depends_on "libdeflate"
   depends_on "libmicrohttpd"
+  depends_on "meshoptimizer"
   depends_on "libpng"
   depends_on :linux
   depends_on "mesa"

@@ -116,7 +116,7 @@ CAMBER_API bool camber_tiles_beside(const char *path, size_t n, char *name, size
 /* ---- Drawing tiles ---- */
 
 typedef struct camber_tiles_engine_desc {
-    camber_renderer *renderer; /* not NULL; it may be of another context than the features */
+    camber_renderer *renderer; /* not NULL, unless tiles are meshes; it may be of another context than the features */
     camber_device *device;     /* the renderer's */
     uint32_t tile_size; /* CSS px: 256, whose zoom 1 is a MapLibre zoom 0, or 512, which has the same zooms. 0: 256 */
     double ratio;       /* device px a CSS px; a tile is rounded to whole px, 64 to 2048. 0: 1 */
@@ -127,6 +127,9 @@ typedef struct camber_tiles_engine_desc {
      * most. What is kept of high zooms does not grow with them then. Such an engine draws no archive. 0: 8, for
      * archives */
     uint32_t on_demand_side;
+    /* Tiles are meshes, as docs/mesh-tiles.md describes them: what the style draws of lines at the zooms from a tile's
+     * own to the next. There are no pictures, and renderer may be NULL. */
+    bool meshes;
 } camber_tiles_engine_desc;
 
 /* Draws tiles of features. One picture shows up to 8 x 8 tiles, a metatile; metatiles lie side by side from the

@@ -3,6 +3,7 @@
 
 #include "archive/folder.h"
 #include "archive/output_file.h"
+#include "archive/tileset.h"
 #include "source/pmtiles.h"
 
 #include <dirent.h>
@@ -89,6 +90,26 @@ static camber_status write_metadata(const camber_archive_plan *plan) {
     return status;
 }
 
+static camber_status write_beside(void *user, const char *name, const void *bytes, size_t size_bytes) {
+    const camber_archive_plan *plan = user;
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/%s", plan->whole, name) >= (int)sizeof path)
+        return camber_output_fail(plan->context, plan->whole, ENAMETOOLONG);
+    return write_file(plan, path, bytes, size_bytes);
+}
+
+/* Writes the tileset of mesh tiles. */
+static camber_status write_tileset(const camber_archive_plan *plan) {
+    char path[PATH_MAX];
+    camber_archive_plan own = *plan;
+    if (plan->desc->type != CAMBER_TILE_GLB || !plan->run_count)
+        return CAMBER_OK;
+    if (snprintf(path, sizeof path, "%s/subtrees", plan->whole) >= (int)sizeof path)
+        return camber_output_fail(plan->context, plan->whole, ENAMETOOLONG);
+    const camber_status status = make_folder(plan, path);
+    return status == CAMBER_OK ? camber_tileset_write(plan, write_beside, &own) : status;
+}
+
 /* Files by the million are not synced one by one: a loss of power may lose some, the end of the process none. */
 camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
     enum { MOST_FILES = 1 << 26 };
@@ -102,6 +123,8 @@ camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
         status = write_metadata(plan);
     if (status == CAMBER_OK)
         status = write_tiles(plan, &bytes);
+    if (status == CAMBER_OK)
+        status = write_tileset(plan);
     camber_bytes_free(&bytes);
     return status;
 }
@@ -146,6 +169,11 @@ static camber_status tell_stranger(const camber_folder_visitor *visitor, const c
     return visitor->take_stranger(visitor->user, path);
 }
 
+/* Whether a name is that of a file beside the tiles. */
+static bool is_beside(const char *entry) {
+    return strcmp(entry, "metadata.json") == 0 || strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0;
+}
+
 /* Lists what is named by a number in a folder, in ascending order. What is not goes to the visitor. */
 static camber_status list(const camber_folder_visitor *visitor, const char *folder, bool files, bool top,
                           names *found) {
@@ -155,8 +183,7 @@ static camber_status list(const camber_folder_visitor *visitor, const char *fold
     const struct dirent *entry;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
         name made;
-        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 ||
-            (top && strcmp(entry->d_name, "metadata.json") == 0))
+        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 || (top && is_beside(entry->d_name)))
             continue;
         if (!parse_name(entry->d_name, files, &made))
             status = tell_stranger(visitor, folder, entry->d_name);

@@ -86,8 +86,8 @@ static int check_encoding(const camber_option_reader *p) {
     camber_options *options = p->options;
     if (options->format < 0)
         options->format = CAMBER_FORMAT_PNG;
-    if (options->format == CAMBER_FORMAT_GLB)
-        return camber_options_refuse(p, "--format glb: tiles are pictures; choose png, png8 or webp");
+    if (options->format == CAMBER_FORMAT_GLB && options->keep_empty)
+        return camber_options_refuse(p, "--keep-empty: a mesh tile without lines has nothing; leave it out");
     if (!camber_encoding_is_built(camber_format_encoding(options->format)))
         return camber_options_refuse(
             p, "--format webp: this build writes no WebP (CAMBER_WEBP); build it with libwebp, or choose png");

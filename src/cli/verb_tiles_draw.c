@@ -147,7 +147,8 @@ static camber_tiles_engine_desc describe_engine(const job *j) {
                                       .ratio = options->view.ratio,
                                       .simplify_px = options->simplify_px,
                                       .coverage = (camber_coverage)options->coverage,
-                                      .threads = options->threads};
+                                      .threads = options->threads,
+                                      .meshes = options->format == CAMBER_FORMAT_GLB};
 }
 
 static camber_status read_for_part(void *user, camber_features *features, bool *done) {
@@ -236,7 +237,8 @@ static int draw(job *j) {
         status = read_region(j);
     j->load_ms = camber_clock_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE)
-        status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
+        status = camber_session_need(session, session->options->format == CAMBER_FORMAT_GLB ? CAMBER_NEEDS_DEVICE
+                                                                                            : CAMBER_NEEDS_RENDERER);
     if (status == CAMBER_EXIT_DONE)
         status = open_engine(j);
     if (status != CAMBER_EXIT_DONE)

@@ -115,6 +115,8 @@ static camber_status list_copies(camber_excerpt *excerpt, const camber_plan_entr
     const reached window = {excerpt->window.x - half, excerpt->window.x + half};
     for (size_t s = 0; s < zoom->plan.set_count; s++) {
         excerpt->first_entries[s] = list->count;
+        if (zoom->lines_only && camber_plan_is_area(&zoom->plan, zoom->plan.sets + s))
+            continue;
         for (size_t i = listed->first_entries[s]; i < listed->first_entries[s + 1]; i++)
             if (!add_copies(zoom, zoom->plan.sets + s, listed->entries[i], &window, list))
                 return CAMBER_ERROR_MEMORY;

@@ -20,6 +20,7 @@ typedef struct camber_zoom_plan {
     float most_reach_px;
     bool has_images; /* the background shows images, so it differs from place to place */
     bool has_area_images;
+    bool lines_only; /* excerpts leave areas out */
 } camber_zoom_plan;
 
 typedef struct camber_zoom_desc {

@@ -13,7 +13,8 @@ enum { MOST_JOBS = 8 };
 
 struct camber_encode_queue {
     camber_workers *workers;
-    camber_encoder **encoders; /* one a worker */
+    camber_encoder **encoders; /* one a worker; NULL where tiles are meshes */
+    camber_mesh_tile *meshes;  /* one a worker */
     pthread_t *threads;
     size_t thread_count;
     camber_encode_job jobs[MOST_JOBS];
@@ -55,11 +56,33 @@ static bool is_background(const camber_pixels *pixels, const uint8_t background[
     return true;
 }
 
+/* Encodes the lines of a tile; it has no bytes where none come near it. */
+static camber_status encode_mesh(camber_encode_queue *queue, size_t number, camber_encode_job *job, unsigned tile) {
+    const camber_tiles_picture *picture = &job->picture;
+    camber_encoded_tile *made = job->tiles + tile;
+    camber_mesh_tile *mesh = queue->meshes + number;
+    camber_context *context = queue->workers->contexts[number];
+    const uint32_t x = tile % picture->side, y = tile / picture->side;
+    const camber_mesh_place place = {picture->zoom, picture->column + x, picture->row + y, job->ratio};
+    camber_status status = camber_mesh_tile_cut(context, &job->lines, picture->tile_px, x, y, mesh);
+    made->size_bytes = 0;
+    if (status != CAMBER_OK || !mesh->segments)
+        return status;
+    camber_free(context, made->bytes);
+    made->bytes = NULL;
+    made->capacity = 0;
+    status = camber_mesh_tile_encode(mesh, job->lines.plan, &place, &made->bytes, &made->size_bytes);
+    made->capacity = made->size_bytes;
+    return status;
+}
+
 static camber_status encode_tile(camber_encode_queue *queue, size_t number, camber_encode_job *job, unsigned tile) {
     camber_encoded_tile *made = job->tiles + tile;
     const uint8_t *bytes = NULL;
     size_t size_bytes = 0;
     camber_pixels pixels;
+    if (job->lines.plan)
+        return encode_mesh(queue, number, job, tile);
     camber_tiles_picture_get_tile(&job->picture, tile % job->picture.side, tile / job->picture.side, &pixels);
     made->size_bytes = 0;
     if (job->drops_background && is_background(&pixels, job->background))
@@ -164,7 +187,7 @@ static void start_threads(camber_encode_queue *queue) {
 /* ---- The queue ---- */
 
 static camber_status make_encoders(camber_encode_queue *queue, const camber_encoder_desc *desc) {
-    for (size_t i = 0; i < queue->workers->count; i++) {
+    for (size_t i = 0; i < queue->workers->count && desc; i++) {
         const camber_status status = camber_encoder_create(queue->workers->contexts[i], desc, &queue->encoders[i]);
         if (status != CAMBER_OK)
             return camber_workers_tell(queue->workers, i, status);
@@ -185,6 +208,7 @@ camber_status camber_encode_queue_create(camber_workers *workers, const camber_e
     camber_status status = CAMBER_ERROR_MEMORY;
     const size_t jobs = workers->count == 1 ? 1 : 2 + (workers->count + 7) / 8;
     if (!(made->encoders = camber_alloc_zero(context, workers->count, sizeof(camber_encoder *))) ||
+        !(made->meshes = camber_alloc_zero(context, workers->count, sizeof *made->meshes)) ||
         !(made->threads = camber_alloc(context, workers->count, sizeof *made->threads)))
         goto done;
     for (made->job_count = 0; made->job_count < jobs && made->job_count < MOST_JOBS; made->job_count++)
@@ -213,9 +237,12 @@ void camber_encode_queue_destroy(camber_encode_queue *queue) {
         pthread_join(queue->threads[i], NULL);
     for (size_t i = 0; queue->encoders && i < queue->workers->count; i++)
         camber_encoder_destroy(queue->encoders[i]);
+    for (size_t i = 0; queue->meshes && i < queue->workers->count; i++)
+        camber_mesh_tile_free(queue->meshes + i);
     for (size_t i = 0; i < MOST_JOBS; i++) {
         for (size_t k = 0; k < 64; k++)
             camber_free(queue->workers->contexts[0], queue->jobs[i].tiles[k].bytes); /* whichever made them */
+        camber_mesh_picture_free(&queue->jobs[i].lines);
         camber_free(context, queue->jobs[i].rgba);
     }
     pthread_cond_destroy(&queue->done);
@@ -223,6 +250,7 @@ void camber_encode_queue_destroy(camber_encode_queue *queue) {
     pthread_mutex_destroy(&queue->mutex);
     camber_free(context, queue->threads);
     camber_free(context, queue->encoders);
+    camber_free(context, queue->meshes);
     camber_free(context, queue);
 }
 
@@ -259,7 +287,7 @@ camber_encode_job *camber_encode_queue_take(camber_encode_queue *queue, bool wai
 }
 
 void camber_encode_queue_release(camber_encode_queue *queue, camber_encode_job *job) {
-    (void)job;
+    camber_mesh_picture_free(&job->lines);
     pthread_mutex_lock(&queue->mutex);
     queue->taken++;
     pthread_mutex_unlock(&queue->mutex);

@@ -3,6 +3,7 @@
 #define CAMBER_TILES_ENCODING_H
 
 #include "camber_tiles.h"
+#include "tiles/mesh_tile.h"
 #include "tiles/workers.h"
 
 typedef struct camber_encoded_tile {
@@ -13,9 +14,11 @@ typedef struct camber_encoded_tile {
 /* A picture and what became of its tiles. */
 typedef struct camber_encode_job {
     camber_tiles_picture picture;
-    uint8_t *rgba;         /* the picture's */
-    uint64_t wanted;       /* tiles to encode */
-    bool drops_background; /* tiles of this colour alone are left out: */
+    uint8_t *rgba;             /* the picture's */
+    camber_mesh_picture lines; /* of tiles that are meshes, in place of pixels; freed with the job's release */
+    double ratio;              /* of those */
+    uint64_t wanted;           /* tiles to encode */
+    bool drops_background;     /* tiles of this colour alone are left out: */
     uint8_t background[4];
     uint64_t unit;
     camber_encoded_tile tiles[64];
@@ -32,8 +35,8 @@ typedef struct camber_encode_times {
 
 typedef struct camber_encode_queue camber_encode_queue;
 
-/* picture_bytes: of the largest picture. workers must outlive the queue; one of them works on the caller's thread.
- * Returns CAMBER_ERROR_ARGUMENT, CAMBER_ERROR_MEMORY. */
+/* picture_bytes: of the largest picture. desc NULL: tiles are meshes. workers must outlive the queue; one of them works
+ * on the caller's thread. Returns CAMBER_ERROR_ARGUMENT, CAMBER_ERROR_MEMORY. */
 camber_status camber_encode_queue_create(camber_workers *workers, const camber_encoder_desc *desc, size_t picture_bytes,
                                          camber_encode_queue **queue);
 /* Waits for the threads, and drops what they have done. */

@@ -55,6 +55,9 @@ static camber_status check_desc(camber_tiles_engine *engine, const camber_tiles_
     if (!(own->simplify_px >= 0.0 && isfinite(own->simplify_px)))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: a simplification of %g px; choose 0 or a distance in pixels", own->simplify_px);
+    if (own->meshes && !camber_mesh_is_built())
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: this build writes no mesh tiles (CAMBER_MESHOPT); build it with meshoptimizer");
     if (own->on_demand_side > CAMBER_METATILE_SIDE_MOST || own->on_demand_side & (own->on_demand_side - 1))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: %u tiles on a side; choose 1, 2, 4 or 8",
                            own->on_demand_side);
@@ -85,8 +88,12 @@ void camber_tiles_engine_forget(camber_tiles_engine *engine, int zoom) {
     if (zoom < 0 || zoom > CAMBER_LARGEST_TILE_ZOOM)
         return;
     camber_census_free(&engine->zooms[zoom].census);
-    camber_zoom_plan_destroy(engine->zooms[zoom].plan);
+    if (engine->zooms[zoom].mesh)
+        camber_mesh_plan_destroy(engine->zooms[zoom].mesh);
+    else
+        camber_zoom_plan_destroy(engine->zooms[zoom].plan);
     engine->zooms[zoom].plan = NULL;
+    engine->zooms[zoom].mesh = NULL;
 }
 
 void camber_tiles_engine_destroy(camber_tiles_engine *engine) {
@@ -101,7 +108,7 @@ void camber_tiles_engine_destroy(camber_tiles_engine *engine) {
 
 size_t camber_tiles_engine_get_picture_bytes(const camber_tiles_engine *engine) {
     const size_t side = (size_t)camber_engine_side(engine, CAMBER_LARGEST_TILE_ZOOM) * engine->tile_px;
-    return 4 * side * side;
+    return engine->desc.meshes ? 1 : 4 * side * side;
 }
 
 /* ---- Zooms ---- */
@@ -162,9 +169,16 @@ camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, cam
     const double start_ms = camber_now_ms();
     if (!it->plan) {
         const camber_zoom_desc desc = camber_engine_zoom_desc(&engine->desc, zoom);
-        status = camber_zoom_plan_create(engine->features, &desc, &it->plan);
-        if (status == CAMBER_OK)
+        if (engine->desc.meshes)
+            status = camber_mesh_plan_create(engine->features, &desc, &it->mesh);
+        else
+            status = camber_zoom_plan_create(engine->features, &desc, &it->plan);
+        if (it->mesh) {
+            it->plan = it->mesh->zoom;
+            it->has_background = true; /* a tile without lines is left out */
+        } else if (status == CAMBER_OK) {
             status = find_background(engine, it);
+        }
         if (status != CAMBER_OK)
             camber_tiles_engine_forget(engine, zoom);
     }
@@ -240,34 +254,58 @@ static camber_status renew_mesh(camber_tiles_engine *engine) {
     return camber_mesh_create(engine->desc.device, engine->desc.renderer, &engine->mesh);
 }
 
-camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
-                                          uint8_t *rgba, camber_tiles_picture *picture) {
-    const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
+static camber_excerpt_window window_of(const camber_tiles_picture *picture) {
     const double across = exp2(picture->zoom), half = 0.5 * picture->side;
     const uint32_t side_px = picture->side * picture->tile_px;
-    const camber_excerpt_window window = {(picture->column + half) / across, (picture->row + half) / across, side_px,
-                                          side_px};
+    return (camber_excerpt_window){(picture->column + half) / across, (picture->row + half) / across, side_px, side_px};
+}
+
+/* Makes the excerpt of a metatile and tessellates it. */
+static camber_status tessellate(camber_tiles_engine *engine, const camber_metatile *metatile,
+                                const camber_tiles_picture *picture, camber_excerpt *excerpt) {
+    static const uint32_t none[1] = {0};
+    const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
+    const camber_excerpt_window window = window_of(picture);
     const double start_ms = camber_now_ms();
+    const camber_status status =
+        camber_excerpt_make(zoom->plan, metatile ? zoom->census.polylines + metatile->first : none,
+                            metatile ? metatile->end - metatile->first : 0, &window, excerpt);
+    engine->make_ms += camber_now_ms() - start_ms;
+    return status == CAMBER_OK ? camber_excerpt_tessellate(excerpt, engine->mesh) : status;
+}
+
+/* Frees the excerpt, and what the mesh holds of a large one. */
+static camber_status end_excerpt(camber_tiles_engine *engine, camber_excerpt *excerpt, camber_status status) {
+    const bool large = excerpt->network && camber_network_get_stats(excerpt->network).kept_points > MANY_POINTS;
+    camber_excerpt_free(excerpt);
+    return status == CAMBER_OK && large ? renew_mesh(engine) : status;
+}
+
+camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, const camber_metatile *metatile,
+                                                camber_tiles_picture *picture, camber_mesh_picture *lines) {
+    camber_excerpt excerpt = {0};
+    const double start_ms = camber_now_ms(), made_ms = engine->make_ms;
+    camber_status status = tessellate(engine, metatile, picture, &excerpt);
+    if (status == CAMBER_OK)
+        status = camber_mesh_picture_take(engine->zooms[picture->zoom].mesh, engine->mesh, lines);
+    status = end_excerpt(engine, &excerpt, status);
+    engine->draw_ms += camber_now_ms() - start_ms - (engine->make_ms - made_ms);
+    return status;
+}
+
+camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
+                                          uint8_t *rgba, camber_tiles_picture *picture) {
+    const double start_ms = camber_now_ms(), made_ms = engine->make_ms;
     camber_excerpt excerpt = {0};
     row_taker taker = {rgba, picture, tiles};
-    const uint32_t *polylines = metatile ? zoom->census.polylines + metatile->first : NULL;
-    static const uint32_t none[1] = {0};
-    camber_status status = camber_excerpt_make(zoom->plan, polylines ? polylines : none,
-                                               metatile ? metatile->end - metatile->first : 0, &window, &excerpt);
-    const double made_ms = camber_now_ms();
-    if (status == CAMBER_OK)
-        status = camber_excerpt_tessellate(&excerpt, engine->mesh);
+    camber_status status = tessellate(engine, metatile, picture, &excerpt);
     if (status == CAMBER_OK) {
         camber_frame frame = camber_excerpt_get_frame(&excerpt, engine->mesh);
         frame.coverage = engine->desc.coverage;
         status = camber_renderer_render(engine->desc.renderer, &frame, take_rows, &taker, NULL);
     }
-    const bool large = excerpt.network && camber_network_get_stats(excerpt.network).kept_points > MANY_POINTS;
-    camber_excerpt_free(&excerpt);
-    if (status == CAMBER_OK && large)
-        status = renew_mesh(engine);
-    engine->make_ms += made_ms - start_ms;
-    engine->draw_ms += camber_now_ms() - made_ms;
+    status = end_excerpt(engine, &excerpt, status);
+    engine->draw_ms += camber_now_ms() - start_ms - (engine->make_ms - made_ms);
     picture->rgba = status == CAMBER_OK ? rgba : NULL;
     return status;
 }

@@ -4,9 +4,11 @@
 
 #include "camber_tiles.h"
 #include "tiles/census.h"
+#include "tiles/mesh_tile.h"
 
 typedef struct camber_engine_zoom {
     camber_zoom_plan *plan; /* NULL: not evaluated yet */
+    camber_mesh_plan *mesh; /* has it, where tiles are meshes. NULL: pictures */
     camber_census census;   /* context NULL: not made yet */
     bool has_background;
     uint8_t background[4];
@@ -36,6 +38,10 @@ uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom);
 /* The picture of a metatile, not drawn. The zoom is open. metatile NULL: no line touches it. */
 camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                             const camber_metatile *metatile);
+/* Tessellates a metatile of an open zoom, for tiles that are meshes. Free lines with camber_mesh_picture_free, also
+ * after a failure. */
+camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, const camber_metatile *metatile,
+                                                camber_tiles_picture *picture, camber_mesh_picture *lines);
 /* Draws a metatile of an open zoom into rgba: the pixels of these tiles; others stay what they were. */
 camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
                                           uint8_t *rgba, camber_tiles_picture *picture);

@@ -92,10 +92,14 @@ uint64_t camber_features_get_hash(const camber_features *features) {
 
 static uint64_t hash_options(const camber_tiles_engine *engine, const camber_tiles_draw_desc *desc) {
     const double numbers[] = {
-        engine->desc.tile_size,   engine->desc.ratio,
-        engine->desc.simplify_px, (double)engine->desc.coverage,
-        (double)desc->encoding,   desc->encoding == CAMBER_ENCODING_WEBP ? (double)desc->quality : 0.0,
-        (double)desc->keep_empty, (double)camber_renderer_get_rasterizer(engine->desc.renderer)};
+        engine->desc.tile_size,
+        engine->desc.ratio,
+        engine->desc.simplify_px,
+        (double)engine->desc.coverage,
+        (double)desc->encoding,
+        desc->encoding == CAMBER_ENCODING_WEBP ? (double)desc->quality : 0.0,
+        (double)desc->keep_empty,
+        engine->desc.meshes ? -1.0 : (double)camber_renderer_get_rasterizer(engine->desc.renderer)};
     return hash_more(0, numbers, sizeof numbers);
 }
 

@@ -150,7 +150,11 @@ static camber_status draw_task(pyramid *p, const camber_tile_task *task, const c
     job->drops_background = !p->desc->keep_empty && job->picture.has_background;
     if (!p->desc->keep_empty && !job->picture.has_background && !p->renewed)
         job->wanted &= task->touched;
-    status = camber_engine_draw_metatile(p->engine, metatile, job->wanted, job->rgba, &job->picture);
+    job->ratio = p->engine->desc.ratio;
+    if (p->engine->desc.meshes)
+        status = camber_engine_tessellate_metatile(p->engine, metatile, &job->picture, &job->lines);
+    else
+        status = camber_engine_draw_metatile(p->engine, metatile, job->wanted, job->rgba, &job->picture);
     if (status != CAMBER_OK)
         return status;
     memcpy(job->background, job->picture.background, sizeof job->background);
@@ -187,7 +191,10 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
         p->done_cost += camber_task_cost(s->tasks + i);
         camber_progress(p->context, "drawing tiles", s->cost > 0.0 ? p->done_cost / s->cost : -1.0);
     }
-    camber_tiles_engine_forget(p->engine, s->tasks[first].zoom);
+    while (status == CAMBER_OK && p->engine->desc.meshes && camber_encode_queue_is_busy(p->queue))
+        status = write_ready(p, true); /* meshes are encoded by the zoom's plan */
+    if (status == CAMBER_OK)
+        camber_tiles_engine_forget(p->engine, s->tasks[first].zoom);
     return status;
 }
 
@@ -250,7 +257,8 @@ static camber_status try_all(pyramid *p) {
         for (end = i; end < s->count && s->tasks[end].zoom == s->tasks[i].zoom; end++)
             ;
         status = try_zoom(p, i, end);
-        camber_tiles_engine_forget(p->engine, s->tasks[i].zoom);
+        if (status == CAMBER_OK)
+            camber_tiles_engine_forget(p->engine, s->tasks[i].zoom);
     }
     p->stats.units = s->count;
     p->stats.points = 0;
@@ -292,8 +300,11 @@ static int find_center_zoom(const camber_tiles_area *area) {
     return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
-static camber_tile_type type_of(camber_encoding encoding) {
-    return encoding == CAMBER_ENCODING_WEBP ? CAMBER_TILE_WEBP : CAMBER_TILE_PNG;
+static camber_tile_type type_of(const pyramid *p) {
+    const camber_encoding encoding = p->desc->encoding;
+    return p->engine->desc.meshes             ? CAMBER_TILE_GLB
+           : encoding == CAMBER_ENCODING_WEBP ? CAMBER_TILE_WEBP
+                                              : CAMBER_TILE_PNG;
 }
 
 static camber_status fail_renewed(const pyramid *p, const char *names) {
@@ -336,7 +347,7 @@ static camber_status open_writer(pyramid *p) {
     const camber_tiles_draw_desc *desc = p->desc;
     json_t *metadata = make_metadata(p);
     camber_archive_desc whole = {.path = desc->output,
-                                 .type = type_of(desc->encoding),
+                                 .type = type_of(p),
                                  .force = desc->force,
                                  .resume = desc->resume,
                                  .min_zoom = p->area.min_zoom,
@@ -468,7 +479,7 @@ static camber_status prepare(pyramid *p) {
     const camber_encoder_desc encoder = {
         .encoding = p->desc->encoding, .opaque = is_opaque(p), .quality = p->desc->quality};
     if (status == CAMBER_OK)
-        status = camber_encode_queue_create(&p->engine->workers, &encoder,
+        status = camber_encode_queue_create(&p->engine->workers, p->engine->desc.meshes ? NULL : &encoder,
                                             camber_tiles_engine_get_picture_bytes(p->engine), &p->queue);
     return status;
 }

@@ -269,6 +269,19 @@ static void add_to_boxes(camber_tiles_schedule *schedule, const camber_region *m
         add_box(schedule->boxes + best, more);
 }
 
+/* How far from a tile lines may lie that reach it, world units: meshes are drawn at all zooms up to the next. */
+static double margin_of(const camber_features *features, const camber_tiles_engine_desc *desc, int zoom) {
+    double most = 0.0;
+    for (size_t s = 0; s < (desc->meshes ? CAMBER_MESH_SAMPLES : 1); s++) {
+        camber_zoom_desc own = camber_engine_zoom_desc(desc, zoom);
+        own.zoom += camber_mesh_sample_zoom(s);
+        own.scale_px *= exp2(camber_mesh_sample_zoom(s));
+        const camber_view view = camber_zoom_view(&own);
+        most = fmax(most, camber_view_margin(features->style, &view, desc->simplify_px));
+    }
+    return most;
+}
+
 camber_status camber_tiles_schedule_read_for(camber_tiles_schedule *schedule, camber_features *features,
                                              const camber_tiles_engine_desc *desc, uint32_t shard, uint32_t shards) {
     const camber_schedule *whole = &schedule->schedule;
@@ -282,9 +295,7 @@ camber_status camber_tiles_schedule_read_for(camber_tiles_schedule *schedule, ca
     const camber_status status = camber_schedule_choose(&part, shard, shards);
     for (size_t i = 0; i < part.count && status == CAMBER_OK; i++) {
         const camber_tile_task *task = part.tasks + i;
-        const camber_zoom_desc zoom = camber_engine_zoom_desc(desc, task->zoom);
-        const camber_view view = camber_zoom_view(&zoom);
-        const double margin = camber_view_margin(features->style, &view, desc->simplify_px), level = exp2(task->level);
+        const double margin = margin_of(features, desc, task->zoom), level = exp2(task->level);
         const camber_region box = {task->column / level - margin, task->row / level - margin,
                                    (task->column + 1.0) / level + margin, (task->row + 1.0) / level + margin};
         add_box(&region, &box);

@@ -495,6 +495,7 @@ LIBRARIES = {
     "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
     "libwebp": ("libwebp-dev", "pkgconfig(libwebp)", "webp"),
     "libmicrohttpd": ("libmicrohttpd-dev", "pkgconfig(libmicrohttpd)", "libmicrohttpd"),
+    "meshoptimizer": ("libmeshoptimizer-dev", "cmake(meshoptimizer)", "meshoptimizer"),
 }
 # Where a release's version stands besides CMakeLists.txt, and the file's place in LIBRARIES.
 PACKAGINGS = (

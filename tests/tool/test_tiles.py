@@ -541,7 +541,7 @@ def test_usage():
     bad = [(["lines.geojson"], "-o"), (["-o", "x.pmtiles"], "input"), (["lines.geojson", "-o", "x.png"], "extension"),
            ([*good, "--min-zoom", "5", "--max-zoom", "4"], "--min-zoom"), ([*good, "--max-zoom", "25"], "--max-zoom"),
            ([*good, "--tile-size", "128"], "--tile-size"), ([*good, "--ratio", "9"], "--ratio"),
-           ([*good, "--ratio", "0.1"], "--ratio"), ([*good, "--format", "glb"], "glb"),
+           ([*good, "--ratio", "0.1"], "--ratio"), ([*good, "--format", "glb", "--keep-empty"], "--keep-empty"),
            ([*good, "--quality", "50"], "--quality"), ([*good, "--tile", "3/8/0"], "--tile"),
            ([*good, "--tile", "3/1"], "--tile"), ([*good, "--tile", "3/1/1", "--max-zoom", "4"], "--tile"),
            ([*good, "--shard", "0/3"], "--shard"), ([*good, "--shard", "4/3"], "--shard"),

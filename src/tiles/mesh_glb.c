@@ -1,0 +1,538 @@
+/* Encodes mesh tiles as binary glTF 2.0, quantised and compressed. docs/mesh-tiles.md has the layout.
+ *
+ * Input: the records of a tile. Output: a file of one primitive, a strip with two vertices a record: the line's left
+ * and right edge at the tile's zoom, for plain viewers, and in both the record itself, for shaders. Ghosts between
+ * lines have a vertex of the line before and one of the line behind, so that the triangles there have no area. */
+#include "tiles/mesh_tile.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+
+#ifdef CAMBER_MESHOPT
+#include <meshoptimizer.h>
+#endif
+
+bool camber_mesh_is_built(void) {
+#ifdef CAMBER_MESHOPT
+    return true;
+#else
+    return false;
+#endif
+}
+
+#ifdef CAMBER_MESHOPT
+
+enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_FLOAT = 5126, GLTF_STRIP = 5 };
+/* Outlines lie on eighths of a px at the tile's zoom; sets lie a px above each other, so that plain viewers see which
+ * is above. */
+enum { OUTLINE_STEPS = 8 };
+
+/* As it stands in the file. */
+typedef struct vertex {
+    int16_t position[3], padding; /* x, height, y, in eighths of a px */
+    int16_t point[4];             /* x, y in units, row, flags */
+    uint8_t color[4];             /* linear */
+} vertex;
+_Static_assert(sizeof(vertex) == 20, "vertices lie side by side");
+
+typedef struct along {
+    float along_px, total_px;
+} along;
+
+typedef struct encoder {
+    camber_context *context;
+    const camber_mesh_tile *tile;
+    const camber_mesh_plan *plan;
+    const camber_mesh_place *place;
+    vertex *vertices;                 /* two a record */
+    along *alongs;                    /* two a record. NULL: none */
+    uint8_t *packed;                  /* both, compressed */
+    size_t vertex_bytes, along_bytes; /* of them */
+    int16_t low[3], high[3];          /* of positions */
+    bool ok;                          /* there was memory for all of the JSON */
+} encoder;
+
+/* ---- The outline, for plain viewers ---- */
+
+/* How plain viewers see a row: as its topmost layer does where it is drawn first. */
+typedef struct look {
+    double half_width, offset; /* eighths of a px */
+    int height;
+    uint8_t color[4];
+} look;
+
+static uint8_t linear_byte(float srgb) {
+    const double c = (double)srgb;
+    return (uint8_t)(255.0 * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)) + 0.5);
+}
+
+static look look_of(const encoder *e, uint32_t row, size_t set_index) {
+    const camber_plan *whole = &e->plan->zoom->plan;
+    const camber_plan_set *set = whole->sets + set_index;
+    look found = {.height = 0};
+    for (size_t n = 0, layer = set->first_layer; n < set->layer_count; n++, layer = whole->layers[layer].next)
+        for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
+            const camber_paint paint = camber_mesh_plan_paint(e->plan, layer, row, s);
+            const camber_color color = paint.color;
+            const double shrunk = OUTLINE_STEPS * exp2(-camber_mesh_sample_zoom(s));
+            if (!(paint.width_px > 0.0f))
+                continue;
+            const float width = paint.gap_px > 0.0f ? paint.gap_px + 2.0f * paint.width_px : paint.width_px;
+            found.half_width = 0.5 * (double)width * shrunk;
+            found.offset = (double)camber_mesh_plan_offset(e->plan, layer, row, s) * shrunk;
+            found.color[0] = linear_byte(color.r);
+            found.color[1] = linear_byte(color.g);
+            found.color[2] = linear_byte(color.b);
+            found.color[3] = (uint8_t)(255.0f * color.a + 0.5f);
+        }
+    return found;
+}
+
+static int16_t to_steps(double value) {
+    const double steps = floor(value + 0.5);
+    return (int16_t)(steps > 32767.0 ? 32767.0 : steps < -32767.0 ? -32767.0 : steps);
+}
+
+/* The direction from one record to another; false: they lie at one place. */
+static bool direction(const camber_mesh_record *a, const camber_mesh_record *b, double u[2]) {
+    const double x = b->x - a->x, y = b->y - a->y, length = sqrt(x * x + y * y);
+    u[0] = length > 0.0 ? x / length : 1.0;
+    u[1] = length > 0.0 ? y / length : 0.0;
+    return length > 0.0;
+}
+
+/* Places both vertices of a record: on the bisector of its segments, at most two half widths away. */
+static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
+    const camber_mesh_record *r = e->tile->records + i;
+    const bool is_ring = r->flags & CAMBER_MESH_RING;
+    const double steps = (double)(OUTLINE_STEPS * e->tile->tile_px) / e->tile->units, x = r->x * steps,
+                 y = r->y * steps;
+    double in[2], out[2];
+    const bool has_in = (!(r->flags & CAMBER_MESH_FIRST) || is_ring) && direction(r - 1, r, in);
+    const bool has_out = (!(r->flags & CAMBER_MESH_LAST) || is_ring) && direction(r, r + 1, out);
+    if (!has_in && !has_out)
+        in[0] = 1.0, in[1] = 0.0;
+    const double *a = has_in || !has_out ? in : out, *b = has_out ? out : a;
+    const double cosine = a[0] * b[0] + a[1] * b[1], by = 1.0 / fmax(1.0 + cosine, 0.25);
+    const double across[2] = {-(a[1] + b[1]) * by, (a[0] + b[0]) * by};
+    for (int side = 0; side < 2; side++) {
+        const double away = (side ? 1.0 : -1.0) * l->half_width + l->offset; /* y goes down: left, then right */
+        pair[side].position[0] = to_steps(x + across[0] * away);
+        pair[side].position[1] = (int16_t)l->height;
+        pair[side].position[2] = to_steps(y + across[1] * away);
+    }
+    if (!has_in && !has_out) /* a dot is a square */
+        for (int side = 0; side < 2; side++)
+            pair[side].position[0] = to_steps(x + (r->flags & CAMBER_MESH_FIRST ? -1.0 : 1.0) * l->half_width);
+}
+
+/* ---- Vertices ---- */
+
+static void make_pair(encoder *e, size_t i, const look *l) {
+    const camber_mesh_record *r = e->tile->records + i;
+    vertex *pair = e->vertices + 2 * i;
+    if (!(r->flags & CAMBER_MESH_SENTINEL))
+        place(e, i, l, pair);
+    for (int side = 0; side < 2; side++) {
+        const int16_t point[4] = {r->x, r->y, (int16_t)r->row, (int16_t)r->flags};
+        memcpy(pair[side].point, point, sizeof point);
+        memcpy(pair[side].color, l->color, sizeof l->color);
+        if (e->alongs)
+            e->alongs[2 * i + (size_t)side] = (along){r->along_px, r->total_px};
+    }
+}
+
+/* Puts the vertices of sentinels onto those beside them. */
+static void place_sentinels(encoder *e) {
+    const camber_mesh_record *records = e->tile->records;
+    const size_t count = e->tile->record_count;
+    for (size_t i = 0; i < count; i++) {
+        if (!(records[i].flags & CAMBER_MESH_SENTINEL))
+            continue;
+        vertex *pair = e->vertices + 2 * i;
+        size_t next = i;
+        while (next < count && (records[next].flags & CAMBER_MESH_SENTINEL))
+            next++;
+        const vertex *before = i > 0 ? pair - 1 : e->vertices + 2 * next;
+        const bool is_last = next == count || next > i + 1; /* of two sentinels the first stays behind */
+        const vertex *behind = is_last ? before : e->vertices + 2 * next;
+        memcpy(pair[0].position, before->position, sizeof before->position);
+        memcpy(pair[1].position, behind->position, sizeof behind->position);
+    }
+}
+
+static void measure(encoder *e) {
+    for (int k = 0; k < 3; k++) {
+        e->low[k] = e->high[k] = e->vertices[0].position[k];
+        for (size_t i = 1; i < 2 * e->tile->record_count; i++) {
+            const int16_t p = e->vertices[i].position[k];
+            e->low[k] = p < e->low[k] ? p : e->low[k];
+            e->high[k] = p > e->high[k] ? p : e->high[k];
+        }
+    }
+}
+
+static camber_status make_vertices(encoder *e) {
+    const camber_mesh_tile *tile = e->tile;
+    look *looks = camber_alloc_zero(e->context, tile->row_count, sizeof *looks);
+    if (!looks || !(e->vertices = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->vertices)) ||
+        (tile->has_arc_length &&
+         !(e->alongs = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->alongs)))) {
+        camber_free(e->context, looks);
+        return CAMBER_ERROR_MEMORY;
+    }
+    for (size_t range = 0; range < tile->range_count; range++) {
+        for (size_t i = tile->ranges[range].first; i < tile->ranges[range].end; i++) {
+            look *l = looks + tile->records[i].row;
+            if (!l->color[3])
+                *l = look_of(e, tile->rows[tile->records[i].row], tile->ranges[range].set);
+            l->height = OUTLINE_STEPS * (int)(range + 1);
+            make_pair(e, i, l);
+        }
+    }
+    for (size_t i = 0; i < tile->record_count; i++)
+        if (tile->records[i].flags & CAMBER_MESH_SENTINEL)
+            make_pair(e, i, looks + tile->records[i].row);
+    camber_free(e->context, looks);
+    place_sentinels(e);
+    measure(e);
+    return CAMBER_OK;
+}
+
+static camber_status compress(encoder *e) {
+    const size_t count = 2 * e->tile->record_count;
+    const size_t room = meshopt_encodeVertexBufferBound(count, sizeof *e->vertices),
+                 more = e->alongs ? meshopt_encodeVertexBufferBound(count, sizeof *e->alongs) : 0;
+    if (!(e->packed = camber_alloc_zero(e->context, room + more + 8, 1)))
+        return CAMBER_ERROR_MEMORY;
+    meshopt_encodeVertexVersion(0); /* that of EXT_meshopt_compression */
+    e->vertex_bytes = meshopt_encodeVertexBuffer(e->packed, room, e->vertices, count, sizeof *e->vertices);
+    const size_t start = (e->vertex_bytes + 3) / 4 * 4;
+    memset(e->packed + e->vertex_bytes, 0, start - e->vertex_bytes);
+    if (e->alongs)
+        e->along_bytes = meshopt_encodeVertexBuffer(e->packed + start, more, e->alongs, count, sizeof *e->alongs);
+    return CAMBER_OK;
+}
+
+/* ---- JSON ---- */
+
+static void set(encoder *e, json_t *object, const char *key, json_t *value) {
+    e->ok &= json_object_set_new(object, key, value) == 0;
+}
+
+static void append(encoder *e, json_t *array, json_t *value) {
+    e->ok &= json_array_append_new(array, value) == 0;
+}
+
+/* A number to a thousandth; of px above 10 to a hundredth, and so on: four digits, as many as a picture can tell. */
+static json_t *number(double value) {
+    double step = 1e-3;
+    for (double most = 10.0; fabs(value) >= most && most < 1e4; most *= 10.0)
+        step *= 10.0;
+    const double rounded = floor(value / step + 0.5) * step;
+    return rounded == floor(rounded) ? json_integer((json_int_t)rounded) : json_real(rounded);
+}
+
+/* Sets a list of samples, or one where all are the same; nothing where that is the default. Takes the list. */
+static void set_samples(encoder *e, json_t *object, const char *key, json_t *samples, json_t *normal) {
+    bool same = true;
+    for (size_t s = 1; s < json_array_size(samples); s++)
+        same = same && json_equal(json_array_get(samples, 0), json_array_get(samples, s));
+    json_t *first = json_array_get(samples, 0);
+    if (!same)
+        set(e, object, key, json_incref(samples));
+    else if (!normal || !json_equal(first, normal))
+        set(e, object, key, json_incref(first));
+    json_decref(samples);
+    json_decref(normal);
+}
+
+static unsigned color_byte(float value) {
+    return (unsigned)(255.0f * (value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value) + 0.5f);
+}
+
+static json_t *color_text(camber_color color) {
+    char text[16];
+    snprintf(text, sizeof text, "#%02x%02x%02x", color_byte(color.r), color_byte(color.g), color_byte(color.b));
+    return json_string(text);
+}
+
+static void set_along(encoder *e, json_t *object, const camber_paint *paint) {
+    if (paint->dash) {
+        json_t *lengths = json_array();
+        for (size_t i = 0; i < paint->dash->count; i++)
+            append(e, lengths, number((double)paint->dash->lengths[i]));
+        set(e, object, "dash", lengths);
+    }
+    if (paint->trim_end > paint->trim_start)
+        set(e, object, "trim", json_pack("[f, f]", (double)paint->trim_start, (double)paint->trim_end));
+    if (paint->ramp) {
+        json_t *stops = json_array();
+        for (size_t i = 0; i < paint->ramp->count; i++) {
+            const camber_ramp_stop *stop = paint->ramp->stops + i;
+            append(e, stops,
+                   json_pack("[o, o, o]", number((double)stop->place), color_text(stop->color),
+                             number((double)stop->color.a)));
+        }
+        set(e, object, "gradient", stops);
+    }
+}
+
+/* The paint of a row in a layer. NULL: it is not drawn at any sample. */
+static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
+    enum { WIDTH, OPACITY, GAP, BLUR, OFFSET, UNIT, COLOR, MOVE, LISTS };
+    static const char *const names[LISTS] = {"width",  "opacity",  "gap",   "blur",
+                                             "offset", "dashUnit", "color", "translate"};
+    json_t *lists[LISTS], *object = json_object();
+    camber_paint seen = {0}, paints[CAMBER_MESH_SAMPLES];
+    bool drawn = false;
+    for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
+        paints[s] = camber_mesh_plan_paint(e->plan, layer, row, s);
+        seen = paints[s].width_px > 0.0f || !drawn ? paints[s] : seen;
+        drawn = drawn || paints[s].width_px > 0.0f;
+    }
+    for (int k = 0; k < LISTS; k++)
+        lists[k] = json_array();
+    for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
+        /* Where it is not drawn, it looks as where it is, so that shaders may go from one to the other. */
+        const camber_paint *p = paints[s].width_px > 0.0f ? paints + s : &seen;
+        append(e, lists[WIDTH], number((double)paints[s].width_px));
+        append(e, lists[OPACITY], number((double)p->color.a));
+        append(e, lists[GAP], number((double)p->gap_px));
+        append(e, lists[BLUR], number((double)p->blur_px));
+        append(e, lists[OFFSET], number((double)camber_mesh_plan_offset(e->plan, layer, row, s)));
+        append(e, lists[UNIT], number(p->dash ? p->dash_unit_px > 0.0f ? (double)p->dash_unit_px : 1.0 : 0.0));
+        append(e, lists[COLOR], color_text(p->color));
+        append(e, lists[MOVE],
+               json_pack("[o, o]", number((double)p->translate_x_px), number((double)p->translate_y_px)));
+    }
+    for (int k = 0; k < LISTS; k++)
+        set_samples(e, object, names[k], lists[k],
+                    k == WIDTH || k == COLOR ? NULL
+                    : k == OPACITY           ? json_integer(1)
+                    : k == MOVE              ? json_pack("[i, i]", 0, 0)
+                                             : json_integer(0));
+    set_along(e, object, &seen);
+    if (drawn)
+        return object;
+    json_decref(object);
+    return NULL;
+}
+
+static json_t *layer_json(encoder *e, size_t layer, const camber_mesh_range *range) {
+    static const char *const overlaps[] = {"flatten", "accumulate", "unite"};
+    const camber_plan_layer *own = e->plan->zoom->plan.layers + layer;
+    const double opacity = own->look.paint.layer_opacity;
+    json_t *paints = json_object();
+    for (size_t i = 0; i < e->tile->row_count; i++) {
+        char key[24];
+        if (!camber_mesh_plan_has_row(e->plan, range->set, e->tile->rows[i]))
+            continue;
+        snprintf(key, sizeof key, "%zu", i);
+        json_t *paint = paint_json(e, layer, e->tile->rows[i]);
+        if (paint)
+            set(e, paints, key, paint);
+    }
+    if (!json_object_size(paints)) {
+        json_decref(paints);
+        return NULL;
+    }
+    json_t *object = json_pack("{s:s, s:[I, I], s:o}", "id", own->look.layer->id, "range", (json_int_t)range->first,
+                               (json_int_t)(range->end - range->first), "paints", paints);
+    if (opacity < 1.0)
+        set(e, object, "opacity", number(opacity));
+    if (own->look.layer->overlap != CAMBER_OVERLAP_FLATTEN)
+        set(e, object, "overlap", json_string(overlaps[own->look.layer->overlap]));
+    if (own->part == CAMBER_PLAN_BORDER)
+        set(e, object, "border", json_true());
+    return object;
+}
+
+static json_t *rows_json(encoder *e) {
+    static const char *const joins[] = {"round", "miter", "bevel"}, *const caps[] = {"butt", "round", "square"};
+    json_t *rows = json_array();
+    for (size_t i = 0; i < e->tile->row_count; i++) {
+        const camber_stroke *stroke = e->plan->zoom->strokes + e->plan->row_pairs[e->tile->rows[i]];
+        json_t *row = json_object();
+        if (stroke->cap != CAMBER_CAP_ROUND)
+            set(e, row, "cap", json_string(caps[stroke->cap]));
+        if (stroke->join != CAMBER_JOIN_ROUND)
+            set(e, row, "join", json_string(joins[stroke->join]));
+        if (stroke->miter_limit < 2.0f || stroke->miter_limit > 2.0f)
+            set(e, row, "miterLimit", number((double)stroke->miter_limit));
+        if (stroke->join == CAMBER_JOIN_ROUND && stroke->round_limit > 1.0f)
+            set(e, row, "roundLimit", number((double)stroke->round_limit));
+        append(e, rows, row);
+    }
+    return rows;
+}
+
+static json_t *extras_json(encoder *e) {
+    json_t *layers = json_array(), *background = json_array();
+    const camber_plan *whole = &e->plan->zoom->plan;
+    for (size_t i = 0; i < whole->layer_count; i++)
+        for (size_t k = 0; k < e->tile->range_count; k++) {
+            json_t *layer =
+                e->tile->ranges[k].set == whole->layers[i].set ? layer_json(e, i, e->tile->ranges + k) : NULL;
+            if (layer)
+                append(e, layers, layer);
+        }
+    for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
+        const camber_plan *own = s + 1 < CAMBER_MESH_SAMPLES ? e->plan->samples + s : whole;
+        append(e, background, own->background.a > 0.0f ? color_text(own->background) : json_null());
+    }
+    json_t *extras = json_pack("{s:i, s:I, s:I, s:o, s:o}", "z", e->place->zoom, "units", (json_int_t)e->tile->units,
+                               "tilePx", (json_int_t)e->tile->tile_px, "rows", rows_json(e), "layers", layers);
+    if (e->place->ratio < 1.0 || e->place->ratio > 1.0)
+        set(e, extras, "ratio", number(e->place->ratio));
+    set_samples(e, extras, "background", background, json_null());
+    return extras;
+}
+
+/* ---- The parts of glTF ---- */
+
+/* Offsets of 0 go without saying. */
+static json_t *view_json(encoder *e, size_t offset, size_t packed_offset, size_t packed_bytes, size_t stride) {
+    const size_t count = 2 * e->tile->record_count;
+    json_t *packed = json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)packed_bytes,
+                               "byteStride", (json_int_t)stride, "count", (json_int_t)count, "mode", "ATTRIBUTES");
+    if (packed_offset)
+        set(e, packed, "byteOffset", json_integer((json_int_t)packed_offset));
+    json_t *view = json_pack("{s:i, s:I, s:I, s:{s:o}}", "buffer", 1, "byteLength", (json_int_t)(count * stride),
+                             "byteStride", (json_int_t)stride, "extensions", "EXT_meshopt_compression", packed);
+    if (offset)
+        set(e, view, "byteOffset", json_integer((json_int_t)offset));
+    return view;
+}
+
+static json_t *accessor_json(int view, size_t offset, int component, size_t count, const char *type) {
+    json_t *accessor = json_pack("{s:i, s:i, s:I, s:s}", "bufferView", view, "componentType", component, "count",
+                                 (json_int_t)count, "type", type);
+    if (offset && json_object_set_new(accessor, "byteOffset", json_integer((json_int_t)offset)) != 0) {
+        json_decref(accessor);
+        return NULL;
+    }
+    return accessor;
+}
+
+static json_t *accessors_json(encoder *e) {
+    const size_t count = 2 * e->tile->record_count;
+    const int16_t *low = e->low, *high = e->high;
+    json_t *position = accessor_json(0, offsetof(vertex, position), GLTF_SHORT, count, "VEC3");
+    json_t *point = accessor_json(0, offsetof(vertex, point), GLTF_SHORT, count, "VEC4");
+    json_t *color = accessor_json(0, offsetof(vertex, color), GLTF_UNSIGNED_BYTE, count, "VEC4");
+    set(e, position, "min", json_pack("[i, i, i]", low[0], low[1], low[2]));
+    set(e, position, "max", json_pack("[i, i, i]", high[0], high[1], high[2]));
+    set(e, color, "normalized", json_true());
+    json_t *list = json_pack("[o, o, o]", position, point, color);
+    if (e->alongs)
+        append(e, list, accessor_json(1, 0, GLTF_FLOAT, count, "VEC2"));
+    return list;
+}
+
+static json_t *node_json(const encoder *e) {
+    const double world = 40075016.685578488, tile = world / exp2(e->place->zoom),
+                 scale = tile / (OUTLINE_STEPS * e->tile->tile_px);
+    return json_pack("{s:i, s:[f, i, f], s:[f, f, f]}", "mesh", 0, "translation",
+                     ((double)e->place->column + 0.5) * tile - 0.5 * world, 0,
+                     ((double)e->place->row + 0.5) * tile - 0.5 * world, "scale", scale, scale, scale);
+}
+
+static bool is_translucent(const encoder *e) {
+    for (size_t i = 0; i < 2 * e->tile->record_count; i++)
+        if (e->vertices[i].color[3] < 255)
+            return true;
+    return false;
+}
+
+static json_t *root_json(encoder *e) {
+    const size_t count = 2 * e->tile->record_count, start = (e->vertex_bytes + 3) / 4 * 4;
+    const size_t raw_bytes = count * (sizeof *e->vertices + (e->alongs ? sizeof *e->alongs : 0));
+    json_t *views = json_pack("[o]", view_json(e, 0, 0, e->vertex_bytes, sizeof *e->vertices));
+    if (e->alongs)
+        append(e, views, view_json(e, count * sizeof *e->vertices, start, e->along_bytes, sizeof *e->alongs));
+    json_t *attributes = json_pack("{s:i, s:i, s:i}", "POSITION", 0, "_POINT", 1, "COLOR_0", 2);
+    if (e->alongs)
+        set(e, attributes, "_ALONG", json_integer(3));
+    json_t *root = json_pack("{s:{s:s}}", "asset", "version", "2.0");
+    set(e, root, "extensionsUsed",
+        json_pack("[s, s, s]", "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_materials_unlit"));
+    set(e, root, "extensionsRequired", json_pack("[s, s]", "KHR_mesh_quantization", "EXT_meshopt_compression"));
+    set(e, root, "scene", json_integer(0));
+    set(e, root, "scenes", json_pack("[{s:[i]}]", "nodes", 0));
+    set(e, root, "nodes", json_pack("[o]", node_json(e)));
+    json_t *material = json_pack("{s:{s:{}}}", "extensions", "KHR_materials_unlit");
+    if (is_translucent(e))
+        set(e, material, "alphaMode", json_string("BLEND"));
+    set(e, root, "materials", json_pack("[o]", material));
+    set(e, root, "meshes",
+        json_pack("[{s:[{s:i, s:i, s:o}], s:o}]", "primitives", "mode", GLTF_STRIP, "material", 0, "attributes",
+                  attributes, "extras", extras_json(e)));
+    set(e, root, "accessors", accessors_json(e));
+    set(e, root, "bufferViews", views);
+    set(e, root, "buffers",
+        json_pack("[{s:I}, {s:I, s:{s:{s:b}}}]", "byteLength", (json_int_t)(start + e->along_bytes), "byteLength",
+                  (json_int_t)raw_bytes, "extensions", "EXT_meshopt_compression", "fallback", 1));
+    return root;
+}
+
+/* ---- The file ---- */
+
+static uint8_t *put_u32(uint8_t *to, size_t value) {
+    for (int i = 0; i < 4; i++)
+        *to++ = (uint8_t)(value >> (8 * i));
+    return to;
+}
+
+static camber_status write_file(encoder *e, const char *json, uint8_t **bytes, size_t *size_bytes) {
+    const size_t length = strlen(json), text = (length + 3) / 4 * 4;
+    const size_t binary = (e->vertex_bytes + 3) / 4 * 4 + e->along_bytes, padded = (binary + 3) / 4 * 4;
+    const size_t total = 12 + 8 + text + 8 + padded;
+    uint8_t *file = camber_alloc_zero(e->context, total, 1);
+    if (!file)
+        return CAMBER_ERROR_MEMORY;
+    uint8_t *to = put_u32(put_u32(put_u32(file, 0x46546c67u), 2), total); /* glTF */
+    to = put_u32(put_u32(to, text), 0x4e4f534au);                         /* JSON */
+    memset(to, ' ', text);
+    memcpy(to, json, length);
+    to = put_u32(put_u32(to + text, padded), 0x004e4942u); /* BIN */
+    memcpy(to, e->packed, binary);
+    *bytes = file;
+    *size_bytes = total;
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_tile_encode(const camber_mesh_tile *tile, const camber_mesh_plan *plan,
+                                      const camber_mesh_place *place, uint8_t **bytes, size_t *size_bytes) {
+    encoder e = {.context = tile->context, .tile = tile, .plan = plan, .place = place, .ok = true};
+    camber_status status = make_vertices(&e);
+    if (status == CAMBER_OK)
+        status = compress(&e);
+    if (status == CAMBER_OK) {
+        json_t *root = root_json(&e);
+        char *json = root && e.ok ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(10)) : NULL;
+        status = json ? write_file(&e, json, bytes, size_bytes)
+                      : camber_fail(e.context, CAMBER_ERROR_MEMORY, "tiles: no memory for the style of a mesh tile");
+        free(json);
+        json_decref(root);
+    }
+    camber_free(e.context, e.packed);
+    camber_free(e.context, e.alongs);
+    camber_free(e.context, e.vertices);
+    return status;
+}
+
+#else
+
+camber_status camber_mesh_tile_encode(const camber_mesh_tile *tile, const camber_mesh_plan *plan,
+                                      const camber_mesh_place *place, uint8_t **bytes, size_t *size_bytes) {
+    (void)plan;
+    (void)place;
+    (void)bytes;
+    (void)size_bytes;
+    return camber_fail(tile->context, CAMBER_ERROR_ARGUMENT,
+                       "tiles: this build writes no mesh tiles (CAMBER_MESHOPT); build it with meshoptimizer");
+}
+
+#endif

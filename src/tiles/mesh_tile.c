@@ -1,0 +1,376 @@
+/* Cuts the lines of a picture into mesh tiles.
+ *
+ * Input: the records of a mesh of strips, as the device tessellated them for a picture of tiles. Output: for each tile
+ * the points of the segments that come within reach of it, in whole units of the tile. Main idea: a segment that
+ * touches the tile, grown by how far its row reaches, stays as it is; others go. So a tile, clipped to its square,
+ * shows what the picture shows there. A segment is cut only where it leaves what 16 bits hold.
+ *
+ *     +-----------------------------+  what 16 bits hold: half a tile on each side
+ *     |      .-----------------.    |
+ *     |  a---|--b    tile      |    |      a: first, cut       c: last, cut
+ *     |      |   \.____________|_c  |
+ *     |      '-----------------'    |
+ *     +-----------------------------+ */
+#include "tiles/mesh_tile.h"
+
+#include "kernels/layout.h"
+
+#include <math.h>
+
+/* ---- The lines of a picture ---- */
+
+/* Leaves each point once, and lists the lines. */
+static camber_status list_lines(camber_mesh_picture *picture) {
+    camber_mesh_data *data = &picture->data;
+    size_t count = 0, capacity = 0;
+    for (size_t i = 0; i < data->info.record_count; i++) {
+        const camber_record *r = data->records + i;
+        if (r->last & (CAMBER_RECORD_BREAK | CAMBER_RECORD_START))
+            continue;
+        if (r->last & CAMBER_POINT_FIRST) {
+            if (!camber_grow(data->context, &picture->lines, &capacity, picture->line_count + 1,
+                             sizeof *picture->lines))
+                return CAMBER_ERROR_MEMORY;
+            picture->lines[picture->line_count++] = (camber_mesh_line){.first = count,
+                                                                       .pair = r->last >> CAMBER_POINT_ROW_SHIFT,
+                                                                       .x0 = r->x,
+                                                                       .y0 = r->y,
+                                                                       .x1 = r->x,
+                                                                       .y1 = r->y};
+        }
+        if (!picture->line_count)
+            continue;
+        camber_mesh_line *line = picture->lines + picture->line_count - 1;
+        line->x0 = fminf(line->x0, r->x);
+        line->y0 = fminf(line->y0, r->y);
+        line->x1 = fmaxf(line->x1, r->x);
+        line->y1 = fmaxf(line->y1, r->y);
+        line->count++;
+        if (data->arc_lengths)
+            data->arc_lengths[count] = data->arc_lengths[i];
+        data->records[count++] = *r;
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_picture_take(const camber_mesh_plan *plan, camber_mesh *mesh, camber_mesh_picture *picture) {
+    *picture = (camber_mesh_picture){.plan = plan};
+    const camber_status status = camber_mesh_read(mesh, &picture->data);
+    return status == CAMBER_OK ? list_lines(picture) : status;
+}
+
+void camber_mesh_picture_free(camber_mesh_picture *picture) {
+    if (picture->data.context)
+        camber_free(picture->data.context, picture->lines);
+    camber_mesh_data_destroy(&picture->data);
+    *picture = (camber_mesh_picture){0};
+}
+
+/* ---- Cutting ---- */
+
+typedef struct cutter {
+    const camber_mesh_picture *picture;
+    camber_mesh_tile *tile;
+    double centre_x, centre_y; /* of the tile, px of the picture */
+    double half;               /* of the tile, px */
+    double limit;              /* of what 16 bits hold, px from the centre */
+    double scale;              /* units a px */
+    bool sentinel_is_used;     /* the last sentinel has the neighbour of a ring */
+    bool failed;               /* no memory */
+} cutter;
+
+typedef struct cut_point {
+    double x, y; /* px from the centre */
+    float along_px, total_px;
+} cut_point;
+
+static cut_point point_at(const cutter *c, const camber_mesh_line *line, size_t i) {
+    const camber_record *r = c->picture->data.records + line->first + i;
+    cut_point p = {(double)r->x - c->centre_x, (double)r->y - c->centre_y, 0.0f, 0.0f};
+    if (c->picture->plan->has_arc_length[c->picture->plan->pair_rows[line->pair]] && c->picture->data.arc_lengths) {
+        p.along_px = c->picture->data.arc_lengths[line->first + i].along_px;
+        p.total_px = c->picture->data.arc_lengths[line->first + i].total_px;
+    }
+    return p;
+}
+
+/* The shares of the segment between which it lies in a square about the centre. false: nowhere. */
+static bool clip(cut_point a, cut_point b, double half, double *from, double *to) {
+    const double start[] = {a.x, a.y}, run[] = {b.x - a.x, b.y - a.y};
+    *from = 0.0;
+    *to = 1.0;
+    for (int k = 0; k < 2; k++) {
+        if (fabs(run[k]) > 0.0) {
+            const double one = (-half - start[k]) / run[k], other = (half - start[k]) / run[k];
+            *from = fmax(*from, fmin(one, other));
+            *to = fmin(*to, fmax(one, other));
+        } else if (fabs(start[k]) > half) {
+            return false;
+        }
+    }
+    return *from <= *to;
+}
+
+static cut_point between(cut_point a, cut_point b, double share) {
+    return (cut_point){a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share,
+                       a.along_px + (b.along_px - a.along_px) * (float)share, a.total_px};
+}
+
+static int16_t quantise(double px, double scale) {
+    const double units = floor(px * scale + 0.5);
+    return (int16_t)(units > 32767.0 ? 32767.0 : units < -32767.0 ? -32767.0 : units);
+}
+
+static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
+    camber_mesh_tile *tile = c->tile;
+    if (c->failed ||
+        !camber_grow(tile->context, &tile->records, &tile->record_capacity, tile->record_count + 1,
+                     sizeof *tile->records) ||
+        !tile->records) {
+        c->failed = true;
+        return;
+    }
+    const camber_mesh_record made = {
+        quantise(at.x, c->scale), quantise(at.y, c->scale), row, (uint16_t)flags, at.along_px, at.total_px};
+    camber_mesh_record *last = tile->record_count ? tile->records + tile->record_count - 1 : NULL;
+    const bool repeats = last && last->x == made.x && last->y == made.y;
+    if (!(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST)) && repeats) {
+        if (!(flags & CAMBER_MESH_LAST))
+            return;
+        if (!(last->flags & CAMBER_MESH_FIRST)) {
+            last->flags |= (uint16_t)flags;
+            return;
+        }
+    }
+    tile->records[tile->record_count++] = made;
+    tile->segments += !(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST));
+}
+
+/* Puts the sentinel before a line, unless that of the line before serves for it. */
+static void put_sentinel_before(cutter *c, cut_point first, uint16_t row, bool is_ring) {
+    if (!c->tile->record_count || (is_ring && c->sentinel_is_used))
+        put(c, first, row, CAMBER_MESH_SENTINEL);
+}
+
+static void put_sentinel_behind(cutter *c, cut_point at, uint16_t row, bool is_ring) {
+    put(c, at, row, CAMBER_MESH_SENTINEL);
+    c->sentinel_is_used = is_ring;
+}
+
+/* A line that may be cut into several. */
+typedef struct line_walk {
+    const camber_mesh_line *line;
+    double reach; /* of the tile's half and the row, px */
+    bool is_ring;
+    bool has_row; /* row is numbered, since some of the line is near */
+    uint16_t row;
+} line_walk;
+
+static bool is_outside(const cutter *c, cut_point p) {
+    return fabs(p.x) > c->limit || fabs(p.y) > c->limit;
+}
+
+/* Whether the segment from point i on comes near the tile. */
+static bool is_near(const cutter *c, const line_walk *w, size_t i) {
+    double from, to;
+    return clip(point_at(c, w->line, i), point_at(c, w->line, i + 1), w->reach, &from, &to);
+}
+
+/* The flags of a run's end: those of the line, where it is the line's own. */
+static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, bool own) {
+    const uint32_t last = c->picture->data.records[w->line->first + point].last;
+    return own && !(last & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
+}
+
+/* The tile's number of the line's row. */
+static void number_row(cutter *c, line_walk *w) {
+    camber_mesh_tile *tile = c->tile;
+    const uint32_t row = c->picture->plan->pair_rows[w->line->pair];
+    if (!tile->row_slots[row]) {
+        if (!camber_grow(tile->context, &tile->rows, &tile->row_capacity, tile->row_count + 1, sizeof *tile->rows)) {
+            c->failed = true;
+            return;
+        }
+        tile->rows[tile->row_count++] = row;
+        tile->row_slots[row] = (uint32_t)tile->row_count;
+    }
+    w->row = (uint16_t)(tile->row_slots[row] - 1);
+    w->has_row = true;
+}
+
+static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags) {
+    if (!w->has_row)
+        number_row(c, w);
+    put_sentinel_before(c, start, w->row, false);
+    put(c, start, w->row, CAMBER_MESH_FIRST | flags);
+}
+
+/* Puts the segments [first, end) that are near, in order; a ring's are counted around it. */
+static void put_runs(cutter *c, line_walk *w, size_t first, size_t end) {
+    const size_t segments = w->line->count - 1;
+    bool runs = false, near = is_near(c, w, first % segments);
+    for (size_t n = first; n < end && !c->failed; n++) {
+        const bool near_next = n + 1 < end && is_near(c, w, (n + 1) % segments), is_here = near;
+        const size_t i = n % segments;
+        const cut_point a = point_at(c, w->line, i), b = point_at(c, w->line, i + 1);
+        double from, to;
+        near = near_next;
+        if (!is_here || !clip(a, b, c->limit, &from, &to))
+            continue;
+        const bool begins_cut = is_outside(c, a), ends_cut = is_outside(c, b), ends = ends_cut || !near_next;
+        if (!runs) {
+            const cut_point start = begins_cut ? between(a, b, from) : a;
+            begin_run(c, w, start, end_flags(c, w, i, i == 0 && !begins_cut));
+        }
+        const cut_point stop = ends_cut ? between(a, b, to) : b;
+        const bool own_end = i + 1 == segments && !ends_cut;
+        put(c, stop, w->row, ends ? CAMBER_MESH_LAST | end_flags(c, w, i + 1, own_end) : 0u);
+        if (ends)
+            put_sentinel_behind(c, stop, w->row, false);
+        runs = !ends;
+    }
+}
+
+/* Puts a whole ring. */
+static void put_whole_ring(cutter *c, line_walk *w) {
+    const size_t segments = w->line->count - 1;
+    camber_mesh_tile *tile = c->tile;
+    number_row(c, w);
+    put_sentinel_before(c, point_at(c, w->line, 0), w->row, true);
+    const size_t first = tile->record_count;
+    for (size_t i = 0; i <= segments; i++)
+        put(c, point_at(c, w->line, i), w->row,
+            i == 0          ? CAMBER_MESH_FIRST | CAMBER_MESH_RING
+            : i == segments ? CAMBER_MESH_LAST | CAMBER_MESH_RING
+                            : 0u);
+    put_sentinel_behind(c, point_at(c, w->line, 0), w->row, true);
+    if (c->failed)
+        return;
+    camber_mesh_record *begin = tile->records + first, *behind = tile->records + tile->record_count - 1;
+    begin[-1].x = behind[-2].x;
+    begin[-1].y = behind[-2].y;
+    behind->x = begin[1].x;
+    behind->y = begin[1].y;
+}
+
+static void put_ring(cutter *c, line_walk *w) {
+    const size_t segments = w->line->count - 1;
+    for (size_t i = 0; i < segments; i++)
+        if (!is_near(c, w, i) || is_outside(c, point_at(c, w->line, i))) {
+            put_runs(c, w, i, i + segments);
+            return;
+        }
+    put_whole_ring(c, w);
+}
+
+/* ---- A tile ---- */
+
+/* Whether a line's box comes near the tile. */
+static bool touches(const cutter *c, const camber_mesh_line *line) {
+    const camber_mesh_plan *plan = c->picture->plan;
+    const double reach = c->half + (double)plan->reach_px[plan->pair_rows[line->pair]];
+    return line->count > 1 && (double)line->x0 - c->centre_x <= reach && (double)line->x1 - c->centre_x >= -reach &&
+           (double)line->y0 - c->centre_y <= reach && (double)line->y1 - c->centre_y >= -reach;
+}
+
+/* Chooses the units: as fine as 16 bits allow for what reaches farthest. */
+static void choose_units(cutter *c) {
+    const camber_mesh_plan *plan = c->picture->plan;
+    double most = 0.0;
+    for (size_t i = 0; i < c->picture->line_count; i++)
+        if (touches(c, c->picture->lines + i))
+            most = fmax(most, (double)plan->reach_px[plan->pair_rows[c->picture->lines[i].pair]]);
+    c->tile->units = CAMBER_MESH_UNITS;
+    do {
+        c->scale = c->tile->units / (2.0 * c->half);
+        c->limit = 32767.0 / c->scale;
+    } while (c->limit < c->half + most + 1.0 && (c->tile->units /= 2) > 1);
+}
+
+static size_t set_of(const camber_plan *plan, uint32_t pair) {
+    size_t set = 0;
+    while (pair >= plan->sets[set].first_pair + plan->sets[set].pair_count)
+        set++;
+    return set;
+}
+
+/* Notes that records up to here belong to the set. false: no memory. */
+static bool end_range(camber_mesh_tile *tile, size_t set, size_t first, size_t end) {
+    camber_mesh_range *last = tile->range_count ? tile->ranges + tile->range_count - 1 : NULL;
+    if (last && last->set == set) {
+        last->end = end;
+        return true;
+    }
+    if (!camber_grow(tile->context, &tile->ranges, &tile->range_capacity, tile->range_count + 1, sizeof *tile->ranges))
+        return false;
+    tile->ranges[tile->range_count++] = (camber_mesh_range){set, first, end};
+    return true;
+}
+
+static void put_line(cutter *c, const camber_mesh_line *line) {
+    camber_mesh_tile *tile = c->tile;
+    const camber_mesh_plan *plan = c->picture->plan;
+    const uint32_t row = plan->pair_rows[line->pair];
+    const camber_record *begin = c->picture->data.records + line->first;
+    const size_t before = tile->segments, first = tile->record_count ? tile->record_count : 1;
+    line_walk w = {.line = line, .reach = c->half + (double)plan->reach_px[row]};
+    w.is_ring = (begin->last & CAMBER_POINT_RING) && line->count > 3;
+    if (w.is_ring)
+        put_ring(c, &w);
+    else
+        put_runs(c, &w, 0, line->count - 1);
+    if (tile->segments == before || c->failed)
+        return;
+    tile->has_arc_length |= plan->has_arc_length[row];
+    c->failed |= !end_range(tile, set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1);
+}
+
+static camber_status clear(camber_mesh_tile *tile, const camber_mesh_plan *plan) {
+    for (size_t i = 0; i < tile->row_count; i++)
+        tile->row_slots[tile->rows[i]] = 0;
+    tile->record_count = tile->row_count = tile->range_count = tile->segments = 0;
+    tile->has_arc_length = false;
+    if (tile->row_slot_count >= plan->row_count)
+        return CAMBER_OK;
+    camber_free(tile->context, tile->row_slots);
+    tile->row_slot_count = 0;
+    if (!(tile->row_slots = camber_alloc_zero(tile->context, plan->row_count, sizeof *tile->row_slots)))
+        return CAMBER_ERROR_MEMORY;
+    tile->row_slot_count = plan->row_count;
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_picture *picture, uint32_t tile_px,
+                                   uint32_t x, uint32_t y, camber_mesh_tile *tile) {
+    tile->context = context;
+    tile->tile_px = tile_px;
+    const camber_status status = clear(tile, picture->plan);
+    if (status != CAMBER_OK)
+        return status;
+    cutter c = {.picture = picture,
+                .tile = tile,
+                .centre_x = ((double)x + 0.5) * tile_px,
+                .centre_y = ((double)y + 0.5) * tile_px,
+                .half = 0.5 * tile_px};
+    choose_units(&c);
+    for (size_t i = 0; i < picture->line_count && !c.failed; i++)
+        if (touches(&c, picture->lines + i))
+            put_line(&c, picture->lines + i);
+    if (c.failed)
+        return CAMBER_ERROR_MEMORY;
+    if (tile->row_count > INT16_MAX)
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "tiles: %zu kinds of lines in a mesh tile, and %d fit; let the style tell fewer apart",
+                           tile->row_count, INT16_MAX);
+    return CAMBER_OK;
+}
+
+void camber_mesh_tile_free(camber_mesh_tile *tile) {
+    if (!tile->context)
+        return;
+    camber_free(tile->context, tile->records);
+    camber_free(tile->context, tile->rows);
+    camber_free(tile->context, tile->ranges);
+    camber_free(tile->context, tile->row_slots);
+    *tile = (camber_mesh_tile){0};
+}

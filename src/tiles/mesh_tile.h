@@ -1,0 +1,86 @@
+/* Mesh tiles: the lines of a picture of tiles, cut into tiles, quantised and encoded as GLB. docs/mesh-tiles.md has
+ * what a tile is made of. */
+#ifndef CAMBER_TILES_MESH_TILE_H
+#define CAMBER_TILES_MESH_TILE_H
+
+#include "camber_proof.h"
+#include "camber_tiles.h"
+#include "tiles/mesh_plan.h"
+
+/* Flags of a record. */
+enum {
+    CAMBER_MESH_SENTINEL = 1, /* it stands between polylines */
+    CAMBER_MESH_FIRST = 2,
+    CAMBER_MESH_LAST = 4,
+    CAMBER_MESH_RING = 8, /* with FIRST and LAST: the sentinels beside them have the neighbours */
+    CAMBER_MESH_CUT = 16, /* with FIRST and LAST: the line goes on outside */
+};
+
+/* Units that a tile is wide, where lines reach half a tile beyond it at most; else a half of it, and so on. */
+enum { CAMBER_MESH_UNITS = 32768 };
+
+typedef struct camber_mesh_line {
+    size_t first, count; /* of the records */
+    uint32_t pair;
+    float x0, y0, x1, y1; /* its box, px */
+} camber_mesh_line;
+
+/* The lines of a picture. */
+typedef struct camber_mesh_picture {
+    const camber_mesh_plan *plan; /* NULL: none */
+    camber_mesh_data data;        /* its records are points, each once */
+    camber_mesh_line *lines;      /* line_count */
+    size_t line_count;
+} camber_mesh_picture;
+
+/* Takes the lines of a mesh of strips, which was tessellated for the picture with the zoom's plan. Free it with
+ * camber_mesh_picture_free, also after a failure. Returns what camber_mesh_read returns. */
+camber_status camber_mesh_picture_take(const camber_mesh_plan *plan, camber_mesh *mesh, camber_mesh_picture *picture);
+void camber_mesh_picture_free(camber_mesh_picture *picture);
+
+/* A point of a tile. */
+typedef struct camber_mesh_record {
+    int16_t x, y;        /* units from the tile's centre, y down */
+    uint16_t row, flags; /* row: of camber_mesh_tile.rows */
+    float along_px, total_px;
+} camber_mesh_record;
+
+/* The records of a set's lines: [first, end). */
+typedef struct camber_mesh_range {
+    size_t set, first, end;
+} camber_mesh_range;
+
+typedef struct camber_mesh_tile {
+    camber_context *context;
+    uint32_t units, tile_px;
+    camber_mesh_record *records; /* record_count, sentinels first and last; none where no line touches the tile */
+    size_t record_count, record_capacity;
+    uint32_t *rows; /* row_count: rows of the plan */
+    size_t row_count, row_capacity;
+    camber_mesh_range *ranges; /* range_count, in drawing order */
+    size_t range_count, range_capacity;
+    size_t segments;
+    bool has_arc_length;
+    uint32_t *row_slots; /* row_slot_count: by row of the plan, the tile's row + 1 */
+    size_t row_slot_count;
+} camber_mesh_tile;
+
+/* Cuts tile x, y of a picture, counted from its north-western one. *tile keeps its room from one call to the next; free
+ * it with camber_mesh_tile_free. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_picture *picture, uint32_t tile_px,
+                                   uint32_t x, uint32_t y, camber_mesh_tile *tile);
+void camber_mesh_tile_free(camber_mesh_tile *tile);
+
+/* Whether this build writes mesh tiles. */
+bool camber_mesh_is_built(void);
+/* Where a tile lies. */
+typedef struct camber_mesh_place {
+    int zoom;
+    uint32_t column, row;
+    double ratio; /* device px a CSS px */
+} camber_mesh_place;
+/* Encodes a tile that has records. *bytes are freed with camber_free. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_mesh_tile_encode(const camber_mesh_tile *tile, const camber_mesh_plan *plan,
+                                      const camber_mesh_place *place, uint8_t **bytes, size_t *size_bytes);
+
+#endif

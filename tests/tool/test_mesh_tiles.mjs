@@ -1,0 +1,210 @@
+// Mesh tiles from the command line: valid GLB, the points of camber's own tessellation, the same bytes however they are
+// drawn. usage: test_mesh_tiles.mjs CAMBER INPUT FOLDER
+// npm's gltf-validator and three are found through NODE_PATH. Exit status: 1 where a check failed, 77 where one is not
+// installed.
+import {execFileSync, spawnSync} from 'node:child_process';
+import {mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {join} from 'node:path';
+import {FIRST, SENTINEL, LAST, loadDecoder, readTile, recordsOf} from './mesh_tile.mjs';
+
+const [tool, input, folder] = process.argv.slice(2);
+const decoder = await loadDecoder();
+let validator;
+try {
+    validator = createRequire(import.meta.url)('gltf-validator');
+} catch {
+    // Told below.
+}
+if (!decoder || !validator) {
+    console.log(`skipped: npm package ${decoder ? 'gltf-validator' : 'three'} is not installed`);
+    process.exit(77);
+}
+let failures = 0;
+function check(right, what, found = '') {
+    console.log(`${right ? 'ok' : 'not ok'} - ${what}${right || found === '' ? '' : `: ${JSON.stringify(found)}`}`);
+    failures += !right;
+}
+function run(...args) {
+    return execFileSync(tool, args, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit']});
+}
+function tilesOf(path) {
+    return readdirSync(path, {recursive: true}).filter(name => name.endsWith('.glb')).sort()
+        .map(name => ({name, place: name.split(/[/.]/).slice(0, 3).map(Number), bytes: readFileSync(join(path, name))}));
+}
+
+rmSync(folder, {recursive: true, force: true});
+mkdirSync(folder, {recursive: true});
+const drawn = join(folder, 'city/'), options = ['--format', 'glb', '--min-zoom', '10', '--max-zoom', '14', '-q'];
+run('tiles', input, ...options, '-o', drawn);
+const tiles = tilesOf(drawn);
+
+// ---- Valid ----
+
+// The validator does not know the compression, so each tile is also judged as it is when it is decoded.
+function plain(tile) {
+    const {json, attributes} = readTile(decoder, tile.bytes), parts = [], accessors = [];
+    const kinds = {POSITION: Int16Array, _POINT: Int16Array, COLOR_0: Uint8Array, _ALONG: Float32Array};
+    let at = 0;
+    json.bufferViews = Object.entries(attributes).map(([name, values]) => {
+        const array = kinds[name], size = values[0].length * array.BYTES_PER_ELEMENT, stride = (size + 3) >> 2 << 2;
+        const bytes = new Uint8Array(values.length * stride);
+        values.forEach((value, i) => bytes.set(new Uint8Array(array.from(value).buffer), i * stride));
+        parts.push(bytes);
+        accessors.push({...json.accessors[json.meshes[0].primitives[0].attributes[name]], bufferView: accessors.length, byteOffset: 0});
+        json.meshes[0].primitives[0].attributes[name] = accessors.length - 1;
+        at += bytes.length;
+        return {buffer: 0, byteOffset: at - bytes.length, byteLength: bytes.length, byteStride: stride, target: 34962};
+    });
+    json.accessors = accessors;
+    json.buffers = [{byteLength: at, uri: `data:application/octet-stream;base64,${Buffer.concat(parts).toString('base64')}`}];
+    json.extensionsUsed = json.extensionsUsed.filter(name => name !== 'EXT_meshopt_compression');
+    json.extensionsRequired = ['KHR_mesh_quantization'];
+    return JSON.stringify(json);
+}
+const issues = [];
+for (const tile of tiles) {
+    const packed = await validator.validateBytes(new Uint8Array(tile.bytes), {uri: tile.name, maxIssues: 5});
+    const whole = await validator.validateString(plain(tile), {uri: tile.name, maxIssues: 5});
+    for (const {issues: {messages}} of [packed, whole])
+        issues.push(...messages.filter(({severity}) => severity <= 1).map(({code, pointer}) => [tile.name, code, pointer]));
+}
+check(tiles.length > 100, 'there are tiles', tiles.length);
+check(issues.length === 0, 'each is valid, compressed and decoded', issues.slice(0, 5));
+
+// ---- Well formed: sentinels around lines, rows and ranges within their tables ----
+
+const wrong = [];
+for (const tile of tiles) {
+    const read = readTile(decoder, tile.bytes), records = recordsOf(read), {layers, rows} = read.extras;
+    if (!(records[0].flags & SENTINEL) || !(records.at(-1).flags & SENTINEL))
+        wrong.push([tile.name, 'no sentinel at an end']);
+    records.forEach(({flags, row}, i) => {
+        const before = records[i - 1]?.flags ?? 0;
+        if (i > 0 && !(flags & SENTINEL) && Boolean(flags & FIRST) !== Boolean(before & SENTINEL))
+            wrong.push([tile.name, 'a line that does not begin behind a sentinel', i]);
+        if ((flags & SENTINEL) && i > 0 && !(before & (SENTINEL | LAST)))
+            wrong.push([tile.name, 'a line that does not end before a sentinel', i]);
+        if (row < 0 || row >= rows.length)
+            wrong.push([tile.name, 'no such row', row]);
+    });
+    for (const {id, range: [first, count], paints} of layers)
+        if (first < 1 || first + count >= records.length || !Object.keys(paints).every(row => row < rows.length))
+            wrong.push([tile.name, id]);
+}
+check(wrong.length === 0, 'records and layers are well formed', wrong.slice(0, 5));
+
+// ---- The points are those of the tessellation ----
+
+// One layer of all lines, so that a tile and a view of its square have the same ones.
+const style = join(folder, 'all.json');
+writeFileSync(style, JSON.stringify({version: 8, sources: {}, layers: [{id: 'all', type: 'line',
+    layout: {'line-cap': 'round', 'line-join': 'round'}, paint: {'line-width': 2, 'line-color': '#204060'}}]}));
+const simple = join(folder, 'simple/'), PX = 256;
+const lines = ['--style', style, '--simplify-px'];
+run('tiles', input, ...lines, '0.5', '--format', 'glb', '--min-zoom', '14', '--max-zoom', '14', '-q', '-o', simple);
+
+// The points of a view that is the tile's square, px from its centre, y down; without those at the view's cuts.
+function pointsOfView(place) {
+    const [zoom, column, row] = place, path = join(folder, 'view.glb'), side = 2 ** zoom;
+    const longitude = (column + 0.5) / side * 360 - 180;
+    const latitude = Math.atan(Math.sinh(Math.PI * (1 - 2 * (row + 0.5) / side))) * 180 / Math.PI;
+    run('tessellate', input, ...lines, '0.25', '--center', `${longitude},${latitude}`, '--zoom', String(zoom - 1), '--size',
+        `${PX}x${PX}`, '-q', '-f', '-o', path);
+    const file = readFileSync(path), text = file.readUInt32LE(12), json = JSON.parse(file.subarray(20, 20 + text));
+    if (!json.meshes)
+        return [];
+    const {count, byteOffset} = json.accessors[json.meshes[0].primitives[0].attributes._CENTER];
+    const stride = json.bufferViews[0].byteStride, start = 28 + text + byteOffset;
+    return Array.from({length: count}, (_, i) => [file.readFloatLE(start + stride * i) - PX / 2,
+        -file.readFloatLE(start + stride * i + 4) - PX / 2]);
+}
+const STEP = PX / 32768, TOLERANCE = STEP / 2 + 1 / 512; // half a unit, and the steps of the two networks
+function farthest(points, from) {
+    const cells = new Map(), key = (x, y) => `${Math.round(x)},${Math.round(y)}`;
+    for (const [x, y] of from)
+        cells.set(key(x, y), [...cells.get(key(x, y)) ?? [], [x, y]]);
+    return Math.max(0, ...points.map(([x, y]) => {
+        let least = 9;
+        for (let dx = -1; dx <= 1; dx++)
+            for (let dy = -1; dy <= 1; dy++)
+                for (const [a, b] of cells.get(key(x + dx, y + dy)) ?? [])
+                    least = Math.min(least, Math.max(Math.abs(a - x), Math.abs(b - y)));
+        return least;
+    }));
+}
+const compared = tilesOf(simple), apart = [0, 0];
+let points = 0;
+for (const tile of compared.filter((_, i) => i % Math.ceil(compared.length / 12) === 0)) {
+    const read = readTile(decoder, tile.bytes), records = recordsOf(read), own = pointsOfView(tile.place);
+    const scale = read.extras.tilePx / read.extras.units, inside = ([x, y]) => Math.max(Math.abs(x), Math.abs(y)) < PX / 2;
+    const kept = records.filter(({flags}) => !(flags & SENTINEL)).map(({x, y}) => [x * scale, y * scale]);
+    apart[0] = Math.max(apart[0], farthest(kept.filter(inside), own));
+    apart[1] = Math.max(apart[1], farthest(own.filter(inside), kept));
+    points += kept.length;
+}
+check(points > 1000, 'there are points to compare', points);
+check(apart[0] <= TOLERANCE, 'each point of a tile is one of the tessellation', apart[0]);
+check(apart[1] <= TOLERANCE, 'each point of the tessellation is in its tile', apart[1]);
+
+// ---- The same bytes however they are drawn ----
+
+function archive(name, ...more) {
+    const path = join(folder, name);
+    run('tiles', input, ...options, ...more, '-o', path);
+    return readFileSync(path);
+}
+const whole = archive('whole.pmtiles');
+check(archive('one.pmtiles', '--threads', '1', '--name', 'whole').equals(whole), 'by one thread');
+check(archive('three.pmtiles', '--threads', '3', '--name', 'whole').equals(whole), 'by three threads');
+check(archive('small.pmtiles', '--memory', '64M', '--name', 'whole').equals(whole), 'with little memory');
+const parts = [1, 2, 3].map(part => {
+    run('tiles', input, ...options, '--name', 'whole', '--shard', `${part}/3`, '-o', join(folder, 'part.pmtiles'));
+    return join(folder, `part.${part}-of-3.pmtiles`);
+});
+run('tiles', 'merge', ...parts, '-q', '-o', join(folder, 'merged.pmtiles'));
+check(readFileSync(join(folder, 'merged.pmtiles')).equals(whole), 'in three parts');
+run('tiles', input, ...options, '--name', 'whole', '--resume', '-o', join(folder, 'whole.pmtiles'));
+for (const path of [drawn, join(folder, 'whole.pmtiles')])
+    check(spawnSync(tool, ['tiles', 'verify', path, '-q']).status === 0, `${path} keeps its promises`);
+const shown = JSON.parse(run('tiles', 'show', join(folder, 'whole.pmtiles'), '--json'));
+check(shown.type === 'glb' && shown.tiles === tiles.length, 'an archive says what it has', shown);
+check(!readdirSync(drawn, {recursive: true}).some(name => name.endsWith('.png')), 'nothing but meshes');
+
+// ---- The tileset names the tiles that there are, and no others ----
+
+function subtree(level, x, y) {
+    const file = readFileSync(join(drawn, 'subtrees', `${level}.${x}.${y}.subtree`)), text = Number(file.readBigUInt64LE(8));
+    const json = JSON.parse(file.subarray(24, 24 + text).toString()), binary = file.subarray(24 + text);
+    const has = part => {
+        if (part.bitstream === undefined)
+            return () => part.constant === 1;
+        const {byteOffset} = json.bufferViews[part.bitstream];
+        return bit => binary[byteOffset + (bit >> 3)] >> (bit & 7) & 1;
+    };
+    return {tile: has(json.tileAvailability), content: has(json.contentAvailability[0]), child: has(json.childSubtreeAvailability)};
+}
+const set = JSON.parse(readFileSync(join(drawn, 'tileset.json'))), {subtreeLevels, availableLevels} = set.root.implicitTiling;
+const named = [];
+function walk(root, level, x, y, levels, at) {
+    const offset = (4 ** levels - 1) / 3;
+    if (levels === subtreeLevels) {
+        if (root.child(at) && level < availableLevels)
+            walk(subtree(level, x, y), level, x, y, 0, 0);
+        return;
+    }
+    if (!root.tile(offset + at))
+        return;
+    if (root.content(offset + at))
+        named.push([level, x, y].join('/'));
+    for (let k = 0; k < 4; k++)
+        walk(root, level + 1, 2 * x + (k & 1), 2 * y + (k >> 1), levels + 1, 4 * at + k);
+}
+walk(subtree(0, 0, 0), 0, 0, 0, 0, 0);
+check(named.sort().join() === tiles.map(({place}) => place.join('/')).sort().join(), 'the tileset has the tiles', named.length);
+
+// ---- Errors ----
+
+const refused = spawnSync(tool, ['tiles', input, '--format', 'glb', '--keep-empty', '-o', join(folder, 'no/')], {encoding: 'utf8'});
+check(refused.status === 2 && refused.stderr.includes('--keep-empty'), 'empty tiles are refused', refused.stderr);
+process.exit(failures ? 1 : 0);

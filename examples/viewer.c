@@ -491,7 +491,7 @@ static bool draw(viewer *v, bool at_rest) {
     v->coarsest_px = fmax(v->coarsest_px, v->simplify_px);
     v->frame_count++;
     v->drawn_at = v->at;
-    v->redraw = false;
+    v->redraw = v->is_titled = false;
     return status == CAMBER_OK;
 }
 
@@ -573,7 +573,7 @@ static void look_at_style(viewer *v) {
 
 static void write_title(const viewer *v) {
     char title[160];
-    snprintf(title, sizeof title, "camber %.6f,%.6f zoom %.4f bearing %.2f pitch %.2f", longitude_of(&v->at),
+    snprintf(title, sizeof title, "camber %.8f,%.8f zoom %.6f bearing %.2f pitch %.2f", longitude_of(&v->at),
              latitude_of(&v->at), v->at.zoom, v->at.bearing_deg, v->at.pitch_deg);
     SDL_SetWindowTitle(v->window, title);
 }

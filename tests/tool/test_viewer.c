@@ -2,7 +2,7 @@
  * pictures that are drawn here of the same view. The viewer's own functions run its main loop, turn by turn. */
 #define main viewer_main
 int viewer_main(int argc, char **argv);
-#include "../../examples/viewer.c" /* NOLINT(bugprone-suspicious-include): a program has no header */
+#include "examples/viewer.c" /* NOLINT(bugprone-suspicious-include): a program has no header */
 #undef main
 
 #include <setjmp.h> /* cmocka wants these first */
@@ -12,7 +12,7 @@ int viewer_main(int argc, char **argv);
 #include <unistd.h>
 
 #define CITY CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"
-enum { WIDTH = 400, HEIGHT = 260, PATIENCE_MS = 60000, SMALL_FRAMES = 1500 };
+enum { WIDTH = 400, HEIGHT = 260, PATIENCE_MS = 60000, SMALL_FRAMES = 800 };
 
 /* ---- A viewer ---- */
 
@@ -48,7 +48,7 @@ static void rest(viewer *v) {
     do {
         assert_true(turn(v, &nowhere));
         assert_true(SDL_GetTicks() - begin_ms < PATIENCE_MS);
-    } while (!is_resting(v) || SDL_HasEvents(SDL_FIRSTEVENT, SDL_USEREVENT - 1));
+    } while (!is_resting(v) || SDL_HasEvents(SDL_QUIT, SDL_MOUSEWHEEL));
 }
 
 static void push(const SDL_Event *event) {
@@ -82,7 +82,7 @@ static shot shot_new(uint32_t width, uint32_t height) {
     return s;
 }
 
-/* What the window shows. */
+/* Takes what the window shows. */
 static shot shot_take(const viewer *v) {
     shot s = shot_new(v->width, v->height);
     if (!v->gl) {
@@ -302,7 +302,9 @@ static void test_wheel_keys_and_turns(void **state) {
     assert_shows_view(&v);
     assert_true(v.at.bearing_deg == 0 && v.at.pitch_deg == 0);
     push_key(SDLK_ESCAPE);
-    assert_true(turn(&v, &start) && v.quit);
+    for (int i = 0; i < 3; i++) /* SDL may hand events over in two turns */
+        assert_true(turn(&v, &start));
+    assert_true(v.quit);
     close_viewer(&v);
 }
 

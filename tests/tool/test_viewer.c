@@ -14,6 +14,12 @@ int viewer_main(int argc, char **argv);
 #define CITY CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"
 enum { WIDTH = 400, HEIGHT = 260, PATIENCE_MS = 60000, SMALL_FRAMES = 800 };
 
+#ifdef __SANITIZE_ADDRESS__
+enum { IS_SANITIZED = true };
+#else
+enum { IS_SANITIZED = false };
+#endif
+
 /* ---- A viewer ---- */
 
 typedef struct options_of {
@@ -463,7 +469,7 @@ static void test_nothing_grows(void **state) {
     print_message("resident: %ld KB after %d frames, %ld KB after %d; %d scenes\n", early_kb, frames / 10, late_kb,
                   frames, v.scenes);
     assert_true(v.frame_count >= frames);
-    assert_true(late_kb - early_kb < 4096);
+    assert_true(IS_SANITIZED || late_kb - early_kb < 4096); /* AddressSanitizer keeps what is freed for a while */
     close_viewer(&v);
 }
 
@@ -519,9 +525,9 @@ int main(void) {
     setenv("SDL_VIDEODRIVER", "dummy", 1);
     int failed = cmocka_run_group_tests_name("dummy", tests, NULL, NULL);
     setenv("SDL_VIDEODRIVER", "offscreen", 1);
-    if (has_gl())
+    if (!IS_SANITIZED && has_gl()) /* SDL unloads the drivers of GL, which keep what they allocate */
         failed += cmocka_run_group_tests_name("offscreen, by GL", gl_tests, NULL, NULL);
     else
-        puts("no GLES by SDL's offscreen driver: frames by GL are not tested");
+        puts("no GLES by SDL's offscreen driver, or sanitizers: frames by GL are not tested");
     return failed;
 }

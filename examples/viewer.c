@@ -67,7 +67,9 @@ typedef struct viewer {
     SDL_Thread *thread;
     SDL_sem *begin;
     SDL_atomic_t state;
-    job order; /* written while the worker is idle */
+    job order;        /* written while the worker is idle */
+    char *style_text; /* the worker's: the last file that was a style; NULL: none */
+    size_t style_bytes;
     bool order_failed, leave;
     int scenes; /* made so far */
 
@@ -202,17 +204,28 @@ static char *read_text(const char *path, size_t *size_bytes) {
     return text;
 }
 
-static bool parse_style(const viewer *v, side *s, bool dark, camber_style **style) {
+static bool parse(side *s, const char *text, size_t size_bytes, const char *name, camber_style **style) {
+    return text && camber_style_parse(s->context, text, size_bytes, name, style) == CAMBER_OK;
+}
+
+/* A file that is no style, as one that is being edited, counts as the last one that was. */
+static bool parse_style(viewer *v, side *s, bool dark, camber_style **style) {
     const char *name = v->options.style;
     size_t size_bytes = 0;
     const char *shipped = camber_style_get_text(name, dark ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT, &size_bytes);
-    char *own = shipped ? NULL : read_text(name, &size_bytes);
-    if (!shipped && !own)
+    if (shipped)
+        return parse(s, shipped, size_bytes, name, style);
+    char *own = read_text(name, &size_bytes);
+    if (!own)
         fprintf(stderr, "viewer: %s: no such style\n", name);
-    const bool parsed = (shipped || own) &&
-                        camber_style_parse(s->context, shipped ? shipped : own, size_bytes, name, style) == CAMBER_OK;
+    if (parse(s, own, size_bytes, name, style)) {
+        free(v->style_text);
+        v->style_text = own;
+        v->style_bytes = size_bytes;
+        return true;
+    }
     free(own);
-    return parsed;
+    return parse(s, v->style_text, v->style_bytes, name, style);
 }
 
 static bool read_files(const viewer *v, side *s, const camber_style *style, camber_features **features) {
@@ -231,9 +244,8 @@ static bool read_files(const viewer *v, side *s, const camber_style *style, camb
     return done;
 }
 
-/* Gives the side another style, and reads the files again where that asks for other properties of them. A style that
- * does not parse leaves all as it was. */
-static bool restyle(const viewer *v, side *s, bool dark) {
+/* Gives the side another style, and reads the files again where that asks for other properties of them. */
+static bool restyle(viewer *v, side *s, bool dark) {
     camber_style *style = NULL;
     camber_features *features = s->features;
     if (!parse_style(v, s, dark, &style))
@@ -255,14 +267,14 @@ static bool restyle(const viewer *v, side *s, bool dark) {
     return true;
 }
 
-static bool make_scene(const viewer *v, side *s, const job *order) {
+static bool make_scene(viewer *v, side *s, const job *order) {
     const camber_scene_desc desc = {.view = view_of(order), .simplify_px = SIMPLIFY_PX, .on_device = true};
-    if ((!s->style || order->dark != s->made_for.dark || order->edition != s->made_for.edition) &&
-        !restyle(v, s, order->dark))
+    const bool is_other = order->dark != s->made_for.dark || order->edition != s->made_for.edition;
+    if ((!s->style || is_other) && !restyle(v, s, order->dark))
         return false;
+    s->made_for = *order;
     const camber_status status =
         s->scene ? camber_scene_move(s->scene, &desc.view) : camber_scene_create(s->features, &desc, &s->scene);
-    s->made_for = *order;
     return status == CAMBER_OK;
 }
 
@@ -307,13 +319,14 @@ static void exchange(viewer *v, bool at_rest) {
         v->redraw = true;
         SDL_AtomicSet(&v->state, STATE_IDLE);
     }
+    if (SDL_AtomicGet(&v->state) != STATE_IDLE || v->quit)
+        return;
     const bool fit = !v->front->scene;
     const job wanted = {fit, v->at, v->dark, v->edition};
     const job *last = v->order_failed ? &v->order : &v->front->made_for;
-    const bool is_other = fit || wanted.dark != last->dark || wanted.edition != last->edition ||
-                          fabs(wanted.at.zoom - last->at.zoom) >= ZOOM_STEP ||
-                          (at_rest && !is_same(&wanted.at, &last->at)) || (!v->back->scene && !v->order_failed);
-    if (SDL_AtomicGet(&v->state) == STATE_IDLE && is_other && !v->quit) {
+    if (fit || wanted.dark != last->dark || wanted.edition != last->edition ||
+        fabs(wanted.at.zoom - last->at.zoom) >= ZOOM_STEP || (at_rest && !is_same(&wanted.at, &last->at)) ||
+        (!v->back->scene && !v->order_failed)) {
         v->order = wanted;
         SDL_AtomicSet(&v->state, STATE_BUSY);
         SDL_SemPost(v->begin);
@@ -394,9 +407,9 @@ static camber_status draw_map(viewer *v) {
         camera.scale_px = 512 * at->ratio * exp2(at->zoom);
         camera.bearing_deg = at->bearing_deg;
         camera.pitch_deg = at->pitch_deg;
-        camera.width = v->width;
-        camera.height = v->height;
     }
+    camera.width = v->width;
+    camera.height = v->height;
     camera.simplify_px = v->simplify_px;
     camber_status status = camber_mesh_tessellate_network(s->mesh, network, &camera, &desc);
     if (status != CAMBER_OK)
@@ -717,6 +730,7 @@ static void close_viewer(viewer *v) {
     if (v->window)
         SDL_DestroyWindow(v->window);
     SDL_Quit();
+    free(v->style_text);
     free(v->times);
     free(v->options.paths);
 }
@@ -739,7 +753,7 @@ static bool take_option(options *o, const char *name, const char *value) {
     return true;
 }
 
-static bool parse(int argc, char **argv, options *o) {
+static bool parse_options(int argc, char **argv, options *o) {
     *o = (options){.style = "city", .width = 1280, .height = 720};
     o->rasterizer = camber_surface_may_be_hardware(NULL) ? CAMBER_RASTERIZER_GL : CAMBER_RASTERIZER_OPENCL;
     o->paths = calloc((size_t)argc, sizeof *o->paths);
@@ -776,7 +790,7 @@ int main(int argc, char **argv) {
     /* What PoCL and camber want, before the first thread (docs/drivers.md). */
     setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
     setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0);
-    if (!parse(argc, argv, &v.options)) {
+    if (!parse_options(argc, argv, &v.options)) {
         fprintf(stderr, "viewer FILE... [--style NAME|FILE] [--theme light|dark] [--size WxH] [--draw cl|gl] "
                         "[--frames N] [--benchmark]\n");
         free(v.options.paths);

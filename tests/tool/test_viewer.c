@@ -33,7 +33,7 @@ static void viewer_open(viewer *v, const options_of *o) {
                          (char *)(uintptr_t) "--size",  (char *)(uintptr_t)(o->size ? o->size : "400x260"),
                          (char *)(uintptr_t) "--style", (char *)(uintptr_t)(o->style ? o->style : "city")};
     *v = (viewer){0};
-    assert_true(parse(8, arguments, &v->options));
+    assert_true(parse_options(8, arguments, &v->options));
     assert_true(open_viewer(v));
 }
 
@@ -113,7 +113,7 @@ static bool take_shot_rows(void *user, const uint8_t *rgba, uint32_t first_row, 
 }
 
 /* The same view, drawn from the files by a scene, a device and a renderer of its own. */
-static shot shot_of_view(const viewer *v, const camber_view_desc *view) {
+static shot shot_of_view(viewer *v, const camber_view_desc *view) {
     side own = {0};
     const camber_scene_desc desc = {.view = *view, .simplify_px = SIMPLIFY_PX, .on_device = true};
     camber_device *device = NULL;
@@ -378,6 +378,12 @@ static void test_style_is_read_again(void **state) {
         rest(&v);
         shot after = shot_take(&v);
         assert_int_equal(after.rgba[0], reds[i]);
+        free(after.rgba);
+        push_key(SDLK_MINUS); /* the map goes on all the same */
+        rest(&v);
+        after = shot_take(&v);
+        assert_int_equal(after.rgba[0], reds[i]);
+        assert_true(v.front->made_for.at.zoom == v.at.zoom && !v.order_failed);
         free(after.rgba);
     }
     free(before.rgba);

@@ -162,11 +162,6 @@ CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {
     return brush->mode >= CAMBER_BRUSH_AREA;
 }
 
-/* A brush of areas has two sums a pixel: what the edges in its cell change there, and what all in its row change from
- * its cell on. */
-#define CAMBER_AREA_HERE 0
-#define CAMBER_AREA_ON 1
-
 /* A row of cells is about to be changed: without edges so far, it changes nothing. */
 CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
     if (c->area_rows >> row & 1u)

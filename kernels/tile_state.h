@@ -30,6 +30,11 @@ typedef uint8_t camber_u8;
 #define CAMBER_HAS_MASKS 0
 #endif
 
+/* A brush of areas has two sums a pixel: what the edges in its cell change there, and what all in its row change from
+ * its cell on. */
+#define CAMBER_AREA_HERE 0
+#define CAMBER_AREA_ON 1
+
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
     camber_real brush[CAMBER_CELLS][CAMBER_VECTORS]; /* let through */

@@ -55,7 +55,7 @@ typedef struct side {
     camber_style *style;
     camber_features *features;
     camber_scene *scene;
-    camber_mesh *mesh; /* the main thread's: of its device */
+    camber_mesh *mesh; /* the main thread's: of its device, for networks of this context alone */
     job made_for;
     bool muted;
 } side;

@@ -41,7 +41,7 @@ typedef struct stand {
     uint32_t width, height; /* CSS px */
 } stand;
 
-/* What a scene is made for. */
+/* Says what a scene is made for. */
 typedef struct job {
     bool fit; /* all of the map; else from the stand */
     stand at;
@@ -55,7 +55,7 @@ typedef struct side {
     camber_style *style;
     camber_features *features;
     camber_scene *scene;
-    camber_mesh *mesh; /* the main thread's: of its device */
+    camber_mesh *mesh; /* the main thread's: of its device, for networks of this context alone */
     job made_for;
     bool muted;
 } side;
@@ -585,9 +585,10 @@ static void look_at_style(viewer *v) {
 }
 
 static void write_title(const viewer *v) {
-    char title[160];
-    snprintf(title, sizeof title, "camber %.8f,%.8f zoom %.6f bearing %.2f pitch %.2f", longitude_of(&v->at),
-             latitude_of(&v->at), v->at.zoom, v->at.bearing_deg, v->at.pitch_deg);
+    const char *credit = camber_features_get_attribution(v->front->features);
+    char title[512];
+    snprintf(title, sizeof title, "camber %.8f,%.8f zoom %.6f bearing %.2f pitch %.2f %s", longitude_of(&v->at),
+             latitude_of(&v->at), v->at.zoom, v->at.bearing_deg, v->at.pitch_deg, credit ? credit : "");
     SDL_SetWindowTitle(v->window, title);
 }
 

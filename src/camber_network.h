@@ -86,7 +86,9 @@ typedef struct camber_camera {
  * uploads nothing. The same camera gives the same bytes.
  * Returns what camber_mesh_tessellate does, and CAMBER_ERROR_ARGUMENT for a camera that is not finite, a scale or a
  * size of 0, a size above 65535, or a scale that makes more than 10^9 px of a step.
- * The cost is linear in the points of the polylines whose boxes are seen. */
+ * network may be of another context than the mesh, but all networks of one mesh are of the same one, by whose numbers
+ * it knows them. One thread has both meanwhile. The cost is linear in the points of the polylines whose boxes are seen.
+ */
 CAMBER_API camber_status camber_mesh_tessellate_network(camber_mesh *mesh, camber_network *network,
                                                         const camber_camera *camera,
                                                         const camber_tessellation_desc *desc);

@@ -126,7 +126,7 @@ class Window:
 
     def title(self):
         words = self.ask("getwindowname", self.id).split()
-        return words if len(words) == 8 else None
+        return words[:8] if len(words) >= 8 else None  # whom to name comes behind
 
     def shot(self):
         place = dict(line.split("=") for line in self.ask("getwindowgeometry", "--shell", self.id).split())

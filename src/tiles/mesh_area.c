@@ -5,6 +5,8 @@
  * winds around what is inside; then all rings of a row that follow each other are one polygon of GLU's tessellator, by
  * the nonzero rule, as they are one path for the kernels. GLU is loaded when the first area is met: no other tile needs
  * it. */
+#define _GNU_SOURCE /* RTLD_NODELETE: GLU stays, since each tile asks for it */
+
 #include "tiles/mesh_area.h"
 
 #include <dlfcn.h>
@@ -91,7 +93,7 @@ static bool find(const glu *g, const char *name, void *function) {
 }
 
 static bool load(glu *g) {
-    g->library = dlopen("libGLU.so.1", RTLD_NOW | RTLD_LOCAL);
+    g->library = dlopen("libGLU.so.1", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     return g->library && find(g, "gluNewTess", &g->create) && find(g, "gluDeleteTess", &g->destroy) &&
            find(g, "gluTessCallback", &g->set_callback) && find(g, "gluTessProperty", &g->set_property) &&
            find(g, "gluTessNormal", &g->set_normal) && find(g, "gluTessBeginPolygon", &g->begin_polygon) &&
@@ -222,7 +224,7 @@ static size_t clip_ring(filler *f, const camber_mesh_line *ring) {
 
 static void put_ring(filler *f, const camber_mesh_line *ring) {
     const size_t count = clip_ring(f, ring);
-    const camber_mesh_corner *last = NULL;
+    int last_x = INT16_MIN, last_y = INT16_MIN;
     if (count < 3 || f->failed)
         return;
     f->glu.begin_contour(f->tess);
@@ -230,11 +232,12 @@ static void put_ring(filler *f, const camber_mesh_line *ring) {
         const int16_t x = quantise((double)f->clipped[0][2 * i], f->scale),
                       y = quantise((double)f->clipped[0][2 * i + 1], f->scale);
         double at[3] = {x, y, 0.0};
-        if (last && last->x == x && last->y == y)
+        if (x == last_x && y == last_y)
             continue;
         const size_t corner = add_corner(f, at[0], at[1]);
         f->glu.put_vertex(f->tess, at, (void *)(uintptr_t)corner);
-        last = f->tile->corners + corner;
+        last_x = x;
+        last_y = y;
     }
     f->glu.end_contour(f->tess);
 }

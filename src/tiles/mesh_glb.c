@@ -175,7 +175,7 @@ static void place_sentinels(encoder *e) {
 }
 
 /* Makes the corners of areas, behind the vertices of lines. */
-static void make_corners(encoder *e) {
+static void make_corners(encoder *e, look *looks) {
     const camber_mesh_tile *tile = e->tile;
     const double steps = (double)(OUTLINE_STEPS * tile->tile_px) / tile->units;
     vertex *corners = e->vertices + 2 * tile->record_count;
@@ -189,9 +189,11 @@ static void make_corners(encoder *e) {
             vertex *corner = corners + tile->triangles[i];
             if (corner->position[1] != 0)
                 continue;
-            const look seen = look_of(e, tile->rows[corner->point[2]], tile->fills[fill].set);
+            look *l = looks + corner->point[2];
+            if (!l->color[3])
+                *l = look_of(e, tile->rows[corner->point[2]], tile->fills[fill].set);
             corner->position[1] = (int16_t)(OUTLINE_STEPS * (tile->fills[fill].set + 1));
-            memcpy(corner->color, seen.color, sizeof seen.color);
+            memcpy(corner->color, l->color, sizeof l->color);
         }
 }
 
@@ -217,9 +219,9 @@ static camber_status make_vertices(encoder *e) {
     for (size_t i = 0; i < tile->record_count; i++)
         if (tile->records[i].flags & CAMBER_MESH_SENTINEL)
             make_pair(e, i, looks + tile->records[i].row);
-    camber_free(e->context, looks);
     place_sentinels(e);
-    make_corners(e);
+    make_corners(e, looks);
+    camber_free(e->context, looks);
     return CAMBER_OK;
 }
 

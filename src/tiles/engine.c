@@ -341,6 +341,9 @@ camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, ui
                                        uint8_t *rgba, camber_tiles_picture *picture) {
     const camber_metatile *metatile = NULL;
     camber_tiles_picture made = {0};
+    if (engine->desc.meshes)
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: the engine's tiles are meshes; make one of pictures, or draw an archive");
     camber_status status = find(engine, zoom, column, row, &metatile, &made);
     if (status == CAMBER_OK)
         status = camber_engine_draw_metatile(engine, metatile, UINT64_MAX, rgba, &made);

@@ -127,8 +127,8 @@ typedef struct camber_tiles_engine_desc {
      * most. What is kept of high zooms does not grow with them then. Such an engine draws no archive. 0: 8, for
      * archives */
     uint32_t on_demand_side;
-    /* Tiles are meshes, as docs/mesh-tiles.md describes them: what the style draws of lines at the zooms from a tile's
-     * own to the next. There are no pictures, and renderer may be NULL. */
+    /* Tiles are meshes, as docs/mesh-tiles.md describes them: what the style draws at the zooms from a tile's own to
+     * the next. There are no pictures, and renderer may be NULL. */
     bool meshes;
 } camber_tiles_engine_desc;
 

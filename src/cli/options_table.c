@@ -69,7 +69,7 @@ const camber_option_spec camber_option_specs[] = {
      "replace existing files"},
     {"format", 0, CAMBER_OPTION_CHOICE, WRITING | TILES, FIELD(format), "png|png8|webp|glb",
      "format of OUT (by its extension); png8: of 256 colours at most",
-     .notes = {{TILES, "format of tiles: png, png8 (256 colours at most), webp, or glb: meshes of lines (png)"},
+     .notes = {{TILES, "format of tiles: png, png8 (256 colours at most), webp, or glb, meshes (png)"},
                {PICTURING, "format of OUT: png, png8 (256 colours at most) or webp (by its extension)"},
                {TESSELLATE, "format of OUT (glb)"}}},
     {"quality", 0, CAMBER_OPTION_COUNT, PICTURING | TILES, FIELD(quality), "N",

@@ -4,6 +4,8 @@
 
 #include "tiles/encoding.h"
 
+#include "tiles/mesh_area.h"
+
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -65,8 +67,10 @@ static camber_status encode_mesh(camber_encode_queue *queue, size_t number, camb
     const uint32_t x = tile % picture->side, y = tile / picture->side;
     const camber_mesh_place place = {picture->zoom, picture->column + x, picture->row + y, job->ratio};
     camber_status status = camber_mesh_tile_cut(context, &job->lines, picture->tile_px, x, y, mesh);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tile_fill(&job->lines, x, y, mesh);
     made->size_bytes = 0;
-    if (status != CAMBER_OK || !mesh->segments)
+    if (status != CAMBER_OK || (!mesh->segments && !mesh->index_count))
         return status;
     camber_free(context, made->bytes);
     made->bytes = NULL;

@@ -6,6 +6,8 @@
  */
 #include "tiles/engine.h"
 
+#include "tiles/mesh_area.h"
+
 #include <math.h>
 
 enum {
@@ -288,6 +290,9 @@ camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, con
     camber_status status = tessellate(engine, metatile, picture, &excerpt);
     if (status == CAMBER_OK)
         status = camber_mesh_picture_take(engine->zooms[picture->zoom].mesh, engine->mesh, lines);
+    if (status == CAMBER_OK && metatile)
+        status = camber_mesh_picture_take_rings(lines, engine->zooms[picture->zoom].census.polylines + metatile->first,
+                                                metatile->end - metatile->first, &excerpt.window);
     status = end_excerpt(engine, &excerpt, status);
     engine->draw_ms += camber_now_ms() - start_ms - (engine->make_ms - made_ms);
     return status;
@@ -336,6 +341,9 @@ camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, ui
                                        uint8_t *rgba, camber_tiles_picture *picture) {
     const camber_metatile *metatile = NULL;
     camber_tiles_picture made = {0};
+    if (engine->desc.meshes)
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: the engine's tiles are meshes; make one of pictures, or draw an archive");
     camber_status status = find(engine, zoom, column, row, &metatile, &made);
     if (status == CAMBER_OK)
         status = camber_engine_draw_metatile(engine, metatile, UINT64_MAX, rgba, &made);

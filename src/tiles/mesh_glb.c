@@ -23,7 +23,7 @@ bool camber_mesh_is_built(void) {
 
 #ifdef CAMBER_MESHOPT
 
-enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_FLOAT = 5126, GLTF_STRIP = 5 };
+enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_UNSIGNED_INT = 5125, GLTF_FLOAT = 5126, GLTF_STRIP = 5 };
 /* Outlines lie on eighths of a px at the tile's zoom; sets lie a px above each other, so that plain viewers see which
  * is above. */
 enum { OUTLINE_STEPS = 8 };
@@ -40,17 +40,20 @@ typedef struct along {
     float along_px, total_px;
 } along;
 
+enum { VERTICES, ALONGS, INDICES, STREAMS };
+
 typedef struct encoder {
     camber_context *context;
     const camber_mesh_tile *tile;
     const camber_mesh_plan *plan;
     const camber_mesh_place *place;
-    vertex *vertices;                 /* two a record */
-    along *alongs;                    /* two a record. NULL: none */
-    uint8_t *packed;                  /* both, compressed */
-    size_t vertex_bytes, along_bytes; /* of them */
-    int16_t low[3], high[3];          /* of positions */
-    bool ok;                          /* there was memory for all of the JSON */
+    vertex *vertices;          /* two a record, then one a corner */
+    along *alongs;             /* two a record. NULL: none */
+    size_t vertex_count;       /* of lines, then of areas */
+    uint8_t *packed;           /* streams, compressed, each at a multiple of 4 bytes */
+    size_t start[STREAMS + 1]; /* of each, and the end */
+    size_t bytes[STREAMS];     /* of each; 0: it is not there */
+    bool ok;                   /* there was memory for all of the JSON */
 } encoder;
 
 /* ---- The outline, for plain viewers ---- */
@@ -67,6 +70,15 @@ static uint8_t linear_byte(float srgb) {
     return (uint8_t)(255.0 * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)) + 0.5);
 }
 
+/* Fills of images are left out. */
+static bool draws(const camber_paint *paint) {
+    return paint->fill ? !paint->fill->image && paint->fill->color.a > 0.0f : paint->width_px > 0.0f;
+}
+
+static camber_color color_of(const camber_paint *paint) {
+    return paint->fill ? paint->fill->color : paint->color;
+}
+
 static look look_of(const encoder *e, uint32_t row, size_t set_index) {
     const camber_plan *whole = &e->plan->zoom->plan;
     const camber_plan_set *set = whole->sets + set_index;
@@ -74,9 +86,9 @@ static look look_of(const encoder *e, uint32_t row, size_t set_index) {
     for (size_t n = 0, layer = set->first_layer; n < set->layer_count; n++, layer = whole->layers[layer].next)
         for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
             const camber_paint paint = camber_mesh_plan_paint(e->plan, layer, row, s);
-            const camber_color color = paint.color;
+            const camber_color color = color_of(&paint);
             const double shrunk = OUTLINE_STEPS * exp2(-camber_mesh_sample_zoom(s));
-            if (!(paint.width_px > 0.0f))
+            if (!draws(&paint))
                 continue;
             const float width = paint.gap_px > 0.0f ? paint.gap_px + 2.0f * paint.width_px : paint.width_px;
             found.half_width = 0.5 * (double)width * shrunk;
@@ -162,21 +174,34 @@ static void place_sentinels(encoder *e) {
     }
 }
 
-static void measure(encoder *e) {
-    for (int k = 0; k < 3; k++) {
-        e->low[k] = e->high[k] = e->vertices[0].position[k];
-        for (size_t i = 1; i < 2 * e->tile->record_count; i++) {
-            const int16_t p = e->vertices[i].position[k];
-            e->low[k] = p < e->low[k] ? p : e->low[k];
-            e->high[k] = p > e->high[k] ? p : e->high[k];
-        }
+/* Makes the corners of areas, behind the vertices of lines. */
+static void make_corners(encoder *e, look *looks) {
+    const camber_mesh_tile *tile = e->tile;
+    const double steps = (double)(OUTLINE_STEPS * tile->tile_px) / tile->units;
+    vertex *corners = e->vertices + 2 * tile->record_count;
+    for (size_t i = 0; i < tile->corner_count; i++) {
+        const camber_mesh_corner *from = tile->corners + i;
+        corners[i] = (vertex){.position = {to_steps(from->x * steps), 0, to_steps(from->y * steps)},
+                              .point = {from->x, from->y, (int16_t)from->row, 0}};
     }
+    for (size_t fill = 0; fill < tile->fill_count; fill++)
+        for (size_t i = tile->fills[fill].first; i < tile->fills[fill].end; i++) {
+            vertex *corner = corners + tile->triangles[i];
+            if (corner->position[1] != 0)
+                continue;
+            look *l = looks + corner->point[2];
+            if (!l->color[3])
+                *l = look_of(e, tile->rows[corner->point[2]], tile->fills[fill].set);
+            corner->position[1] = (int16_t)(OUTLINE_STEPS * (tile->fills[fill].set + 1));
+            memcpy(corner->color, l->color, sizeof l->color);
+        }
 }
 
 static camber_status make_vertices(encoder *e) {
     const camber_mesh_tile *tile = e->tile;
     look *looks = camber_alloc_zero(e->context, tile->row_count, sizeof *looks);
-    if (!looks || !(e->vertices = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->vertices)) ||
+    e->vertex_count = 2 * tile->record_count + tile->corner_count;
+    if (!looks || !(e->vertices = camber_alloc_zero(e->context, e->vertex_count, sizeof *e->vertices)) ||
         (tile->has_arc_length &&
          !(e->alongs = camber_alloc_zero(e->context, tile->record_count, 2 * sizeof *e->alongs)))) {
         camber_free(e->context, looks);
@@ -187,31 +212,41 @@ static camber_status make_vertices(encoder *e) {
             look *l = looks + tile->records[i].row;
             if (!l->color[3])
                 *l = look_of(e, tile->rows[tile->records[i].row], tile->ranges[range].set);
-            l->height = OUTLINE_STEPS * (int)(range + 1);
+            l->height = OUTLINE_STEPS * (int)(tile->ranges[range].set + 1);
             make_pair(e, i, l);
         }
     }
     for (size_t i = 0; i < tile->record_count; i++)
         if (tile->records[i].flags & CAMBER_MESH_SENTINEL)
             make_pair(e, i, looks + tile->records[i].row);
-    camber_free(e->context, looks);
     place_sentinels(e);
-    measure(e);
+    make_corners(e, looks);
+    camber_free(e->context, looks);
     return CAMBER_OK;
 }
 
 static camber_status compress(encoder *e) {
-    const size_t count = 2 * e->tile->record_count;
-    const size_t room = meshopt_encodeVertexBufferBound(count, sizeof *e->vertices),
-                 more = e->alongs ? meshopt_encodeVertexBufferBound(count, sizeof *e->alongs) : 0;
-    if (!(e->packed = camber_alloc_zero(e->context, room + more + 8, 1)))
+    const camber_mesh_tile *tile = e->tile;
+    const size_t count = 2 * tile->record_count, corners = tile->corner_count;
+    const size_t room[STREAMS] = {
+        meshopt_encodeVertexBufferBound(e->vertex_count, sizeof *e->vertices),
+        e->alongs ? meshopt_encodeVertexBufferBound(count, sizeof *e->alongs) : 0,
+        tile->index_count ? meshopt_encodeIndexBufferBound(tile->index_count, corners) : 0,
+    };
+    if (!(e->packed = camber_alloc_zero(e->context, room[VERTICES] + room[ALONGS] + room[INDICES] + 4 * STREAMS, 1)))
         return CAMBER_ERROR_MEMORY;
-    meshopt_encodeVertexVersion(0); /* that of EXT_meshopt_compression */
-    e->vertex_bytes = meshopt_encodeVertexBuffer(e->packed, room, e->vertices, count, sizeof *e->vertices);
-    const size_t start = (e->vertex_bytes + 3) / 4 * 4;
-    memset(e->packed + e->vertex_bytes, 0, start - e->vertex_bytes);
-    if (e->alongs)
-        e->along_bytes = meshopt_encodeVertexBuffer(e->packed + start, more, e->alongs, count, sizeof *e->alongs);
+    meshopt_encodeVertexVersion(0); /* those of EXT_meshopt_compression */
+    meshopt_encodeIndexVersion(1);
+    for (int i = 0; i < STREAMS; i++) {
+        uint8_t *to = e->packed + e->start[i];
+        if (room[i])
+            e->bytes[i] = i == VERTICES ? meshopt_encodeVertexBuffer(to, room[i], e->vertices, e->vertex_count,
+                                                                     sizeof *e->vertices)
+                          : i == ALONGS ? meshopt_encodeVertexBuffer(to, room[i], e->alongs, count, sizeof *e->alongs)
+                                        : meshopt_encodeIndexBuffer(to, room[i], tile->triangles, tile->index_count);
+        e->start[i + 1] = e->start[i] + (e->bytes[i] + 3) / 4 * 4;
+        memset(to + e->bytes[i], 0, e->start[i + 1] - e->start[i] - e->bytes[i]);
+    }
     return CAMBER_OK;
 }
 
@@ -289,30 +324,31 @@ static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     bool drawn = false;
     for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
         paints[s] = camber_mesh_plan_paint(e->plan, layer, row, s);
-        seen = paints[s].width_px > 0.0f || !drawn ? paints[s] : seen;
-        drawn = drawn || paints[s].width_px > 0.0f;
+        seen = draws(paints + s) || !drawn ? paints[s] : seen;
+        drawn = drawn || draws(paints + s);
     }
     for (int k = 0; k < LISTS; k++)
         lists[k] = json_array();
     for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
         /* Where it is not drawn, it looks as where it is, so that shaders may go from one to the other. */
-        const camber_paint *p = paints[s].width_px > 0.0f ? paints + s : &seen;
+        const bool is_drawn = draws(paints + s);
+        const camber_paint *p = is_drawn ? paints + s : &seen;
         append(e, lists[WIDTH], number((double)paints[s].width_px));
-        append(e, lists[OPACITY], number((double)p->color.a));
+        append(e, lists[OPACITY], number(p->fill && !is_drawn ? 0.0 : (double)color_of(p).a));
         append(e, lists[GAP], number((double)p->gap_px));
         append(e, lists[BLUR], number((double)p->blur_px));
         append(e, lists[OFFSET], number((double)camber_mesh_plan_offset(e->plan, layer, row, s)));
         append(e, lists[UNIT], number(p->dash ? p->dash_unit_px > 0.0f ? (double)p->dash_unit_px : 1.0 : 0.0));
-        append(e, lists[COLOR], color_text(p->color));
+        append(e, lists[COLOR], color_text(color_of(p)));
         append(e, lists[MOVE],
                json_pack("[o, o]", number((double)p->translate_x_px), number((double)p->translate_y_px)));
     }
     for (int k = 0; k < LISTS; k++)
         set_samples(e, object, names[k], lists[k],
-                    k == WIDTH || k == COLOR ? NULL
-                    : k == OPACITY           ? json_integer(1)
-                    : k == MOVE              ? json_pack("[i, i]", 0, 0)
-                                             : json_integer(0));
+                    k == COLOR || (k == WIDTH && !seen.fill) ? NULL
+                    : k == OPACITY                           ? json_integer(1)
+                    : k == MOVE                              ? json_pack("[i, i]", 0, 0)
+                                                             : json_integer(0));
     set_along(e, object, &seen);
     if (drawn)
         return object;
@@ -338,7 +374,8 @@ static json_t *layer_json(encoder *e, size_t layer, const camber_mesh_range *ran
         json_decref(paints);
         return NULL;
     }
-    json_t *object = json_pack("{s:s, s:[I, I], s:o}", "id", own->look.layer->id, "range", (json_int_t)range->first,
+    json_t *object = json_pack("{s:s, s:[I, I], s:o}", "id", own->look.layer->id,
+                               own->part == CAMBER_PLAN_AREA ? "indices" : "range", (json_int_t)range->first,
                                (json_int_t)(range->end - range->first), "paints", paints);
     if (opacity < 1.0)
         set(e, object, "opacity", number(opacity));
@@ -349,12 +386,23 @@ static json_t *layer_json(encoder *e, size_t layer, const camber_mesh_range *ran
     return object;
 }
 
+static bool is_area_row(const encoder *e, uint32_t row) {
+    for (size_t i = 0; i < e->tile->fill_count; i++)
+        if (camber_mesh_plan_has_row(e->plan, e->tile->fills[i].set, row))
+            return true;
+    return false;
+}
+
 static json_t *rows_json(encoder *e) {
     static const char *const joins[] = {"round", "miter", "bevel"}, *const caps[] = {"butt", "round", "square"};
     json_t *rows = json_array();
     for (size_t i = 0; i < e->tile->row_count; i++) {
-        const camber_stroke *stroke = e->plan->zoom->strokes + e->plan->row_pairs[e->tile->rows[i]];
+        const uint32_t pair = e->plan->row_pairs[e->tile->rows[i]];
+        const camber_stroke *stroke = e->plan->zoom->strokes + pair;
         json_t *row = json_object();
+        append(e, rows, row);
+        if (is_area_row(e, e->tile->rows[i]))
+            continue;
         if (stroke->cap != CAMBER_CAP_ROUND)
             set(e, row, "cap", json_string(caps[stroke->cap]));
         if (stroke->join != CAMBER_JOIN_ROUND)
@@ -363,21 +411,27 @@ static json_t *rows_json(encoder *e) {
             set(e, row, "miterLimit", number((double)stroke->miter_limit));
         if (stroke->join == CAMBER_JOIN_ROUND && stroke->round_limit > 1.0f)
             set(e, row, "roundLimit", number((double)stroke->round_limit));
-        append(e, rows, row);
     }
     return rows;
+}
+
+static const camber_mesh_range *find_range(const camber_mesh_range *ranges, size_t count, size_t set_index) {
+    for (size_t i = 0; i < count; i++)
+        if (ranges[i].set == set_index)
+            return ranges + i;
+    return NULL;
 }
 
 static json_t *extras_json(encoder *e) {
     json_t *layers = json_array(), *background = json_array();
     const camber_plan *whole = &e->plan->zoom->plan;
-    for (size_t i = 0; i < whole->layer_count; i++)
-        for (size_t k = 0; k < e->tile->range_count; k++) {
-            json_t *layer =
-                e->tile->ranges[k].set == whole->layers[i].set ? layer_json(e, i, e->tile->ranges + k) : NULL;
-            if (layer)
-                append(e, layers, layer);
-        }
+    for (size_t i = 0; i < whole->layer_count; i++) {
+        const camber_mesh_range *range = find_range(e->tile->ranges, e->tile->range_count, whole->layers[i].set);
+        range = range ? range : find_range(e->tile->fills, e->tile->fill_count, whole->layers[i].set);
+        json_t *layer = range ? layer_json(e, i, range) : NULL;
+        if (layer)
+            append(e, layers, layer);
+    }
     for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
         const camber_plan *own = s + 1 < CAMBER_MESH_SAMPLES ? e->plan->samples + s : whole;
         append(e, background, own->background.a > 0.0f ? color_text(own->background) : json_null());
@@ -393,16 +447,19 @@ static json_t *extras_json(encoder *e) {
 /* ---- The parts of glTF ---- */
 
 /* Offsets of 0 go without saying. */
-static json_t *view_json(encoder *e, size_t offset, size_t packed_offset, size_t packed_bytes, size_t stride) {
-    const size_t count = 2 * e->tile->record_count;
-    json_t *packed = json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)packed_bytes,
-                               "byteStride", (json_int_t)stride, "count", (json_int_t)count, "mode", "ATTRIBUTES");
-    if (packed_offset)
-        set(e, packed, "byteOffset", json_integer((json_int_t)packed_offset));
-    json_t *view = json_pack("{s:i, s:I, s:I, s:{s:o}}", "buffer", 1, "byteLength", (json_int_t)(count * stride),
-                             "byteStride", (json_int_t)stride, "extensions", "EXT_meshopt_compression", packed);
-    if (offset)
-        set(e, view, "byteOffset", json_integer((json_int_t)offset));
+static json_t *view_json(encoder *e, size_t *offset, int stream, size_t count, size_t stride) {
+    json_t *packed = json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)e->bytes[stream],
+                               "byteStride", (json_int_t)stride, "count", (json_int_t)count, "mode",
+                               stream == INDICES ? "TRIANGLES" : "ATTRIBUTES");
+    if (e->start[stream])
+        set(e, packed, "byteOffset", json_integer((json_int_t)e->start[stream]));
+    json_t *view = json_pack("{s:i, s:I, s:{s:o}}", "buffer", 1, "byteLength", (json_int_t)(count * stride),
+                             "extensions", "EXT_meshopt_compression", packed);
+    if (stream != INDICES)
+        set(e, view, "byteStride", json_integer((json_int_t)stride));
+    if (*offset)
+        set(e, view, "byteOffset", json_integer((json_int_t)*offset));
+    *offset += count * stride;
     return view;
 }
 
@@ -416,19 +473,52 @@ static json_t *accessor_json(int view, size_t offset, int component, size_t coun
     return accessor;
 }
 
-static json_t *accessors_json(encoder *e) {
-    const size_t count = 2 * e->tile->record_count;
-    const int16_t *low = e->low, *high = e->high;
-    json_t *position = accessor_json(0, offsetof(vertex, position), GLTF_SHORT, count, "VEC3");
-    json_t *point = accessor_json(0, offsetof(vertex, point), GLTF_SHORT, count, "VEC4");
-    json_t *color = accessor_json(0, offsetof(vertex, color), GLTF_UNSIGNED_BYTE, count, "VEC4");
+/* Adds the accessors of some vertices; returns the attributes that name them. */
+static json_t *add_accessors(encoder *e, json_t *list, size_t first, size_t count) {
+    const vertex *vertices = e->vertices + first;
+    const size_t start = first * sizeof *vertices;
+    int16_t low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = high[k] = vertices[0].position[k];
+        for (size_t i = 1; i < count; i++) {
+            low[k] = vertices[i].position[k] < low[k] ? vertices[i].position[k] : low[k];
+            high[k] = vertices[i].position[k] > high[k] ? vertices[i].position[k] : high[k];
+        }
+    }
+    const int number_first = (int)json_array_size(list);
+    json_t *position = accessor_json(0, start + offsetof(vertex, position), GLTF_SHORT, count, "VEC3");
+    json_t *color = accessor_json(0, start + offsetof(vertex, color), GLTF_UNSIGNED_BYTE, count, "VEC4");
     set(e, position, "min", json_pack("[i, i, i]", low[0], low[1], low[2]));
     set(e, position, "max", json_pack("[i, i, i]", high[0], high[1], high[2]));
     set(e, color, "normalized", json_true());
-    json_t *list = json_pack("[o, o, o]", position, point, color);
-    if (e->alongs)
-        append(e, list, accessor_json(1, 0, GLTF_FLOAT, count, "VEC2"));
-    return list;
+    append(e, list, position);
+    append(e, list, accessor_json(0, start + offsetof(vertex, point), GLTF_SHORT, count, "VEC4"));
+    append(e, list, color);
+    return json_pack("{s:i, s:i, s:i}", "POSITION", number_first, "_POINT", number_first + 1, "COLOR_0",
+                     number_first + 2);
+}
+
+/* The strip of lines and the triangles of areas, as far as they are there. */
+static json_t *primitives_json(encoder *e, json_t *accessors) {
+    const size_t count = 2 * e->tile->record_count;
+    json_t *primitives = json_array();
+    if (count) {
+        json_t *attributes = add_accessors(e, accessors, 0, count);
+        if (e->alongs) {
+            set(e, attributes, "_ALONG", json_integer((json_int_t)json_array_size(accessors)));
+            append(e, accessors, accessor_json(1, 0, GLTF_FLOAT, count, "VEC2"));
+        }
+        append(e, primitives,
+               json_pack("{s:i, s:i, s:o}", "mode", GLTF_STRIP, "material", 0, "attributes", attributes));
+    }
+    if (e->tile->index_count) {
+        json_t *attributes = add_accessors(e, accessors, count, e->tile->corner_count);
+        const int indices = (int)json_array_size(accessors);
+        append(e, accessors, accessor_json(e->alongs ? 2 : 1, 0, GLTF_UNSIGNED_INT, e->tile->index_count, "SCALAR"));
+        append(e, primitives,
+               json_pack("{s:i, s:o, s:i}", "material", 0, "attributes", attributes, "indices", indices));
+    }
+    return primitives;
 }
 
 static json_t *node_json(const encoder *e) {
@@ -440,21 +530,20 @@ static json_t *node_json(const encoder *e) {
 }
 
 static bool is_translucent(const encoder *e) {
-    for (size_t i = 0; i < 2 * e->tile->record_count; i++)
+    for (size_t i = 0; i < e->vertex_count; i++)
         if (e->vertices[i].color[3] < 255)
             return true;
     return false;
 }
 
 static json_t *root_json(encoder *e) {
-    const size_t count = 2 * e->tile->record_count, start = (e->vertex_bytes + 3) / 4 * 4;
-    const size_t raw_bytes = count * (sizeof *e->vertices + (e->alongs ? sizeof *e->alongs : 0));
-    json_t *views = json_pack("[o]", view_json(e, 0, 0, e->vertex_bytes, sizeof *e->vertices));
+    size_t raw_bytes = 0;
+    json_t *views = json_array(), *accessors = json_array();
+    append(e, views, view_json(e, &raw_bytes, VERTICES, e->vertex_count, sizeof *e->vertices));
     if (e->alongs)
-        append(e, views, view_json(e, count * sizeof *e->vertices, start, e->along_bytes, sizeof *e->alongs));
-    json_t *attributes = json_pack("{s:i, s:i, s:i}", "POSITION", 0, "_POINT", 1, "COLOR_0", 2);
-    if (e->alongs)
-        set(e, attributes, "_ALONG", json_integer(3));
+        append(e, views, view_json(e, &raw_bytes, ALONGS, 2 * e->tile->record_count, sizeof *e->alongs));
+    if (e->tile->index_count)
+        append(e, views, view_json(e, &raw_bytes, INDICES, e->tile->index_count, sizeof *e->tile->triangles));
     json_t *root = json_pack("{s:{s:s}}", "asset", "version", "2.0");
     set(e, root, "extensionsUsed",
         json_pack("[s, s, s]", "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_materials_unlit"));
@@ -467,12 +556,11 @@ static json_t *root_json(encoder *e) {
         set(e, material, "alphaMode", json_string("BLEND"));
     set(e, root, "materials", json_pack("[o]", material));
     set(e, root, "meshes",
-        json_pack("[{s:[{s:i, s:i, s:o}], s:o}]", "primitives", "mode", GLTF_STRIP, "material", 0, "attributes",
-                  attributes, "extras", extras_json(e)));
-    set(e, root, "accessors", accessors_json(e));
+        json_pack("[{s:o, s:o}]", "primitives", primitives_json(e, accessors), "extras", extras_json(e)));
+    set(e, root, "accessors", accessors);
     set(e, root, "bufferViews", views);
     set(e, root, "buffers",
-        json_pack("[{s:I}, {s:I, s:{s:{s:b}}}]", "byteLength", (json_int_t)(start + e->along_bytes), "byteLength",
+        json_pack("[{s:I}, {s:I, s:{s:{s:b}}}]", "byteLength", (json_int_t)e->start[STREAMS], "byteLength",
                   (json_int_t)raw_bytes, "extensions", "EXT_meshopt_compression", "fallback", 1));
     return root;
 }
@@ -487,8 +575,7 @@ static uint8_t *put_u32(uint8_t *to, size_t value) {
 
 static camber_status write_file(encoder *e, const char *json, uint8_t **bytes, size_t *size_bytes) {
     const size_t length = strlen(json), text = (length + 3) / 4 * 4;
-    const size_t binary = (e->vertex_bytes + 3) / 4 * 4 + e->along_bytes, padded = (binary + 3) / 4 * 4;
-    const size_t total = 12 + 8 + text + 8 + padded;
+    const size_t binary = e->start[STREAMS], total = 12 + 8 + text + 8 + binary;
     uint8_t *file = camber_alloc_zero(e->context, total, 1);
     if (!file)
         return CAMBER_ERROR_MEMORY;
@@ -496,7 +583,7 @@ static camber_status write_file(encoder *e, const char *json, uint8_t **bytes, s
     to = put_u32(put_u32(to, text), 0x4e4f534au);                         /* JSON */
     memset(to, ' ', text);
     memcpy(to, json, length);
-    to = put_u32(put_u32(to + text, padded), 0x004e4942u); /* BIN */
+    to = put_u32(put_u32(to + text, binary), 0x004e4942u); /* BIN */
     memcpy(to, e->packed, binary);
     *bytes = file;
     *size_bytes = total;

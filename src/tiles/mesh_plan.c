@@ -97,7 +97,7 @@ static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t 
             camber_stroke own = *stroke;
             own.width_px = shrunk * whole_width(&paint);
             own.offset_px = shrunk * offset_of(plan, layer, pair, s);
-            if (!(paint.width_px > 0.0f))
+            if (!(paint.width_px > 0.0f) && !paint.fill)
                 continue;
             stroke->width_px = fmaxf(stroke->width_px, own.width_px);
             reach = fmaxf(reach, (float)camber_plan_stroke_reach(&own) +
@@ -173,7 +173,7 @@ static camber_status make_rows(camber_mesh_plan *plan, row_maker *m) {
         return CAMBER_ERROR_MEMORY;
     for (size_t s = 0; s < whole->set_count; s++) {
         const camber_plan_set *set = whole->sets + s;
-        for (size_t k = 0; k < set->pair_count && !camber_plan_is_area(whole, set); k++) {
+        for (size_t k = 0; k < set->pair_count; k++) {
             const uint32_t pair = (uint32_t)(set->first_pair + k);
             const float reach = widen(plan, set, pair);
             put_row(m, set, pair);
@@ -192,11 +192,8 @@ static void find_reaches(camber_mesh_plan *plan) {
     zoom->most_reach_px = 0.0f;
     for (size_t c = 0; c < zoom->features->class_count; c++) {
         float reach = -1.0f;
-        for (size_t k = whole->by_class.first[c]; k < whole->by_class.first[c + 1]; k++) {
-            const camber_set_pair *pair = whole->by_class.pairs + k;
-            if (!camber_plan_is_area(whole, whole->sets + pair->set))
-                reach = fmaxf(reach, plan->reach_px[plan->pair_rows[pair->pair]]);
-        }
+        for (size_t k = whole->by_class.first[c]; k < whole->by_class.first[c + 1]; k++)
+            reach = fmaxf(reach, plan->reach_px[plan->pair_rows[whole->by_class.pairs[k].pair]]);
         zoom->class_reach_px[c] = reach;
         zoom->most_reach_px = fmaxf(zoom->most_reach_px, reach);
     }
@@ -243,7 +240,7 @@ camber_status camber_mesh_plan_create(const camber_features *features, const cam
     camber_free(made->context, maker.other);
     if (status == CAMBER_OK) {
         find_reaches(made);
-        made->zoom->lines_only = true;
+        made->zoom->lines_only = true; /* areas are cut on the host */
         *plan = made;
     } else {
         camber_mesh_plan_destroy(made);

@@ -62,6 +62,10 @@ camber_status camber_mesh_picture_take(const camber_mesh_plan *plan, camber_mesh
 void camber_mesh_picture_free(camber_mesh_picture *picture) {
     if (picture->data.context)
         camber_free(picture->data.context, picture->lines);
+    if (picture->plan) {
+        camber_free(picture->plan->context, picture->rings);
+        camber_free(picture->plan->context, picture->ring_points);
+    }
     camber_mesh_data_destroy(&picture->data);
     *picture = (camber_mesh_picture){0};
 }
@@ -182,19 +186,19 @@ static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, boo
     return own && !(last & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
 }
 
-/* The tile's number of the line's row. */
-static void number_row(cutter *c, line_walk *w) {
-    camber_mesh_tile *tile = c->tile;
-    const uint32_t row = c->picture->plan->pair_rows[w->line->pair];
+bool camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number) {
     if (!tile->row_slots[row]) {
-        if (!camber_grow(tile->context, &tile->rows, &tile->row_capacity, tile->row_count + 1, sizeof *tile->rows)) {
-            c->failed = true;
-            return;
-        }
+        if (!camber_grow(tile->context, &tile->rows, &tile->row_capacity, tile->row_count + 1, sizeof *tile->rows))
+            return false;
         tile->rows[tile->row_count++] = row;
         tile->row_slots[row] = (uint32_t)tile->row_count;
     }
-    w->row = (uint16_t)(tile->row_slots[row] - 1);
+    *number = (uint16_t)(tile->row_slots[row] - 1);
+    return true;
+}
+
+static void number_row(cutter *c, line_walk *w) {
+    c->failed |= !camber_mesh_tile_number(c->tile, c->picture->plan->pair_rows[w->line->pair], &w->row);
     w->has_row = true;
 }
 
@@ -294,17 +298,23 @@ static size_t set_of(const camber_plan *plan, uint32_t pair) {
     return set;
 }
 
-/* Notes that records up to here belong to the set. false: no memory. */
-static bool end_range(camber_mesh_tile *tile, size_t set, size_t first, size_t end) {
-    camber_mesh_range *last = tile->range_count ? tile->ranges + tile->range_count - 1 : NULL;
-    if (last && last->set == set) {
-        last->end = end;
+/* Notes that items up to `end` belong to the set. false: no memory. */
+static bool end_range(camber_context *context, camber_mesh_range **ranges, size_t *count, size_t *capacity,
+                      camber_mesh_range range) {
+    camber_mesh_range *last = *count ? *ranges + *count - 1 : NULL;
+    if (last && last->set == range.set) {
+        last->end = range.end;
         return true;
     }
-    if (!camber_grow(tile->context, &tile->ranges, &tile->range_capacity, tile->range_count + 1, sizeof *tile->ranges))
+    if (!camber_grow(context, ranges, capacity, *count + 1, sizeof **ranges))
         return false;
-    tile->ranges[tile->range_count++] = (camber_mesh_range){set, first, end};
+    (*ranges)[(*count)++] = range;
     return true;
+}
+
+bool camber_mesh_tile_end_fill(camber_mesh_tile *tile, size_t set, size_t first) {
+    return end_range(tile->context, &tile->fills, &tile->fill_count, &tile->fill_capacity,
+                     (camber_mesh_range){set, first, tile->index_count});
 }
 
 static void put_line(cutter *c, const camber_mesh_line *line) {
@@ -322,13 +332,15 @@ static void put_line(cutter *c, const camber_mesh_line *line) {
     if (tile->segments == before || c->failed)
         return;
     tile->has_arc_length |= plan->has_arc_length[row];
-    c->failed |= !end_range(tile, set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1);
+    const camber_mesh_range range = {set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1};
+    c->failed |= !end_range(tile->context, &tile->ranges, &tile->range_count, &tile->range_capacity, range);
 }
 
 static camber_status clear(camber_mesh_tile *tile, const camber_mesh_plan *plan) {
     for (size_t i = 0; i < tile->row_count; i++)
         tile->row_slots[tile->rows[i]] = 0;
     tile->record_count = tile->row_count = tile->range_count = tile->segments = 0;
+    tile->corner_count = tile->index_count = tile->fill_count = 0;
     tile->has_arc_length = false;
     if (tile->row_slot_count >= plan->row_count)
         return CAMBER_OK;
@@ -371,6 +383,9 @@ void camber_mesh_tile_free(camber_mesh_tile *tile) {
     camber_free(tile->context, tile->records);
     camber_free(tile->context, tile->rows);
     camber_free(tile->context, tile->ranges);
+    camber_free(tile->context, tile->corners);
+    camber_free(tile->context, tile->triangles);
+    camber_free(tile->context, tile->fills);
     camber_free(tile->context, tile->row_slots);
     *tile = (camber_mesh_tile){0};
 }

@@ -31,6 +31,10 @@ typedef struct camber_mesh_picture {
     camber_mesh_data data;        /* its records are points, each once */
     camber_mesh_line *lines;      /* line_count */
     size_t line_count;
+    camber_mesh_line *rings; /* ring_count: those that are filled, closed, in drawing order */
+    size_t ring_count;
+    float *ring_points; /* ring_point_count pairs, px */
+    size_t ring_point_count;
 } camber_mesh_picture;
 
 /* Takes the lines of a mesh of strips, which was tessellated for the picture with the zoom's plan. Free it with
@@ -50,6 +54,12 @@ typedef struct camber_mesh_range {
     size_t set, first, end;
 } camber_mesh_range;
 
+/* A corner of a triangle of areas. */
+typedef struct camber_mesh_corner {
+    int16_t x, y;
+    uint16_t row;
+} camber_mesh_corner;
+
 typedef struct camber_mesh_tile {
     camber_context *context;
     uint32_t units, tile_px;
@@ -61,6 +71,12 @@ typedef struct camber_mesh_tile {
     size_t range_count, range_capacity;
     size_t segments;
     bool has_arc_length;
+    camber_mesh_corner *corners; /* corner_count, of areas */
+    size_t corner_count, corner_capacity;
+    uint32_t *triangles; /* index_count: three corners each */
+    size_t index_count, triangle_capacity;
+    camber_mesh_range *fills; /* fill_count: ranges of these, by set */
+    size_t fill_count, fill_capacity;
     uint32_t *row_slots; /* row_slot_count: by row of the plan, the tile's row + 1 */
     size_t row_slot_count;
 } camber_mesh_tile;
@@ -70,6 +86,10 @@ typedef struct camber_mesh_tile {
 camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_picture *picture, uint32_t tile_px,
                                    uint32_t x, uint32_t y, camber_mesh_tile *tile);
 void camber_mesh_tile_free(camber_mesh_tile *tile);
+/* The tile's number of a row of the plan. false: no memory. */
+bool camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number);
+/* Notes that the triangles from an index on are of the set. false: no memory. */
+bool camber_mesh_tile_end_fill(camber_mesh_tile *tile, size_t set, size_t first);
 
 /* Whether this build writes mesh tiles. */
 bool camber_mesh_is_built(void);

@@ -16,7 +16,7 @@ export async function loadDecoder() {
     return MeshoptDecoder;
 }
 
-// The JSON of a GLB, and its attributes by name, each an array of vertices.
+// The JSON of a GLB, what its accessors have, and the attributes of its lines by name, each an array of vertices.
 export function readTile(decoder, file) {
     const view = new DataView(file.buffer, file.byteOffset, file.byteLength), text = view.getUint32(12, true);
     const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + text))), binary = file.subarray(28 + text);
@@ -26,18 +26,21 @@ export function readTile(decoder, file) {
             packed.mode, packed.filter);
         return bytes;
     });
-    const attributes = {};
-    for (const [name, index] of Object.entries(json.meshes[0].primitives[0].attributes)) {
-        const {bufferView, byteOffset = 0, componentType, count, type} = json.accessors[index];
-        const bytes = new DataView(buffers[bufferView].buffer), stride = json.bufferViews[bufferView].byteStride;
-        const [size, get] = {5121: [1, 'getUint8'], 5122: [2, 'getInt16'], 5126: [4, 'getFloat32']}[componentType];
-        attributes[name] = Array.from({length: count}, (_, i) => Array.from({length: Number(type.slice(3))}, (__, k) =>
+    const values = json.accessors.map(({bufferView, byteOffset = 0, componentType, count, type}) => {
+        const bytes = new DataView(buffers[bufferView].buffer), width = type === 'SCALAR' ? 1 : Number(type.slice(3));
+        const [size, get] = {5121: [1, 'getUint8'], 5122: [2, 'getInt16'], 5125: [4, 'getUint32'], 5126: [4, 'getFloat32']}[componentType];
+        const stride = json.bufferViews[bufferView].byteStride ?? size * width;
+        return Array.from({length: count}, (_, i) => Array.from({length: width}, (__, k) =>
             bytes[get](byteOffset + stride * i + size * k, true)));
-    }
-    return {json, extras: json.meshes[0].extras, attributes};
+    });
+    const named = ({attributes}) => Object.fromEntries(Object.entries(attributes).map(([name, i]) => [name, values[i]]));
+    const {primitives, extras} = json.meshes[0], lines = primitives.find(({mode}) => mode === 5);
+    const areas = primitives.find(({mode}) => mode === undefined);
+    return {json, extras, values, attributes: lines ? named(lines) : null,
+        areas: areas ? {...named(areas), indices: values[areas.indices].flat()} : null};
 }
 
-// The records: each second vertex has one.
+// The records of lines: each second vertex has one.
 export function recordsOf({attributes}) {
     return attributes._POINT.filter((_, i) => i % 2 === 0).map(([x, y, row, flags], i) =>
         ({x, y, row, flags, along: attributes._ALONG?.[2 * i]}));

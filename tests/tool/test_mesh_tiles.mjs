@@ -43,32 +43,36 @@ const tiles = tilesOf(drawn);
 
 // The validator does not know the compression, so each tile is also judged as it is when it is decoded.
 function plain(tile) {
-    const {json, attributes} = readTile(decoder, tile.bytes), parts = [], accessors = [];
-    const kinds = {POSITION: Int16Array, _POINT: Int16Array, COLOR_0: Uint8Array, _ALONG: Float32Array};
+    const {json, values} = readTile(decoder, tile.bytes), parts = [];
+    const kinds = {5121: Uint8Array, 5122: Int16Array, 5125: Uint32Array, 5126: Float32Array};
     let at = 0;
-    json.bufferViews = Object.entries(attributes).map(([name, values]) => {
-        const array = kinds[name], size = values[0].length * array.BYTES_PER_ELEMENT, stride = (size + 3) >> 2 << 2;
-        const bytes = new Uint8Array(values.length * stride);
-        values.forEach((value, i) => bytes.set(new Uint8Array(array.from(value).buffer), i * stride));
+    const indices = new Set(json.meshes[0].primitives.map(primitive => primitive.indices));
+    json.bufferViews = json.accessors.map((accessor, i) => {
+        const array = kinds[accessor.componentType], stride = (values[i][0].length * array.BYTES_PER_ELEMENT + 3) >> 2 << 2;
+        const bytes = new Uint8Array(values[i].length * stride), start = at;
+        values[i].forEach((value, k) => bytes.set(new Uint8Array(array.from(value).buffer), k * stride));
         parts.push(bytes);
-        accessors.push({...json.accessors[json.meshes[0].primitives[0].attributes[name]], bufferView: accessors.length, byteOffset: 0});
-        json.meshes[0].primitives[0].attributes[name] = accessors.length - 1;
         at += bytes.length;
-        return {buffer: 0, byteOffset: at - bytes.length, byteLength: bytes.length, byteStride: stride, target: 34962};
+        Object.assign(accessor, {bufferView: i, byteOffset: 0});
+        return {buffer: 0, byteOffset: start, byteLength: bytes.length,
+            ...indices.has(i) ? {target: 34963} : {byteStride: stride, target: 34962}};
     });
-    json.accessors = accessors;
     json.buffers = [{byteLength: at, uri: `data:application/octet-stream;base64,${Buffer.concat(parts).toString('base64')}`}];
     json.extensionsUsed = json.extensionsUsed.filter(name => name !== 'EXT_meshopt_compression');
     json.extensionsRequired = ['KHR_mesh_quantization'];
     return JSON.stringify(json);
 }
-const issues = [];
-for (const tile of tiles) {
-    const packed = await validator.validateBytes(new Uint8Array(tile.bytes), {uri: tile.name, maxIssues: 5});
-    const whole = await validator.validateString(plain(tile), {uri: tile.name, maxIssues: 5});
-    for (const {issues: {messages}} of [packed, whole])
-        issues.push(...messages.filter(({severity}) => severity <= 1).map(({code, pointer}) => [tile.name, code, pointer]));
+async function judge(drawn) {
+    const issues = [];
+    for (const tile of drawn) {
+        const packed = await validator.validateBytes(new Uint8Array(tile.bytes), {uri: tile.name, maxIssues: 5});
+        const whole = await validator.validateString(plain(tile), {uri: tile.name, maxIssues: 5});
+        for (const {issues: {messages}} of [packed, whole])
+            issues.push(...messages.filter(({severity}) => severity <= 1).map(({code, pointer}) => [tile.name, code, pointer]));
+    }
+    return issues;
 }
+const issues = await judge(tiles);
 check(tiles.length > 100, 'there are tiles', tiles.length);
 check(issues.length === 0, 'each is valid, compressed and decoded', issues.slice(0, 5));
 
@@ -146,6 +150,52 @@ for (const tile of compared.filter((_, i) => i % Math.ceil(compared.length / 12)
 check(points > 1000, 'there are points to compare', points);
 check(apart[0] <= TOLERANCE, 'each point of a tile is one of the tessellation', apart[0]);
 check(apart[1] <= TOLERANCE, 'each point of the tessellation is in its tile', apart[1]);
+
+// ---- Areas: what is covered, by the nonzero rule ----
+
+// A square with a hole, another square over its corner, and a third of the next row: degrees of 2^-13 turns, from the
+// corner of a tile of zoom 10 that is 8 such units wide; near the equator rows are as high.
+const UNIT = 360 / 2 ** 13, square = (x, y, side) => [[x, y], [x + side, y], [x + side, y + side], [x, y + side], [x, y]]
+    .map(([a, b]) => [a * UNIT, b * UNIT]);
+const polygon = (kind, ...rings) => ({type: 'Feature', properties: {kind}, geometry: {type: 'Polygon', coordinates: rings}});
+const fields = join(folder, 'fields.geojson'), colors = join(folder, 'colors.json'), filled = join(folder, 'filled/');
+writeFileSync(fields, JSON.stringify({type: 'FeatureCollection', features: [
+    polygon('a', square(1, 1, 4), square(2, 2, 1).reverse()), polygon('a', square(4, 4, 2)), polygon('b', square(6, 1, 4))]}));
+writeFileSync(colors, JSON.stringify({version: 8, sources: {}, layers: [{id: 'fields', type: 'fill', paint:
+    {'fill-color': ['match', ['get', 'kind'], 'a', '#204060', '#a0b0c0'], 'fill-opacity': ['interpolate', ['linear'], ['zoom'], 9, 0.5, 10, 1]}}]}));
+const areas = spawnSync(tool, ['tiles', fields, '--style', colors, '--format', 'glb', '--min-zoom', '10', '--max-zoom', '10',
+    '-q', '-o', filled], {encoding: 'utf8'});
+if (areas.stderr.includes('need GLU')) {
+    console.log('ok - areas are left out: no GLU (Debian: libglu1-mesa)');
+} else {
+    const made = tilesOf(filled), covered = {}, sampled = new Set();
+    check((await judge(made)).length === 0, 'areas are valid');
+    for (const tile of made) {
+        const {extras: {units, layers}, areas: {_POINT, indices}} = readTile(decoder, tile.bytes);
+        for (const {indices: [first, count], paints} of layers)
+            for (let i = first; i < first + count; i += 3) {
+                const [a, b, c] = indices.slice(i, i + 3).map(k => _POINT[k]), key = paints[a[2]].color;
+                covered[key] = (covered[key] ?? 0) + inside(a, b, c, units);
+                sampled.add(paints[a[2]].opacity.join());
+            }
+    }
+    check([...sampled].join(' ') === '0.5,0.625,0.75,0.875,1', 'opacities are sampled', [...sampled]);
+    const unit = 16 * 16; // points of the grid a square unit
+    check(Math.abs(covered['#204060'] / unit - 18) < 0.3, 'a hole and an overlap', covered);
+    check(Math.abs(covered['#a0b0c0'] / unit - 16) < 0.3, 'an area over two tiles', covered);
+}
+// How many points of a grid of 128 x 128 over the tile lie in a triangle.
+function inside(a, b, c, units) {
+    const step = units / 128, side = (p, q, x, y) => (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
+    let count = 0;
+    for (let i = 0; i < 128; i++)
+        for (let k = 0; k < 128; k++) {
+            const x = (i + 0.37) * step - units / 2, y = (k + 0.61) * step - units / 2; // on no diagonal
+            const sides = [side(a, b, x, y), side(b, c, x, y), side(c, a, x, y)];
+            count += sides.every(s => s < 0) || sides.every(s => s > 0);
+        }
+    return count;
+}
 
 // ---- The same bytes however they are drawn ----
 

@@ -357,7 +357,7 @@ static const area_source area_sources[] = {
     {.key = "nyc", .name = "New York", .file = "nyc.osm.pbf"},
     {.key = "helsinki", .name = "Helsinki", .file = "Helsinki-1327152.osm.pbf"},
     {.key = "liechtenstein",
-     .name = "land use",
+     .name = "Liechtenstein's land use",
      .file = "liechtenstein-latest.osm.pbf",
      .where = "landuse IS NOT NULL"},
     {.key = "houses", .name = "100,000 houses", .add = add_houses, .count = 100000},

@@ -25,6 +25,7 @@
 #define CAMBER_FABS(x) abs(x)
 #define CAMBER_BOTH(a, b) ((a) && (b))
 #define CAMBER_EITHER(a, b) ((a) || (b))
+#define CAMBER_CAST(type, x) type(x)
 #define CAMBER_YES true
 #define CAMBER_NO false
 #define CAMBER_UNUSED(parameter)
@@ -65,6 +66,7 @@ typedef int camber_flag; /* 0: no */
 #define CAMBER_AT(place) (*(place))
 #define CAMBER_BOTH(a, b) ((a) & (b))
 #define CAMBER_EITHER(a, b) ((a) | (b))
+#define CAMBER_CAST(type, x) ((type)(x))
 #define CAMBER_YES 1
 #define CAMBER_NO 0
 #define CAMBER_UNUSED(parameter) (void)(parameter);

@@ -22,11 +22,11 @@
  * Their corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
 #define CAMBER_STRAIGHT_SINE 1e-4f
 
-typedef struct camber_turn {
+CAMBER_STRUCT(camber_turn) {
     float c, s;         /* cosine (>= 0) and sine (signed) of half the turn */
     float dot;          /* cosine of the turn */
     float half_shorter; /* half the shorter of the two segments, px */
-} camber_turn;
+};
 
 /* Half the shorter of the segments into (dx, dy) and out of (ex, ey) a point, px. */
 CAMBER_FN float camber_half_shorter(float dx, float dy, float ex, float ey) {
@@ -56,8 +56,9 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
 CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
     const float q = turn.s / (1.0f + turn.c) * 32767.0f;
     const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
-    const camber_i32 turns = (camber_i32)(rounded > 32767.0f ? 32767.0f : rounded < -32767.0f ? -32767.0f : rounded);
-    return turns == 0 ? 1u : (camber_u32)turns & 0xffffu;
+    const float bounded = rounded > 32767.0f ? 32767.0f : rounded < -32767.0f ? -32767.0f : rounded;
+    const camber_i32 turns = CAMBER_CAST(camber_i32, bounded);
+    return turns == 0 ? 1u : CAMBER_CAST(camber_u32, turns) & 0xffffu;
 }
 
 CAMBER_FN float camber_turn_unpack(camber_u32 join) {
@@ -83,8 +84,8 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
  * has neither first nor last, and a line that the window cuts does not end there. */
 CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 after) {
     const camber_u32 goes_on = CAMBER_POINT_RING | CAMBER_POINT_CUT;
-    const camber_u32 first = (before & (CAMBER_POINT_FIRST | goes_on)) == CAMBER_POINT_FIRST;
-    const camber_u32 last = (after & (CAMBER_POINT_LAST | goes_on)) == CAMBER_POINT_LAST;
+    const camber_flag first = (before & (CAMBER_POINT_FIRST | goes_on)) == CAMBER_POINT_FIRST;
+    const camber_flag last = (after & (CAMBER_POINT_LAST | goes_on)) == CAMBER_POINT_LAST;
     return (first ? CAMBER_JOIN_AFTER_FIRST : 0u) | (last ? CAMBER_JOIN_BEFORE_LAST : 0u);
 }
 
@@ -95,7 +96,8 @@ CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
 /* The stub of a join word. line_ends: camber_line_ends; cap: of the line, camber_cap. */
 CAMBER_FN camber_u32 camber_stub_pack(camber_u32 line_ends, camber_u32 cap, float half_shorter) {
     const float longest = 0.5f * CAMBER_STUB_PX, bounded = half_shorter < longest ? half_shorter : longest;
-    const camber_u32 stub = 1u + (camber_u32)(bounded * ((float)(CAMBER_STUB_MOST - 1u) / longest));
+    const camber_u32 stub =
+        1u + CAMBER_CAST(camber_u32, bounded * (CAMBER_CAST(float, CAMBER_STUB_MOST - 1u) / longest));
     return line_ends != 0u && cap == CAMBER_CAPS_BUTT ? stub << CAMBER_JOIN_STUB_SHIFT : 0u;
 }
 
@@ -110,7 +112,7 @@ CAMBER_FN camber_u32 camber_cap_end(camber_u32 cap) {
  * half a circle, so comparing cosines compares angles. */
 CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float step_sin) {
     float x = step_cos, y = step_sin;
-    camber_u32 n = 1;
+    camber_u32 n = 1u;
     while (n < CAMBER_JOIN_TRIANGLES_MAX && x > turn_cos && y > 0.0f) {
         const float next = x * step_cos - y * step_sin;
         y = x * step_sin + y * step_cos;
@@ -136,19 +138,19 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
  *     its side of the bisector
  */
-CAMBER_FN camber_u32 camber_join_word(camber_turn turn, const camber_row *row, camber_u32 method) {
+CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_IN(camber_row) row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
 #if CAMBER_ROUND_LIMITS
     const camber_u32 asked = turn.c > row->round_cos ? CAMBER_JOINS_MITER : row->join;
 #else
     const camber_u32 asked = row->join;
 #endif
-    const camber_u32 miter = asked == CAMBER_JOINS_MITER && turn.c * row->miter_limit >= 1.0f;
-    const camber_u32 bevel = asked != CAMBER_JOINS_ROUND && !miter;
-    const camber_u32 split = !miter && sine > 2.0f * turn.c;
-    const camber_u32 tight = row->reach_px * sine > turn.half_shorter * turn.c;
+    const camber_flag miter = asked == CAMBER_JOINS_MITER && turn.c * row->miter_limit >= 1.0f;
+    const camber_flag bevel = asked != CAMBER_JOINS_ROUND && !miter;
+    const camber_flag split = !miter && sine > 2.0f * turn.c;
+    const camber_flag tight = row->reach_px * sine > turn.half_shorter * turn.c;
     camber_u32 end = miter ? CAMBER_ENDS_MITER : bevel ? CAMBER_ENDS_BEVEL : CAMBER_ENDS_ROUND;
-    camber_u32 triangles = 0;
+    camber_u32 triangles = 0u;
     if (method == CAMBER_STRIP) {
         const camber_u32 split_end = miter   ? CAMBER_ENDS_SPLIT_MITER
                                      : bevel ? CAMBER_ENDS_SPLIT_BEVEL
@@ -168,7 +170,9 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, const camber_row *row, c
 
 /* The join word of an end of an open polyline, or of a dot. */
 CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
-    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == CAMBER_CAPS_BUTT ? CAMBER_KIND_SENTINEL : CAMBER_KIND_DOT;
+    const camber_u32 kind = dot == 0u                 ? CAMBER_KIND_CAP
+                            : cap == CAMBER_CAPS_BUTT ? CAMBER_KIND_SENTINEL
+                                                      : CAMBER_KIND_DOT;
     return kind << CAMBER_JOIN_KIND_SHIFT | camber_cap_end(cap) << CAMBER_JOIN_END_SHIFT;
 }
 

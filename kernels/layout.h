@@ -54,9 +54,8 @@
 #define CAMBER_POINT_ROW_SHIFT 8
 #define CAMBER_ROW_BITS 0xffffff00u
 
-#ifndef CAMBER_GLSL
 /* A row of the style table as the kernels read it. */
-typedef struct camber_row {
+CAMBER_STRUCT(camber_row) {
     float reach_px;    /* half the width + CAMBER_PAD_PX: the unit of extrusion at the widest */
     float miter_limit; /* 1 / cos(turn / 2) */
     float fan_cos;     /* of the fan's step angle */
@@ -65,8 +64,7 @@ typedef struct camber_row {
     camber_u32 join; /* camber_join */
     camber_u32 cap;  /* camber_cap */
     float fan_step;  /* the angle */
-} camber_row;
-#endif
+};
 
 /* Words of a record: see camber_record in camber_proof.h. A mesh with arc lengths has as many again behind them, of
  * which the first two are camber_arc_length. */
@@ -112,7 +110,7 @@ typedef struct camber_row {
 #define CAMBER_JOIN_AFTER_FIRST (1u << 26)
 #define CAMBER_JOIN_BEFORE_LAST (1u << 27)
 #define CAMBER_JOIN_KIND_SHIFT 28
-#define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
+#define CAMBER_JOIN_TRIANGLES_MAX 64u /* so that a block's index count fits 16 bits */
 
 #define CAMBER_KIND_SENTINEL 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
 #define CAMBER_KIND_DOT 1u      /* a polyline of one point */
@@ -122,9 +120,9 @@ typedef struct camber_row {
 #define CAMBER_KIND_SPLIT 5u    /* too sharp to cut: both segments end here */
 
 /* The public enums, which OpenCL C does not read: camber_method, camber_join, camber_cap. */
-#define CAMBER_STRIP 0
-#define CAMBER_KITE 1
-#define CAMBER_FAN 2
+#define CAMBER_STRIP 0u
+#define CAMBER_KITE 1u
+#define CAMBER_FAN 2u
 #define CAMBER_JOINS_ROUND 0u
 #define CAMBER_JOINS_MITER 1u
 #define CAMBER_JOINS_BEVEL 2u

@@ -10,9 +10,11 @@ export function skip(what) {
     process.exit(77);
 }
 
-// Skips where something is missing: Chromium on PATH, npm's playwright-core and the packages named in NODE_PATH.
-export function launchBrowser(...packages) {
-    for (const name of [...packages, 'playwright-core'])
+// Skips where something is missing: Chromium on PATH, npm's playwright-core and the packages named in NODE_PATH. Names
+// that begin with -- are Chromium's switches.
+export function launchBrowser(...names) {
+    const isSwitch = name => name.startsWith('--');
+    for (const name of [...names.filter(name => !isSwitch(name)), 'playwright-core'])
         if (!existsSync(join(modules, name)))
             skip(`npm package ${name} is not installed`);
     const executablePath = (process.env.PATH ?? '').split(':').flatMap(path =>
@@ -20,7 +22,8 @@ export function launchBrowser(...packages) {
     if (!executablePath)
         skip('no Chromium (Debian: chromium)');
     return createRequire(import.meta.url)('playwright-core').chromium.launch({executablePath,
-        args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb']});
+        args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
+            ...names.filter(isSwitch)]});
 }
 
 // The corner of tiles of 256 px next to a place. Such a tile has one zoom more than the map.
@@ -30,8 +33,8 @@ export function cornerAt([longitude, latitude], zoom) {
     return [column * 360 - 180, Math.atan(Math.sinh((1 - 2 * row) * Math.PI)) * 180 / Math.PI];
 }
 
-// Compares two PNGs in a page that allows data: URLs. `most` is the largest difference of a channel, `off` counts the
-// pixels that differ, `colors` the colours of the second.
+// Compares two PNGs in a page that allows data: URLs. `most` is the largest difference of a channel, `mean` that of all,
+// `off` counts the pixels that differ, `colors` the colours of the second.
 export function comparePictures(page, shown, drawn) {
     return page.evaluate(async pictures => {
         const [a, b] = await Promise.all(pictures.map(async bytes => {
@@ -40,16 +43,18 @@ export function comparePictures(page, shown, drawn) {
             canvas.drawImage(image, 0, 0);
             return canvas.getImageData(0, 0, image.width, image.height);
         }));
-        let most = 0, off = 0;
+        let most = 0, off = 0, sum = 0;
         const colors = new Set();
         for (let i = 0; i < a.data.length; i += 4) {
             let apart = 0;
-            for (let c = 0; c < 3; c++)
+            for (let c = 0; c < 3; c++) {
+                sum += Math.abs(a.data[i + c] - b.data[i + c]);
                 apart = Math.max(apart, Math.abs(a.data[i + c] - b.data[i + c]));
+            }
             most = Math.max(most, apart);
             off += apart > 0;
             colors.add(b.data[i] << 16 | b.data[i + 1] << 8 | b.data[i + 2]);
         }
-        return {most, off, colors: colors.size, same: a.width === b.width && a.height === b.height};
+        return {most, off, mean: sum / (a.data.length * 3 / 4), colors: colors.size, same: a.width === b.width && a.height === b.height};
     }, [shown.toString('base64'), drawn.toString('base64')]);
 }

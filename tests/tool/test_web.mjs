@@ -1,0 +1,201 @@
+// The page of examples/web in Chromium: mesh tiles that it draws, against the pictures of camber render.
+// usage: test_web.mjs CAMBER PAGE INPUT FOLDER
+// INPUT has streets around CENTER. npm's playwright-core is found through NODE_PATH, Chromium on PATH. Tiles and
+// screenshots stay in FOLDER. Exit status: 1 where a check failed, 77 where something is not installed.
+import {execFileSync} from 'node:child_process';
+import {mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {createServer} from 'node:http';
+import {join} from 'node:path';
+import {comparePictures, launchBrowser, skip} from './browser.mjs';
+
+const CENTER = [-122.0268, 36.9735]; // Santa Cruz
+const WIDE = {width: 1280, height: 720};
+// Zooms of tiles and between them; the last one lies past the largest tiles'.
+const VIEWS = [['roads', 14], ['roads', 12.3], ['roads', 14.62], ['roads', 15.9]];
+const MEAN = 0.25;  // of 255, of all channels: points are rounded, and simplified for the tiles' zoom
+const WORST = 40;   // of 255, a pixel's largest channel
+const FRAMES = 60;  // of a pan
+
+const [tool, pagePath, input, folder] = process.argv.slice(2);
+let failures = 0;
+function check(right, what, found = '') {
+    console.log(`${right ? 'ok' : 'not ok'} - ${what}${right || found === '' ? '' : `: ${JSON.stringify(found)}`}`);
+    failures += !right;
+}
+
+// ---- Tiles in a folder, and a server of files ----
+
+function makeTiles(style) {
+    const tiles = join(folder, style);
+    rmSync(tiles, {recursive: true, force: true});
+    execFileSync(tool, ['tiles', '-q', input, '--style', style, '--format', 'glb', '--tile-size', '512', '--min-zoom', '12',
+        '--max-zoom', '15', '-o', tiles + '/']);
+    return tiles;
+}
+
+const server = createServer((request, response) => {
+    const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
+    let bytes = null;
+    try {
+        bytes = readFileSync(path === '/' ? pagePath : join(folder, path));
+    } catch {
+        response.writeHead(404).end();
+        return;
+    }
+    response.writeHead(200, {'Content-Type': path === '/' ? 'text/html' : 'application/octet-stream'}).end(bytes);
+});
+await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
+const url = `http://127.0.0.1:${server.address().port}/`;
+
+// ---- The page ----
+
+const complaints = [];
+const hashAt = (zoom, [longitude, latitude] = CENTER) => `#${zoom}/${latitude}/${longitude}`;
+async function openPage(browser, style, zoom, options = {}) {
+    const context = await browser.newContext({viewport: WIDE, ...options}), page = await context.newPage();
+    page.on('console', message => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
+    page.on('pageerror', error => complaints.push(error.message));
+    await page.goto(`${url}?tiles=${style}${hashAt(zoom)}`);
+    await waitForTiles(page);
+    return page;
+}
+// All tiles in view are drawn once this says so, in the frame before.
+const waitForTiles = page => page.waitForFunction(() => document.body.dataset.loading === '0', null, {timeout: 20000});
+const waitForFrames = (page, count) => page.evaluate(frames => new Promise(resolve => {
+    const next = () => frames-- > 0 ? requestAnimationFrame(next) : resolve();
+    next();
+}), count);
+async function shoot(page, name) {
+    await page.evaluate(() => document.querySelectorAll('.card').forEach(card => card.style.visibility = 'hidden'));
+    return page.screenshot({path: join(folder, name + '.png')});
+}
+
+// ---- What is checked ----
+
+async function checkPictures(browser, blank) {
+    for (const [style, zoom] of VIEWS) {
+        const page = await openPage(browser, style, zoom), drawn = join(folder, 'drawn.png');
+        const shown = await shoot(page, `${style}-${zoom}`);
+        execFileSync(tool, ['render', '-q', '-f', input, '--style', style, '--zoom', String(zoom), '--center',
+            CENTER.join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', drawn]);
+        const found = await comparePictures(blank, shown, readFileSync(drawn));
+        console.log(`# ${style}, zoom ${zoom}: mean ${found.mean.toFixed(3)} of 255, worst ${found.most}`);
+        check(found.same && found.colors > 100 && found.mean < MEAN && found.most < WORST,
+            `${style} at zoom ${zoom} has the pixels of camber render`, found);
+        await page.context().close();
+    }
+}
+
+async function checkMoves(browser) {
+    const page = await openPage(browser, 'roads', 14);
+    // The hash follows when the map rests.
+    const readPlace = async () => {
+        await page.waitForFunction(() => !asked && glide === 0 && hashTimer === 0, null, {timeout: 20000});
+        return page.evaluate(() => location.hash.slice(1).split('/').map(Number));
+    };
+    const [, , east] = await readPlace(), start = await page.evaluate(() => performance.now());
+    await page.mouse.move(900, 360);
+    await page.mouse.down();
+    for (let i = 1; i <= FRAMES; i++) {
+        await page.mouse.move(900 - 6 * i, 360 + i);
+        await waitForFrames(page, 1);
+    }
+    await page.mouse.up();
+    const seconds = (await page.evaluate(() => performance.now()) - start) / 1000;
+    console.log(`# a pan of ${FRAMES} frames: ${(FRAMES / seconds).toFixed(0)} frames a second`);
+    const after = await readPlace(), degree = 512 * 2 ** 14 / 360; // px
+    check(Math.abs((after[2] - east) * degree - 6 * FRAMES) < 1, 'a drag moves the map as far as the pointer', {east, after});
+    await page.mouse.wheel(0, -100);
+    await page.waitForFunction(() => view.zoom > 14.2);
+    check(Math.abs((await readPlace())[0] - 14.25) < 1e-3, 'the wheel zooms by a quarter', await readPlace());
+    await page.focus('#map');
+    await page.keyboard.press('-');
+    await page.waitForFunction(() => view.zoom < 13.8);
+    check(Math.abs((await readPlace())[0] - 13.75) < 1e-3, 'the minus key zooms out', await readPlace());
+    await page.evaluate(hash => location.hash = hash, hashAt(12.5));
+    await page.waitForFunction(() => document.getElementById('state').textContent.includes('12.50'));
+    check(true, 'a hash that is typed moves the map');
+    await waitForTiles(page);
+    check(complaints.length === 0, 'the console is silent', complaints);
+    await page.context().close();
+}
+
+// What lies under the pointer stays there while the wheel zooms.
+async function checkPointer(browser) {
+    const page = await openPage(browser, 'roads', 13);
+    const under = () => page.evaluate(() => [view.x + (900 - innerWidth / 2) / worldPx(), view.y + (200 - innerHeight / 2) / worldPx()]);
+    const before = await under();
+    await page.mouse.move(900, 200);
+    await page.mouse.wheel(0, -240);
+    await page.waitForFunction(() => view.zoom > 13.5 && glide === 0);
+    const after = await under(), off = Math.hypot(after[0] - before[0], after[1] - before[1]) * 512 * 2 ** 13;
+    check(off < 1e-3, 'the wheel zooms about the pointer', {before, after});
+    await page.context().close();
+}
+
+// A screen with two px a CSS px gets as many.
+async function checkDensity(browser, blank) {
+    const page = await openPage(browser, 'roads', 14, {deviceScaleFactor: 2}), drawn = join(folder, 'drawn.png');
+    execFileSync(tool, ['render', '-q', '-f', input, '--style', 'roads', '--zoom', '14', '--ratio', '2', '--center',
+        CENTER.join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', drawn]);
+    const found = await comparePictures(blank, await shoot(page, 'dense'), readFileSync(drawn));
+    console.log(`# two px a CSS px: mean ${found.mean.toFixed(3)} of 255, worst ${found.most}`);
+    check(found.same && found.mean < MEAN && found.most < 2 * WORST, 'so has a picture of twice the px', found);
+    await page.context().close();
+}
+
+async function checkDamage(browser) {
+    const tiles = makeTiles('roads'), page = await openPage(browser, 'roads', 14);
+    const [first, second, third] = await page.evaluate(() => [...tiles.entries()].filter(([, entry]) => entry.tile).
+        map(([name]) => name));
+    await page.context().close();
+    const whole = readFileSync(join(tiles, first + '.glb'));
+    writeFileSync(join(tiles, first + '.glb'), whole.subarray(0, whole.length >> 1));
+    rmSync(join(tiles, second + '.glb'));
+    const noise = readFileSync(join(tiles, third + '.glb'));
+    noise.fill(0x7f, 20, 40);
+    writeFileSync(join(tiles, third + '.glb'), noise);
+    complaints.length = 0;
+    const hurt = await openPage(browser, 'roads', 14), told = await hurt.locator('#notice').textContent();
+    await hurt.screenshot({path: join(folder, 'damage.png')});
+    check(told.includes(`${first} is damaged`) && told.includes(`${third} is damaged`), 'damaged tiles are told', told);
+    check(told.includes(`${second} is missing`), 'a missing one is told', told);
+    check(complaints.every(text => text.includes('404')) && complaints.length === 1, 'nothing else goes wrong', complaints);
+    const drawn = await hurt.evaluate(() => [...tiles.values()].filter(entry => entry.tile).length);
+    check(drawn > 3, 'all others are drawn', drawn);
+    await hurt.context().close();
+}
+
+async function checkNoTiles(browser) {
+    const page = await (await browser.newContext()).newPage();
+    await page.goto(`${url}?tiles=nowhere`);
+    await page.waitForFunction(() => document.getElementById('notice').textContent !== '');
+    const told = await page.locator('#notice').textContent();
+    check(/No tiles at .*nowhere/.test(told), 'a page without tiles says so', told);
+    await page.context().close();
+}
+
+// ---- All of it ----
+
+// Mesa's driver, as camber's own GL has it: Chromium's own takes ten times as long.
+const browser = await launchBrowser('--use-gl=angle', '--use-angle=gl-egl');
+mkdirSync(folder, {recursive: true});
+try {
+    const blank = await browser.newPage();
+    if (!await blank.evaluate(() => !!document.createElement('canvas').getContext('webgl2'))) {
+        await browser.close();
+        skip('no WebGL 2 by EGL (Debian: libegl-mesa0, libgl1-mesa-dri)');
+    }
+    for (const style of new Set(VIEWS.map(([style]) => style)))
+        makeTiles(style);
+    await checkPictures(browser, blank);
+    await checkMoves(browser);
+    await checkPointer(browser);
+    await checkDensity(browser, blank);
+    await checkDamage(browser);
+    await checkNoTiles(browser);
+} finally {
+    await browser.close();
+    server.close();
+}
+process.exit(failures ? 1 : 0);

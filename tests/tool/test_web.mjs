@@ -2,7 +2,7 @@
 // usage: test_web.mjs CAMBER PAGE INPUT FOLDER
 // INPUT has streets around CENTER. npm's playwright-core is found through NODE_PATH, Chromium on PATH. Tiles and
 // screenshots stay in FOLDER. Exit status: 1 where a check failed, 77 where something is not installed.
-import {execFileSync} from 'node:child_process';
+import {execFileSync, spawn} from 'node:child_process';
 import {mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {join} from 'node:path';
@@ -186,6 +186,29 @@ async function checkDamage(browser) {
     await hurt.context().close();
 }
 
+// The same tiles from camber serve, at another address.
+async function checkServe(browser) {
+    const port = await new Promise(resolve => {
+        const socket = createServer().listen(0, '127.0.0.1', () => {
+            const found = socket.address().port;
+            socket.close(() => resolve(found));
+        });
+    });
+    const serve = spawn(tool, ['serve', '-q', makeTiles('roads') + '/', '--listen', `127.0.0.1:${port}`], {stdio: 'ignore'});
+    const gone = new Promise(resolve => serve.on('exit', resolve));
+    const isReady = () => fetch(`http://127.0.0.1:${port}/health`).then(answer => answer.ok, () => false);
+    for (let wait = 0; wait < 100 && serve.exitCode === null && !await isReady(); wait++)
+        await new Promise(resolve => setTimeout(resolve, 100));
+    if (serve.exitCode === null) { // else camber was built without serve
+        const page = await openPage(browser, encodeURIComponent(`http://127.0.0.1:${port}/`), 14);
+        const state = await page.locator('#state').textContent(), told = await page.locator('#notice').textContent();
+        check(/ [1-9][0-9]* tiles/.test(state) && told === '', 'camber serve hands out the tiles', {state, told});
+        await page.context().close();
+        serve.kill();
+        await gone;
+    }
+}
+
 async function checkNoTiles(browser) {
     const page = await (await browser.newContext()).newPage();
     await page.goto(`${url}?tiles=nowhere`);
@@ -214,6 +237,7 @@ try {
     await checkPointer(browser);
     await checkDensity(browser, blank);
     await checkDamage(browser);
+    await checkServe(browser);
     await checkNoTiles(browser);
 } finally {
     await browser.close();

@@ -110,7 +110,7 @@ async function checkMoves(browser) {
     const page = await openPage(browser, 'roads', 14);
     // The hash follows when the map rests.
     const readPlace = async () => {
-        await page.waitForFunction(() => !asked && glide === 0 && hashTimer === 0, null, {timeout: 20000});
+        await page.waitForFunction(() => !isAsked && glide === 0 && hashTimer === 0, null, {timeout: 20000});
         return page.evaluate(() => location.hash.slice(1).split('/').map(Number));
     };
     const [, , east] = await readPlace(), start = await page.evaluate(() => performance.now());
@@ -188,6 +188,7 @@ async function checkDamage(browser) {
 
 // The same tiles from camber serve, at another address.
 async function checkServe(browser) {
+    complaints.length = 0;
     const port = await new Promise(resolve => {
         const socket = createServer().listen(0, '127.0.0.1', () => {
             const found = socket.address().port;
@@ -200,9 +201,10 @@ async function checkServe(browser) {
     for (let wait = 0; wait < 100 && serve.exitCode === null && !await isReady(); wait++)
         await new Promise(resolve => setTimeout(resolve, 100));
     if (serve.exitCode === null) { // else camber was built without serve
-        const page = await openPage(browser, encodeURIComponent(`http://127.0.0.1:${port}/`), 14);
+        const page = await openPage(browser, encodeURIComponent(`http://127.0.0.1:${port}/tiles.json`), 14);
         const state = await page.locator('#state').textContent(), told = await page.locator('#notice').textContent();
-        check(/ [1-9][0-9]* tiles/.test(state) && told === '', 'camber serve hands out the tiles', {state, told});
+        check(/ [1-9][0-9]* tiles/.test(state) && told === '' && complaints.length === 0,
+            'camber serve hands out the tiles', {state, told, complaints});
         await page.context().close();
         serve.kill();
         await gone;

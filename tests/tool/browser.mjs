@@ -10,9 +10,11 @@ export function skip(what) {
     process.exit(77);
 }
 
-// Skips where something is missing: Chromium on PATH, npm's playwright-core and the packages named in NODE_PATH.
-export function launchBrowser(...packages) {
-    for (const name of [...packages, 'playwright-core'])
+// Skips where something is missing: Chromium on PATH, npm's playwright-core and the packages named in NODE_PATH. Names
+// that begin with -- are Chromium's switches.
+export function launchBrowser(...names) {
+    const isSwitch = name => name.startsWith('--');
+    for (const name of [...names.filter(name => !isSwitch(name)), 'playwright-core'])
         if (!existsSync(join(modules, name)))
             skip(`npm package ${name} is not installed`);
     const executablePath = (process.env.PATH ?? '').split(':').flatMap(path =>
@@ -20,7 +22,8 @@ export function launchBrowser(...packages) {
     if (!executablePath)
         skip('no Chromium (Debian: chromium)');
     return createRequire(import.meta.url)('playwright-core').chromium.launch({executablePath,
-        args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb']});
+        args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
+            ...names.filter(isSwitch)]});
 }
 
 // The corner of tiles of 256 px next to a place. Such a tile has one zoom more than the map.

@@ -15,7 +15,7 @@ foreach(file IN LISTS files)
   if(file MATCHES "/libcamber\\.a$")
     file(REMOVE_RECURSE "${folder}/camber-kernels") # compiled on this machine, by the install and since
   endif()
-  while(folder MATCHES "/camber[^/]*(/(styles|docs|cluster|serve))?$")
+  while(folder MATCHES "/camber[^/]*(/(styles|docs|cluster|serve|web))?$")
     list(APPEND folders "${folder}")
     get_filename_component(folder "${folder}" DIRECTORY)
   endwhile()

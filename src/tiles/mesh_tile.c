@@ -53,10 +53,33 @@ static camber_status list_lines(camber_mesh_picture *picture) {
     return CAMBER_OK;
 }
 
+static bool is_seam(const camber_mesh_picture *picture, size_t record) {
+    return picture->data.records[record].last & CAMBER_POINT_RING;
+}
+
+/* Joins the pieces of rings that the picture has cut where the rings begin and end. */
+static void join_seams(camber_mesh_picture *picture) {
+    for (size_t i = 0; i < picture->line_count; i++) {
+        camber_mesh_line *begin = picture->lines + i, *end = begin;
+        if (begin->count < 2 || !is_seam(picture, begin->first) || is_seam(picture, begin->first + begin->count - 1))
+            continue;
+        while (++end < picture->lines + picture->line_count && end->pair == begin->pair)
+            if (end->count > 1 && is_seam(picture, end->first + end->count - 1)) {
+                begin->before = end->first + end->count - 1;
+                end->behind = begin->first + 2;
+                break;
+            }
+    }
+}
+
 camber_status camber_mesh_picture_take(const camber_mesh_plan *plan, camber_mesh *mesh, camber_mesh_picture *picture) {
     *picture = (camber_mesh_picture){.plan = plan};
-    const camber_status status = camber_mesh_read(mesh, &picture->data);
-    return status == CAMBER_OK ? list_lines(picture) : status;
+    camber_status status = camber_mesh_read(mesh, &picture->data);
+    if (status == CAMBER_OK)
+        status = list_lines(picture);
+    if (status == CAMBER_OK)
+        join_seams(picture);
+    return status;
 }
 
 void camber_mesh_picture_free(camber_mesh_picture *picture) {
@@ -202,11 +225,39 @@ static void number_row(cutter *c, line_walk *w) {
     w->has_row = true;
 }
 
-static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags) {
+/* A record, counted from 1, as a neighbour of a point; where 16 bits do not hold it, it is pulled to the point. */
+static cut_point neighbour_of(const cutter *c, cut_point point, size_t neighbour) {
+    const camber_record *r = c->picture->data.records + neighbour - 1;
+    const cut_point other = {.x = (double)r->x - c->centre_x, .y = (double)r->y - c->centre_y};
+    double from, to;
+    return clip(point, other, c->limit, &from, &to) ? between(point, other, to) : other;
+}
+
+/* The sentinel before has the neighbour, where the line is a ring's piece that begins here. neighbour: a record, from
+ * 1; 0: none. */
+static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, size_t neighbour) {
     if (!w->has_row)
         number_row(c, w);
-    put_sentinel_before(c, start, w->row, false);
+    put_sentinel_before(c, start, w->row, neighbour != 0);
+    if (neighbour && !c->failed) {
+        const cut_point before = neighbour_of(c, start, neighbour);
+        camber_mesh_record *sentinel = c->tile->records + c->tile->record_count - 1;
+        sentinel->x = quantise(before.x, c->scale);
+        sentinel->y = quantise(before.y, c->scale);
+        flags = CAMBER_MESH_RING;
+    }
     put(c, start, w->row, CAMBER_MESH_FIRST | flags);
+}
+
+/* The other end of such a piece. */
+static void end_run(cutter *c, const line_walk *w, cut_point stop, unsigned flags, size_t neighbour) {
+    cut_point behind = stop;
+    if (neighbour) {
+        behind = neighbour_of(c, stop, neighbour);
+        flags = CAMBER_MESH_RING;
+    }
+    put(c, stop, w->row, CAMBER_MESH_LAST | flags);
+    put_sentinel_behind(c, behind, w->row, neighbour != 0);
 }
 
 /* Puts the segments [first, end) that are near, in order; a ring's are counted around it. */
@@ -224,13 +275,15 @@ static void put_runs(cutter *c, line_walk *w, size_t first, size_t end) {
         const bool begins_cut = is_outside(c, a), ends_cut = is_outside(c, b), ends = ends_cut || !near_next;
         if (!runs) {
             const cut_point start = begins_cut ? between(a, b, from) : a;
-            begin_run(c, w, start, end_flags(c, w, i, i == 0 && !begins_cut));
+            const bool own = i == 0 && !begins_cut;
+            begin_run(c, w, start, end_flags(c, w, i, own), own ? w->line->before : 0);
         }
         const cut_point stop = ends_cut ? between(a, b, to) : b;
         const bool own_end = i + 1 == segments && !ends_cut;
-        put(c, stop, w->row, ends ? CAMBER_MESH_LAST | end_flags(c, w, i + 1, own_end) : 0u);
         if (ends)
-            put_sentinel_behind(c, stop, w->row, false);
+            end_run(c, w, stop, end_flags(c, w, i + 1, own_end), own_end ? w->line->behind : 0);
+        else
+            put(c, stop, w->row, 0u);
         runs = !ends;
     }
 }
@@ -324,7 +377,7 @@ static void put_line(cutter *c, const camber_mesh_line *line) {
     const camber_record *begin = c->picture->data.records + line->first;
     const size_t before = tile->segments, first = tile->record_count ? tile->record_count : 1;
     line_walk w = {.line = line, .reach = c->half + (double)plan->reach_px[row]};
-    w.is_ring = (begin->last & CAMBER_POINT_RING) && line->count > 3;
+    w.is_ring = line->count > 3 && (begin->last & begin[line->count - 1].last & CAMBER_POINT_RING);
     if (w.is_ring)
         put_ring(c, &w);
     else

@@ -23,6 +23,9 @@ typedef struct camber_mesh_line {
     size_t first, count; /* of the records */
     uint32_t pair;
     float x0, y0, x1, y1; /* its box, px */
+    /* Where the picture has cut a ring: the record before its first point in the ring's last piece, and the record
+     * behind its last point in the first piece, counted from 1. 0: none. */
+    size_t before, behind;
 } camber_mesh_line;
 
 /* The lines of a picture. */

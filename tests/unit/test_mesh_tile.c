@@ -206,11 +206,27 @@ static void test_cut_by_picture(void **state) {
     end(&f);
 }
 
+/* A ring's piece that begins at its seam has the last piece's neighbour, pulled to what 16 bits hold. */
+static void test_seam(void **state) {
+    (void)state;
+    static const float points[][2] = {{100, 100}, {150, 100}, {100, 500}};
+    fixture f;
+    make(&f, points, 2, CAMBER_POINT_RING, CAMBER_POINT_CUT);
+    f.records[2] = (camber_record){.x = points[2][0], .y = points[2][1]};
+    f.line.before = 3;
+    cut(&f);
+    assert_int_equal(f.tile.record_count, 4);
+    check(&f, 0, -3584, 32767, CAMBER_MESH_SENTINEL);
+    check(&f, 1, -3584, -3584, CAMBER_MESH_FIRST | CAMBER_MESH_RING);
+    check(&f, 2, 2816, -3584, CAMBER_MESH_LAST | CAMBER_MESH_CUT);
+    end(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units), cmocka_unit_test(test_leaves),         cmocka_unit_test(test_far),
         cmocka_unit_test(test_wide),  cmocka_unit_test(test_beside),         cmocka_unit_test(test_small),
-        cmocka_unit_test(test_ring),  cmocka_unit_test(test_cut_by_picture),
+        cmocka_unit_test(test_ring),  cmocka_unit_test(test_cut_by_picture), cmocka_unit_test(test_seam),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

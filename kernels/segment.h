@@ -120,13 +120,12 @@ CAMBER_FN camber_real camber_direction(camber_real dx, camber_real dy, camber_re
 /* Makes the segment from A to B, which is half_width to either side. (px, py) is where the segment before it begins.
  * Both segments at a join turn the bisector from the direction of the first, so that both get the same bits for its
  * normal. */
-CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, camber_real ax, camber_real ay,
-                                           camber_real bx, camber_real by, camber_words join_a, camber_words join_b,
-                                           camber_real half_width, camber_u32 linear) {
-    camber_segment s;
+CAMBER_FN void camber_segment_of(camber_real px, camber_real py, camber_real ax, camber_real ay, camber_real bx,
+                                 camber_real by, camber_words join_a, camber_words join_b, camber_real half_width,
+                                 camber_u32 linear, camber_segment *s) {
     camber_real ix, iy;
     camber_direction(ax - px, ay - py, &ix, &iy);
-    const camber_real length = camber_direction(bx - ax, by - ay, &s.ux, &s.uy);
+    const camber_real length = camber_direction(bx - ax, by - ay, &s->ux, &s->uy);
     const camber_real qa = camber_quarter_turn(join_a), qb = camber_quarter_turn(join_b);
     camber_real ca, sa, cb, sb;
     camber_half_turn(qa, &ca, &sa);
@@ -137,49 +136,47 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     const camber_words end_a = camber_end_of(join_a, soon_a, length, ca, sa, half_width, &own_a);
     const camber_words end_b = camber_end_of(join_b, soon_b, length, cb, sb, half_width, &own_b);
     const camber_mask cap_a = CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP;
-    s.nax = cap_a ? s.ux : ix * ca - iy * sa;
-    s.nay = cap_a ? s.uy : ix * sa + iy * ca;
-    s.nbx = s.ux * cb - s.uy * sb;
-    s.nby = s.ux * sb + s.uy * cb;
-    s.ax = ax;
-    s.ay = ay;
-    s.bx = bx;
-    s.by = by;
-    s.half_width = half_width;
+    s->nax = cap_a ? s->ux : ix * ca - iy * sa;
+    s->nay = cap_a ? s->uy : ix * sa + iy * ca;
+    s->nbx = s->ux * cb - s->uy * sb;
+    s->nby = s->ux * sb + s->uy * cb;
+    s->ax = ax;
+    s->ay = ay;
+    s->bx = bx;
+    s->by = by;
+    s->half_width = half_width;
     const camber_real reach_a = camber_segment_reach(join_a, qa), reach_b = camber_segment_reach(join_b, qb);
-    s.reach = (half_width + CAMBER_PAD_PX) * CAMBER_MORE(reach_a, reach_b);
+    s->reach = (half_width + CAMBER_PAD_PX) * CAMBER_MORE(reach_a, reach_b);
     camber_profiles side;
-    camber_profile_of(s.ux, s.uy, CAMBER_ALL_LANES(linear), &side);
-    s.slope = side.slope;
-    s.curve = side.curve;
+    camber_profile_of(s->ux, s->uy, CAMBER_ALL_LANES(linear), &side);
+    s->slope = side.slope;
+    s->curve = side.curve;
     const camber_words nothing = (camber_words)(0u);
-    s.flags = end_a | end_b << CAMBER_SEGMENT_END_BITS | camber_end_flags(end_a) | camber_end_flags(end_b);
-    s.flags |= own_a ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : nothing;
-    s.flags |= own_b ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : nothing;
-    s.flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
-    return s;
+    s->flags = end_a | end_b << CAMBER_SEGMENT_END_BITS | camber_end_flags(end_a) | camber_end_flags(end_b);
+    s->flags |= own_a ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : nothing;
+    s->flags |= own_b ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : nothing;
+    s->flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
 }
 
 /* Makes the edge of a ring from A to B: a segment without width, joins and sides. */
-CAMBER_FN camber_segment camber_edge_segment(camber_real ax, camber_real ay, camber_real bx, camber_real by) {
+CAMBER_FN void camber_edge_segment(camber_real ax, camber_real ay, camber_real bx, camber_real by, camber_segment *s) {
     const camber_real none = CAMBER_REAL(0.0f);
-    camber_segment s;
-    camber_direction(bx - ax, by - ay, &s.ux, &s.uy);
-    s.ax = ax;
-    s.ay = ay;
-    s.bx = bx;
-    s.by = by;
-    s.half_width = CAMBER_REAL(CAMBER_EDGE_PX);
-    s.reach = CAMBER_REAL(CAMBER_EDGE_REACH_PX);
-    s.nax = s.nay = s.nbx = s.nby = s.slope = s.curve = none;
-    s.flags = (camber_words)(0u);
-    return s;
+    camber_direction(bx - ax, by - ay, &s->ux, &s->uy);
+    s->ax = ax;
+    s->ay = ay;
+    s->bx = bx;
+    s->by = by;
+    s->half_width = CAMBER_REAL(CAMBER_EDGE_PX);
+    s->reach = CAMBER_REAL(CAMBER_EDGE_REACH_PX);
+    s->nax = s->nay = s->nbx = s->nby = s->slope = s->curve = none;
+    s->flags = (camber_words)(0u);
 }
 
 /* Makes those of segments edges that have an edge's half width. */
 CAMBER_FN void camber_segments_with_edges(camber_segment *s) {
     const camber_mask is_edge = s->half_width == CAMBER_EDGE_PX;
-    const camber_segment edge = camber_edge_segment(s->ax, s->ay, s->bx, s->by);
+    camber_segment edge;
+    camber_edge_segment(s->ax, s->ay, s->bx, s->by, &edge);
     s->reach = is_edge ? edge.reach : s->reach;
     s->nax = is_edge ? edge.nax : s->nax;
     s->nay = is_edge ? edge.nay : s->nay;

@@ -159,25 +159,26 @@ static inline void take_ends(global const camber_u32 *records, global const floa
 }
 
 /* Makes their segments. */
-static inline camber_segment segments_of(global const camber_u32 *records, int first, camber_setup_args r,
-                                         const ends *e) {
+static inline void find_segments(global const camber_u32 *records, int first, camber_setup_args r, const ends *e,
+                                 camber_segment *s) {
     const lane_records *b = &e->b, *before = &e->before;
     const camber_real ax = CAMBER_AS_REAL(e->is_dot ? b->x : before->x) + e->x,
                       ay = CAMBER_AS_REAL(e->is_dot ? b->y : before->y) + e->y, bx = CAMBER_AS_REAL(b->x) + e->x,
                       by = CAMBER_AS_REAL(b->y) + e->y;
     /* Rings come one after the other: mostly all are edges, or none. */
-    if (CAMBER_ALL((e->row[0] == CAMBER_EDGE_PX) | (e->is_drawn == 0)))
-        return camber_edge_segment(ax, ay, bx, by);
+    if (CAMBER_ALL((e->row[0] == CAMBER_EDGE_PX) | (e->is_drawn == 0))) {
+        camber_edge_segment(ax, ay, bx, by, s);
+        return;
+    }
     lane_records second, third;
     take_records(records, first - 2, r, &second);
     take_records(records, first - 3, r, &third);
     const camber_mask from_third =
         ((before->info & CAMBER_RECORD_START) != 0u) & (before->join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
-    camber_segment s = camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e->x,
-                                         CAMBER_AS_REAL(from_third ? third.y : second.y) + e->y, ax, ay, bx, by,
-                                         e->is_dot ? b->join : before->join, b->join, e->row[0], r.linear);
-    camber_segments_with_edges(&s);
-    return s;
+    camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e->x,
+                      CAMBER_AS_REAL(from_third ? third.y : second.y) + e->y, ax, ay, bx, by,
+                      e->is_dot ? b->join : before->join, b->join, e->row[0], r.linear, s);
+    camber_segments_with_edges(s);
 }
 
 /* Makes the segments of the records from `first` on, and writes them. */
@@ -185,7 +186,8 @@ static inline void make_segments(global const camber_u32 *records, global const 
                                  camber_setup_args r, outputs to) {
     ends e;
     take_ends(records, rows, first, r, &e);
-    camber_segment s = segments_of(records, first, r, &e);
+    camber_segment s;
+    find_segments(records, first, r, &e, &s);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
     camber_plane plane;

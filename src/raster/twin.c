@@ -72,8 +72,8 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
     const float *row =
         t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
-    camber_segment s =
-        camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
+    camber_segment s;
+    camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear, &s);
     camber_segments_with_edges(&s);
     bool drawn = ends && row[0] >= 0.0f;
     if (t->stages->arc_lengths)

@@ -164,9 +164,10 @@ CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {
 
 /* A row of cells is about to be changed: without edges so far, it changes nothing. */
 CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
-    if (c->area_rows >> row & 1u)
+    const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row);
+    if (c->edged & cells)
         return;
-    c->area_rows |= 1u << row;
+    c->edged |= cells;
     for (int i = CAMBER_TILE_CELLS * row; i < CAMBER_TILE_CELLS * (row + 1); i++)
         for (int v = 0; v < CAMBER_VECTORS; v++)
             c->sums[i][CAMBER_AREA_HERE][v] = c->sums[i][CAMBER_AREA_ON][v] = CAMBER_REAL(0.0f);
@@ -363,13 +364,14 @@ CAMBER_FN camber_u64 camber_area_find(camber_tile_state *c, camber_tile_rows whe
     camber_u64 found = 0;
     *whole = 0;
     for (int row = where.first; row <= where.last; row++) {
-        if (c->area_rows >> row & 1u)
+        const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row);
+        if (c->edged & cells)
             found |= (camber_u64)camber_area_find_row(c, row) << (CAMBER_TILE_CELLS * row);
         else if (is_inside)
-            *whole |= (camber_u64)255 << (CAMBER_TILE_CELLS * row);
+            *whole |= cells;
     }
     *whole &= ~(c->done | c->filled);
-    c->area_rows = 0;
+    c->edged = 0;
     c->winding = 0;
     return found & ~(c->done | c->filled);
 }

@@ -27,12 +27,9 @@ static inline void restore_planes(global const float *planes, camber_real *to, c
                     CAMBER_LOAD(plane_at(plane + k, i, v), planes);
 }
 
-/* The cells whose sums are more than nothing: a union's, or of areas those in rows of cells that have edges. */
+/* The cells whose sums are more than nothing. */
 static inline ulong cells_with_sums(const camber_tile_state *c) {
-    ulong cells = c->now.mode == CAMBER_BRUSH_UNION ? c->brushed : 0;
-    for (int j = 0; j < CAMBER_TILE_CELLS; j++)
-        cells |= c->area_rows >> j & 1u ? 255ul << (CAMBER_TILE_CELLS * j) : 0;
-    return cells;
+    return c->now.mode == CAMBER_BRUSH_UNION ? c->brushed : c->edged;
 }
 
 /* Spills the state of rows of cells [first, last]. now: the brush, and which levels are open. */
@@ -47,7 +44,8 @@ static inline void spill_cells(camber_tile_state *c, global float *spill, camber
             bits[CAMBER_TILE_CELLS * k + j] = (uchar)(of[k] >> (CAMBER_TILE_CELLS * j));
         vstore8(vload8((size_t)j, c->blend_count), (size_t)j, blend_count);
         rows[j] = now;
-        rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] = (camber_u32)c->winding << 1 | (c->area_rows >> j & 1u);
+        rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] =
+            (camber_u32)c->winding << 1 | (camber_u32)(c->edged >> (CAMBER_TILE_CELLS * j) & 1ul);
     }
     spill_planes(planes, c->brush[0], 0, 1, c->brushed);
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
@@ -97,7 +95,7 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
         if (rows[j] == CAMBER_SPILL_FULL)
             continue;
         c->winding = (int)word >> 1;
-        c->area_rows |= (word & 1u) << j;
+        c->edged |= (255ul * (word & 1u)) << (CAMBER_TILE_CELLS * j);
     }
     restore_planes(planes, c->sums[0][0], s.sums, 3, cells_with_sums(c));
 #if CAMBER_RASTER_RICH

@@ -45,9 +45,9 @@ typedef struct camber_tile_state {
     camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; a bit each */
     camber_u64 done;                            /* cells in which nothing below shows */
     camber_u64 filled;                          /* cells in which no more of the same brush shows */
+    camber_u64 edged;                           /* of rings: cells of the rows of cells in which they have edges */
     int is_open[CAMBER_LEVELS];
     int winding;                         /* of the brush's rings around the tile's top left corner */
-    camber_u32 area_rows;                /* rows of cells in which edges have changed the winding; a bit each */
     camber_u8 blend_count[CAMBER_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
 #if CAMBER_HAS_MASKS
@@ -87,9 +87,8 @@ CAMBER_FN int camber_tile_level(const camber_tile_state *c) {
 CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_GLOBAL const camber_brush *first) {
     for (int i = 0; i < CAMBER_CELLS; i++)
         c->blend_count[i] = 0;
-    c->brushed = c->filled = 0;
+    c->brushed = c->filled = c->edged = 0;
     c->winding = 0;
-    c->area_rows = 0;
     for (int k = 0; k < CAMBER_LEVELS; k++) {
         c->touched[k] = 0;
         c->is_open[k] = k == CAMBER_PICTURE;

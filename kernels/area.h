@@ -210,14 +210,12 @@ CAMBER_FN camber_mask camber_cell_at(camber_real at, camber_mask counts, float m
     return CAMBER_TO_INTEGERS((counts & (cell > none)) ? (cell < most ? cell : CAMBER_REAL(most)) : none);
 }
 
-/* Cuts edges at the tile's left side. enters: those that it cuts. */
-CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camber_mask from_left) {
+/* Cuts the edges that enter the tile through its left side on their way down, and those that leave it there. */
+CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camber_mask leaves) {
     camber_ring_edges *e = &t->in;
     const camber_real none = CAMBER_REAL(0.0f), side = CAMBER_REAL((float)CAMBER_TILE_PX);
     const camber_real at = e->y0 - e->x0 * ((e->y1 - e->y0) / (e->x1 - e->x0));
     const camber_real y = at < e->y0 ? e->y0 : at > e->y1 ? e->y1 : at;
-    const camber_mask leaves = enters & (from_left == 0);
-    enters &= from_left;
     t->turn = enters ? -e->down : leaves ? e->down : none;
     t->turn_at = (enters | leaves) ? y : none;
     t->turn = t->turn_at < side ? t->turn : none;
@@ -238,9 +236,8 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     e->x1 = e->x1 - where.left;
     e->y0 = (crosses ? CAMBER_REAL(where.top) : e->y0) - where.top;
     e->y1 = e->y1 - where.top;
-    const camber_mask from_left = e->x0 < 0.0f, to_left = e->x1 < 0.0f;
-    const camber_mask meets = wanted & (e->y1 >= 0.0f) & (e->y0 < side) & ((from_left & to_left) == 0);
-    camber_cut_at_left(t, meets & (from_left | to_left), from_left);
+    const camber_mask meets = wanted & (e->y1 >= 0.0f) & (e->y0 < side) & ((e->x0 >= 0.0f) | (e->x1 >= 0.0f));
+    camber_cut_at_left(t, meets & (e->x0 < 0.0f), meets & (e->x1 < 0.0f));
     const camber_mask covers = meets & (e->y1 - e->y0 > CAMBER_AREA_FLAT_PX) & ((e->x0 < side) | (e->x1 < side));
     const camber_real high = covers ? e->y1 - e->y0 : CAMBER_REAL(1.0f);
     t->slope = (e->x1 - e->x0) / high;

@@ -44,7 +44,7 @@ typedef struct camber_target_args {
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state. That is six sets of cells and a count of each cell, two words for each row of cells, and planes
+ * spills its state. That is seven sets of cells and a count of each cell, two words for each row of cells, and planes
  * from word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture.
  */
 typedef struct camber_spill_args {
@@ -54,9 +54,10 @@ typedef struct camber_spill_args {
 } camber_spill_args;
 
 #define CAMBER_SPILL_WORDS 48
-#define CAMBER_SPILL_BLEND_COUNTS 48 /* the byte at which they begin, behind six sets of cells with a bit a cell */
-#define CAMBER_SPILL_ROWS 28         /* the word at which the rows' words begin */
-#define CAMBER_SPILL_WINDINGS 36     /* the same: twice the winding of an area's rings, and whether they have edges */
+#define CAMBER_SPILL_SETS 7
+#define CAMBER_SPILL_BLEND_COUNTS 56 /* the byte at which they begin, behind the sets of cells with a bit a cell */
+#define CAMBER_SPILL_ROWS 30         /* the word at which the rows' words begin */
+#define CAMBER_SPILL_WINDINGS 38     /* the same: the winding of an area's rings */
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
 #define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
 

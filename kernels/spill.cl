@@ -38,14 +38,14 @@ static inline void spill_cells(camber_tile_state *c, global float *spill, camber
     global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global camber_u32 *rows = (global camber_u32 *)spill + CAMBER_SPILL_ROWS;
     global float *planes = spill + CAMBER_SPILL_WORDS;
-    const ulong of[6] = {c->brushed, c->filled, c->done, c->touched[0], c->touched[1], c->touched[2]};
+    const ulong of[CAMBER_SPILL_SETS] = {c->brushed,    c->filled,     c->done, c->touched[0],
+                                         c->touched[1], c->touched[2], c->edged};
     for (int j = first; j <= last; j++) {
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < CAMBER_SPILL_SETS; k++)
             bits[CAMBER_TILE_CELLS * k + j] = (uchar)(of[k] >> (CAMBER_TILE_CELLS * j));
         vstore8(vload8((size_t)j, c->blend_count), (size_t)j, blend_count);
         rows[j] = now;
-        rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] =
-            (camber_u32)c->winding << 1 | (camber_u32)(c->edged >> (CAMBER_TILE_CELLS * j) & 1ul);
+        rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] = (camber_u32)c->winding;
     }
     spill_planes(planes, c->brush[0], 0, 1, c->brushed);
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
@@ -65,10 +65,10 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
     global const uchar *bits = (global const uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global const camber_u32 *rows = (global const camber_u32 *)spill + CAMBER_SPILL_ROWS;
     global float *planes = spill + CAMBER_SPILL_WORDS;
-    ulong of[6] = {0, 0, 0, 0, 0, 0};
+    ulong of[CAMBER_SPILL_SETS] = {0};
     camber_u32 now = CAMBER_SPILL_FULL;
     for (int j = first; j <= last; j++) {
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < CAMBER_SPILL_SETS; k++)
             of[k] |= (ulong)bits[CAMBER_TILE_CELLS * k + j] << (CAMBER_TILE_CELLS * j);
         vstore8(vload8((size_t)j, blend_count), (size_t)j, c->blend_count);
         now = rows[j] == CAMBER_SPILL_FULL ? now : rows[j];
@@ -90,13 +90,10 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
     if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
     c->now = brushes[now & CAMBER_SPILL_BRUSH];
-    for (int j = first; j <= last; j++) {
-        const camber_u32 word = rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
-        if (rows[j] == CAMBER_SPILL_FULL)
-            continue;
-        c->winding = (int)word >> 1;
-        c->edged |= (255ul * (word & 1u)) << (CAMBER_TILE_CELLS * j);
-    }
+    c->edged = of[6];
+    for (int j = first; j <= last; j++)
+        if (rows[j] != CAMBER_SPILL_FULL)
+            c->winding = (int)rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
     restore_planes(planes, c->sums[0][0], s.sums, 3, cells_with_sums(c));
 #if CAMBER_RASTER_RICH
     if (c->now.mode == CAMBER_BRUSH_MASKED)

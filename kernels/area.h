@@ -74,7 +74,7 @@ CAMBER_FN int camber_crossing_times(camber_u32 place) {
 /* The first column of tiles whose corners lie right of x. */
 CAMBER_FN int camber_column_after(float x, float left, int columns) {
     const float at = (x - left) * (1.0f / CAMBER_TILE_PX);
-    return at < 0.0f ? 0 : at >= (float)columns ? columns : (int)at + 1;
+    return at >= 0.0f ? (at < (float)columns ? (int)at + 1 : columns) : 0; /* also of NaN */
 }
 
 /* Writes the crossings of one brush, and forgets its turns. Returns how many there are now. */
@@ -258,7 +258,7 @@ typedef struct camber_tile_edge {
 /* Where an edge is at y, as a column of cells. */
 CAMBER_FN int camber_edge_column(const camber_tile_edge *e, float y) {
     const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y, x = e->x0 + (at - e->y0) * e->slope;
-    return x < 0.0f ? 0 : x >= (float)CAMBER_TILE_PX ? CAMBER_TILE_CELLS : (int)(x * (1.0f / CAMBER_CELL_PX));
+    return x > 0.0f ? (x < (float)CAMBER_TILE_PX ? (int)(x * (1.0f / CAMBER_CELL_PX)) : CAMBER_TILE_CELLS) : 0;
 }
 
 /* The piece of an edge in each row of pixels of a vector. height: with the edge's sign. */

@@ -112,7 +112,7 @@ async function openPage(browser, style, zoom, options = {}) {
     return page;
 }
 // All tiles in view are drawn once this says so, in the frame before.
-const waitForTiles = page => page.waitForFunction(() => document.body.dataset.loading === '0', null, {timeout: 20000});
+const waitForTiles = page => page.waitForFunction(() => document.body.dataset.loading === '0', null, {timeout: 60000});
 const waitForFrames = (page, count) => page.evaluate(frames => new Promise(resolve => {
     const next = () => frames-- > 0 ? requestAnimationFrame(next) : resolve();
     next();
@@ -142,7 +142,7 @@ async function checkMoves(browser) {
     const page = await openPage(browser, 'roads', 14);
     // The hash follows when the map rests.
     const readPlace = async () => {
-        await page.waitForFunction(() => !isAsked && glide === 0 && hashTimer === 0, null, {timeout: 20000});
+        await page.waitForFunction(() => !isAsked && glide === 0 && hashTimer === 0, null, {timeout: 60000});
         return page.evaluate(() => location.hash.slice(1).split('/').map(Number));
     };
     const [, , east] = await readPlace(), start = await page.evaluate(() => performance.now());

@@ -25,7 +25,7 @@ import png_rows  # noqa: E402
 
 VIEWER, TOOL, CITY, OUT = (os.path.abspath(argument) for argument in sys.argv[1:5])
 WIDTH, HEIGHT = 480, 320
-PATIENCE_S = 60
+PATIENCE_S = 120
 # The title's digits say where the camera is to some thousandths of a px; in a few pixels a point stays or goes by that.
 MOST_LEVELS, MOST_OTHERS = 2, 1e-4
 
@@ -80,6 +80,14 @@ class Screen:
         with open(os.path.join(folder, "rc.xml"), "w", encoding="utf-8") as file:
             file.write(MANAGER)
         self.manager = subprocess.Popen(["openbox", "--config-file", file.name], env=self.environment, stderr=subprocess.DEVNULL)
+        self.wait_for_manager()
+
+    def wait_for_manager(self):
+        """A window that is opened while the manager starts may never be shown, for which SDL waits for ever."""
+        begin = time.monotonic()
+        while subprocess.run(["xdotool", "get_num_desktops"], env=self.environment, capture_output=True).returncode != 0:
+            expect(time.monotonic() - begin < PATIENCE_S, "openbox does not start")
+            time.sleep(0.1)
 
     def close(self):
         for process in (self.manager, self.server):

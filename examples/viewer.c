@@ -6,7 +6,8 @@
  * evaluates the style for another zoom, in the back scene, of a context of its own. Then the two change places. So a
  * frame never waits; while the user zooms, lines are as wide as they were some frames ago.
  *
- *     drag: pan    right drag: turn, tilt    wheel: zoom    t: theme    g: graph    n: north    q: quit
+ *     drag, arrows: pan    right drag: turn, tilt    q, e: turn    w, s: tilt    n: north up, no tilt
+ *     wheel, +, -: zoom    t: theme    g: graph of the frames' times    Escape: quit
  */
 #include <EGL/egl.h>
 #include <GLES3/gl3.h>
@@ -66,12 +67,13 @@ typedef struct viewer {
 
     SDL_Thread *thread;
     SDL_sem *begin;
-    SDL_atomic_t state;
+    SDL_atomic_t state, leave;
     job order;        /* written while the worker is idle */
     char *style_text; /* the worker's: the last file that was a style; NULL: none */
     size_t style_bytes;
-    bool order_failed, leave;
-    int scenes; /* made so far */
+    bool order_failed;
+    bool is_paired; /* both sides have scenes: the main thread may not look while the worker is busy */
+    int scenes;     /* made so far */
 
     SDL_Window *window;
     uint32_t width, height; /* device px */
@@ -281,7 +283,7 @@ static bool make_scene(viewer *v, side *s, const job *order) {
 static int work(void *user) {
     viewer *v = user;
     SDL_SetThreadPriority(SDL_THREAD_PRIORITY_LOW); /* frames come first */
-    while (SDL_SemWait(v->begin) == 0 && !v->leave) {
+    while (SDL_SemWait(v->begin) == 0 && !SDL_AtomicGet(&v->leave)) {
         v->order_failed = !make_scene(v, v->back, &v->order);
         SDL_AtomicSet(&v->state, STATE_DONE);
         SDL_PushEvent(&(SDL_Event){.type = SDL_USEREVENT}); /* the main thread may be asleep */
@@ -317,6 +319,7 @@ static void exchange(viewer *v, bool at_rest) {
             v->quit = true;
         }
         v->redraw = true;
+        v->is_paired = v->front->scene && v->back->scene;
         SDL_AtomicSet(&v->state, STATE_IDLE);
     }
     if (SDL_AtomicGet(&v->state) != STATE_IDLE || v->quit)
@@ -596,7 +599,7 @@ static void write_title(const viewer *v) {
 
 /* One turn of the main loop: what the user did, what the worker made, and a picture where it is another. */
 static bool turn(viewer *v, const stand *start) {
-    const bool is_ready = v->front->scene && (v->back->scene || !v->options.benchmark);
+    const bool is_ready = v->front->scene && (v->is_paired || !v->options.benchmark);
     take_events(v);
     look_at_style(v);
     if (v->options.benchmark && is_ready)
@@ -628,11 +631,17 @@ static void report(const viewer *v, double seconds) {
            v->times[count * 95 / 100], v->times[count - 1], v->scenes, v->coarsest_px);
 }
 
+/* Frames that warm up come before those that are asked for. */
+static bool is_over(const viewer *v) {
+    const int before = v->options.benchmark && !v->is_warm ? WARM_UPS : 0;
+    return v->options.frames && v->frame_count >= before + v->options.frames;
+}
+
 static bool run(viewer *v) {
     stand start = v->at;
     double begin_ms = now_ms();
     bool done = true;
-    while (done && !v->quit && !(v->options.frames && v->frame_count >= v->options.frames)) {
+    while (done && !v->quit && !is_over(v)) {
         if (v->frame_count == 0 && !v->is_warm)
             start = v->at;
         if (v->options.benchmark && !v->is_warm && v->frame_count == WARM_UPS) { /* the kernels are loaded */
@@ -643,7 +652,7 @@ static bool run(viewer *v) {
         }
         done = turn(v, &start);
     }
-    if (v->options.benchmark && v->frame_count)
+    if (v->is_warm && v->frame_count)
         report(v, (now_ms() - begin_ms) / 1000);
     return done && v->frame_count;
 }
@@ -708,7 +717,7 @@ static bool start_worker(viewer *v) {
 
 /* The last made goes first; a worker that is busy ends what it does. */
 static void close_viewer(viewer *v) {
-    v->leave = true;
+    SDL_AtomicSet(&v->leave, 1);
     if (v->thread) {
         SDL_SemPost(v->begin);
         SDL_WaitThread(v->thread, NULL);
@@ -788,7 +797,7 @@ static bool open_viewer(viewer *v) {
 
 int main(int argc, char **argv) {
     viewer v = {0};
-    /* What PoCL and camber want, before the first thread (docs/drivers.md). */
+    /* PoCL and camber want these before the first thread (docs/drivers.md). */
     setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
     setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0);
     if (!parse_options(argc, argv, &v.options)) {

@@ -492,6 +492,20 @@ static void test_bad_command_lines(void **state) {
     assert_int_equal(viewer_main(7, (char **)(uintptr_t)benchmark), 0);
 }
 
+/* Fewer frames than warm up: the ones that count come after these all the same. */
+static void test_short_benchmark(void **state) {
+    (void)state;
+    char *arguments[] = {
+        (char *)(uintptr_t) "viewer",   (char *)(uintptr_t)CITY,      (char *)(uintptr_t) "--draw",
+        (char *)(uintptr_t) "cl",       (char *)(uintptr_t) "--size", (char *)(uintptr_t) "64x48",
+        (char *)(uintptr_t) "--frames", (char *)(uintptr_t) "3",      (char *)(uintptr_t) "--benchmark"};
+    viewer v = {0};
+    assert_true(parse_options(9, arguments, &v.options));
+    assert_true(open_viewer(&v) && run(&v));
+    assert_true(v.is_warm && v.frame_count == 3);
+    close_viewer(&v);
+}
+
 /* Whether SDL gives a GLES context without a screen. */
 static bool has_gl(void) {
     SDL_Window *window = NULL;
@@ -521,6 +535,7 @@ int main(void) {
         cmocka_unit_test(test_any_events),
         cmocka_unit_test(test_nothing_grows),
         cmocka_unit_test(test_bad_command_lines),
+        cmocka_unit_test(test_short_benchmark),
     };
     const struct CMUnitTest gl_tests[] = {
         cmocka_unit_test_prestate(test_wheel_keys_and_turns, &by_gl),

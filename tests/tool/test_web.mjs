@@ -17,6 +17,8 @@ const VIEWS = [['roads', 14], ['roads', 12.3], ['roads', 14.62], ['roads', 15.9]
 const MEAN = {roads: 0.25, lines: 0.25, areas: 0.4};
 // Of 255, a pixel's largest channel. A point that is rounded may decide between miter and bevel, and shift a dash.
 const WORST = {roads: 40, lines: 255, areas: 96};
+const moveFrom = (from, to) =>
+    ['interpolate', ['linear'], ['zoom'], 12, ['literal', from], 16, ['literal', to]];
 // All that the page draws of lines.
 const STYLE = {version: 8, sources: {}, layers: [
     {id: 'ground', type: 'background', paint: {'background-color': '#ffffff'}},
@@ -33,7 +35,13 @@ const STYLE = {version: 8, sources: {}, layers: [
         layout: {'line-cap': 'square', 'line-join': 'bevel'},
         paint: {'line-color': '#000000', 'line-gap-width': 12, 'line-width': 2}},
     {id: 'blurred', type: 'line', filter: ['in', 'type', 'motorway', 'trunk'],
-        paint: {'line-color': '#a020a0', 'line-blur': 4, 'line-width': 12, 'line-translate': [10, 4]}},
+        paint: {'line-color': '#a020a0', 'line-blur': 4, 'line-width': 12,
+            'line-translate': moveFrom([10, 4], [20, -16])}},
+]};
+// Its background begins between two zooms of tiles.
+const LATE_STYLE = {version: 8, sources: {}, layers: [
+    {id: 'ground', type: 'background', minzoom: 12.6, paint: {'background-color': '#204060'}},
+    {id: 'shores', type: 'line', filter: ['==', 'kind', 'shore'], paint: {'line-color': '#c0a070', 'line-width': 3}},
 ]};
 const FRAMES = 60;  // of a pan
 
@@ -46,13 +54,15 @@ function check(right, what, found = '') {
 
 // Stars with a hole, and lines along some: neighbours overlap, and tiles' borders cross them.
 const AREA_STYLE = {version: 8, sources: {}, layers: [
-    {id: 'ground', type: 'background', paint: {'background-color': '#f6f2ea'}},
+    {id: 'ground', type: 'background', paint: {
+        'background-color': ['interpolate', ['linear'], ['zoom'], 12, '#f6f2ea', 16, '#a0d0c0']}},
     {id: 'lakes', type: 'fill', filter: ['==', 'kind', 'lake'], paint: {'fill-color': '#a6cfdd'}},
     {id: 'woods', type: 'fill', filter: ['==', 'kind', 'wood'],
         paint: {'fill-color': '#70a050', 'fill-opacity': ['interpolate', ['linear'], ['zoom'], 12, 0.9, 15, 0.5]}},
     {id: 'shores', type: 'line', filter: ['==', 'kind', 'shore'], layout: {'line-join': 'round', 'line-cap': 'round'},
         paint: {'line-color': '#305070', 'line-width': 3}},
-    {id: 'islands', type: 'fill', filter: ['==', 'kind', 'island'], paint: {'fill-color': '#f4d090'}},
+    {id: 'islands', type: 'fill', filter: ['==', 'kind', 'island'], paint: {
+        'fill-color': '#f4d090', 'fill-translate': moveFrom([14, -6], [30, 10])}},
 ]};
 function makeAreas() {
     const features = [], add = (kind, type, coordinates) =>
@@ -76,18 +86,22 @@ function makeAreas() {
 // ---- Tiles in a folder, and a server of files ----
 
 const styleOf = style => style === 'roads' ? style : join(folder, style + '.json');
-const inputOf = style => style === 'areas' ? join(folder, 'areas.geojson') : input;
-function makeTiles(style) {
-    const tiles = join(folder, style);
+const inputOf = style => style === 'areas' || style === 'late' ? join(folder, 'areas.geojson') : input;
+function makeTiles(style, tiles = join(folder, style), ...more) {
     rmSync(tiles, {recursive: true, force: true});
     execFileSync(tool, ['tiles', '-q', inputOf(style), '--style', styleOf(style), '--format', 'glb', '--tile-size',
-        '512', '--min-zoom', '12', '--max-zoom', '15', '-o', tiles + '/']);
+        '512', '--min-zoom', '12', '--max-zoom', '15', ...more, '-o', tiles + '/']);
     return tiles;
 }
 
+let isBusy = () => false; // a path's name: whether its file cannot be had now
 const server = createServer((request, response) => {
     const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
     let bytes = null;
+    if (isBusy(path)) {
+        response.writeHead(503).end();
+        return;
+    }
     try {
         bytes = readFileSync(path === '/' ? pagePath : join(folder, path));
     } catch {
@@ -187,15 +201,88 @@ async function checkPointer(browser) {
     await page.context().close();
 }
 
-// A screen with two px a CSS px gets as many.
+// A screen with two px a CSS px gets as many, from tiles that were made for one and for two.
 async function checkDensity(browser, blank) {
-    const page = await openPage(browser, 'roads', 14, {deviceScaleFactor: 2}), drawn = join(folder, 'drawn.png');
+    const drawn = join(folder, 'drawn.png');
+    makeTiles('roads', join(folder, 'dense'), '--ratio', '2');
     execFileSync(tool, ['render', '-q', '-f', input, '--style', 'roads', '--zoom', '14', '--ratio', '2', '--center',
         CENTER.join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', drawn]);
-    const found = await comparePictures(blank, await shoot(page, 'dense'), readFileSync(drawn));
-    console.log(`# two px a CSS px: mean ${found.mean.toFixed(3)} of 255, worst ${found.most}`);
-    check(found.same && found.mean < MEAN.roads && found.most <= WORST.roads,
-        'so has a picture of twice the px', found);
+    for (const tiles of ['roads', 'dense']) {
+        const page = await openPage(browser, tiles, 14, {deviceScaleFactor: 2});
+        const zooms = await page.evaluate(() => [...tiles.keys()].map(name => parseInt(name)));
+        const found = await comparePictures(blank, await shoot(page, tiles + '-2'), readFileSync(drawn));
+        console.log(`# two px a CSS px, ${tiles}: mean ${found.mean.toFixed(3)} of 255, worst ${found.most}`);
+        check(found.same && found.mean < MEAN.roads && found.most <= WORST.roads && zooms.every(z => z === 14),
+            `so has a picture of twice the px, from tiles in ${tiles}`, {found, zooms});
+        await page.context().close();
+    }
+}
+
+async function checkBackground(browser) {
+    makeTiles('late');
+    complaints.length = 0;
+    for (const [zoom, color] of [[12.3, [246, 242, 234]], [12.9, [32, 64, 96]], [14, [32, 64, 96]]]) {
+        const page = await openPage(browser, 'late', zoom);
+        const found = await page.evaluate(() => background.map(value => Math.round(255 * value)));
+        check(found.join() === color.join() && complaints.length === 0,
+            `a background that begins at zoom 12.6 is right at ${zoom}`, {found, complaints});
+        await page.context().close();
+    }
+}
+
+// A server that is busy: the page says so, and asks again.
+async function checkSubtrees(browser) {
+    isBusy = path => path.endsWith('.subtree');
+    const page = await openPage(browser, 'roads', 14), told = await page.locator('#notice').textContent();
+    check(/is missing: subtree .*: 503/.test(told), 'subtrees that cannot be had are told', told);
+    isBusy = () => false;
+    await page.waitForFunction(() => document.getElementById('notice').textContent === '', null, {timeout: 60000});
+    const state = await page.locator('#state').textContent();
+    check(/ [1-9][0-9]* tiles/.test(state), 'and asked for again', state);
+    await page.context().close();
+}
+
+// What is forgotten is freed, also where it comes later, and nothing newer of that name is.
+async function checkMemory(browser) {
+    const page = await openPage(browser, 'roads', 14);
+    const found = await page.evaluate(async () => {
+        const [name] = [...tiles].find(([, entry]) => entry.tile), place = name.split('/').map(Number);
+        const create = gl.createTexture, free = gl.deleteTexture, read = readElements, isRight = [];
+        let live = 0;
+        gl.createTexture = () => {
+            live++;
+            return create.call(gl);
+        };
+        gl.deleteTexture = texture => {
+            live -= texture !== null;
+            free.call(gl, texture);
+        };
+        const bytes = await (await fetch(`${base}${name}.glb`)).arrayBuffer();
+        readElements = () => {
+            throw new Error('full');
+        };
+        try {
+            makeTile(bytes);
+        } catch (error) {
+            isRight.push(error.message === 'full' && live === 0);
+        }
+        readElements = read;
+        for (const isAborted of [false, true]) {
+            forget(name, tiles.get(name));
+            live = 0;
+            const old = tileAt(...place);
+            forget(name, old);
+            if (isAborted)
+                old.abort.abort();
+            const newer = tileAt(...place);
+            const isDone = () => newer.state === 'ready' && performance.now() > start + 300, start = performance.now();
+            while (!isDone() && performance.now() < start + 20000)
+                await new Promise(resolve => setTimeout(resolve, 20));
+            isRight.push(tiles.get(name) === newer && newer.state === 'ready' && !old.tile && !old.picture);
+        }
+        return [...isRight, performance.getEntriesByType('measure').length === 0];
+    });
+    check(found.length === 4 && found.every(right => right), 'what is forgotten is freed', found);
     await page.context().close();
 }
 
@@ -232,12 +319,14 @@ async function checkServe(browser) {
         });
     });
     const serve = spawn(tool, ['serve', '-q', makeTiles('roads') + '/', '--listen', `127.0.0.1:${port}`],
-        {stdio: 'ignore'});
-    const gone = new Promise(resolve => serve.on('exit', resolve));
+        {stdio: ['ignore', 'ignore', 'pipe']});
+    let complaint = '';
+    serve.stderr.on('data', text => complaint += text);
+    const gone = new Promise(resolve => serve.on('close', resolve));
     const isReady = () => fetch(`http://127.0.0.1:${port}/health`).then(answer => answer.ok, () => false);
     for (let wait = 0; wait < 100 && serve.exitCode === null && !await isReady(); wait++)
         await new Promise(resolve => setTimeout(resolve, 100));
-    if (serve.exitCode === null) { // else camber was built without serve
+    if (serve.exitCode === null) {
         const page = await openPage(browser, encodeURIComponent(`http://127.0.0.1:${port}/tiles.json`), 14);
         const state = await page.locator('#state').textContent(), told = await page.locator('#notice').textContent();
         check(/ [1-9][0-9]* tiles/.test(state) && told === '' && complaints.length === 0,
@@ -245,6 +334,9 @@ async function checkServe(browser) {
         await page.context().close();
         serve.kill();
         await gone;
+    } else {
+        await gone;
+        check(complaint.includes('this build has no server'), 'camber serve starts, if it was built', complaint);
     }
 }
 
@@ -264,6 +356,7 @@ const browser = await launchBrowser('--use-gl=angle', '--use-angle=gl-egl');
 mkdirSync(folder, {recursive: true});
 writeFileSync(join(folder, 'lines.json'), JSON.stringify(STYLE));
 writeFileSync(join(folder, 'areas.json'), JSON.stringify(AREA_STYLE));
+writeFileSync(join(folder, 'late.json'), JSON.stringify(LATE_STYLE));
 writeFileSync(join(folder, 'areas.geojson'), JSON.stringify(makeAreas()));
 try {
     const blank = await browser.newPage();
@@ -277,6 +370,9 @@ try {
     await checkMoves(browser);
     await checkPointer(browser);
     await checkDensity(browser, blank);
+    await checkBackground(browser);
+    await checkMemory(browser);
+    await checkSubtrees(browser);
     await checkDamage(browser);
     await checkServe(browser);
     await checkNoTiles(browser);

@@ -393,7 +393,7 @@ static void put_areas(const page *p) {
           p->to);
     json_array_foreach(rows_of(r, "city"), i, row)
         fprintf(p->to, "%s %s in %.1f ms, Mapnik in %.1f times that",
-                i ? ";" : " The style city, areas and lines:", bench_text(row, "scene"),
+                i ? ";" : " The style city, areas and lines, beside Mapnik on one thread:", bench_text(row, "scene"),
                 bench_number(row, "cl_frame_ms"), bench_number(row, "mapnik_ms") / bench_number(row, "cl_frame_ms"));
     fputs(json_array_size(rows_of(r, "city")) ? ".\n\n" : "\n\n", p->to);
     put_machine(p, r);

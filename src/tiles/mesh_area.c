@@ -263,8 +263,8 @@ static camber_status fill_row(filler *f, size_t first, size_t end) {
     camber_status status = f->tess ? CAMBER_OK : open_tess(f);
     if (status != CAMBER_OK)
         return status;
-    if (!camber_mesh_tile_number(tile, plan->pair_rows[rings[first].pair], &f->row))
-        return CAMBER_ERROR_MEMORY;
+    if ((status = camber_mesh_tile_number(tile, plan->pair_rows[rings[first].pair], &f->row)) != CAMBER_OK)
+        return status;
     f->glu.begin_polygon(f->tess, f);
     for (size_t i = first; i < end; i++)
         if (touches(f, rings + i))

@@ -103,7 +103,7 @@ typedef struct cutter {
     double limit;              /* of what 16 bits hold, px from the centre */
     double scale;              /* units a px */
     bool sentinel_is_used;     /* the last sentinel has the neighbour of a ring */
-    bool failed;               /* no memory */
+    camber_status failed;      /* CAMBER_OK: not */
 } cutter;
 
 typedef struct cut_point {
@@ -154,7 +154,7 @@ static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
         !camber_grow(tile->context, &tile->records, &tile->record_capacity, tile->record_count + 1,
                      sizeof *tile->records) ||
         !tile->records) {
-        c->failed = true;
+        c->failed = CAMBER_ERROR_MEMORY;
         return;
     }
     const camber_mesh_record made = {
@@ -209,19 +209,25 @@ static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, boo
     return own && !(last & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
 }
 
-bool camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number) {
+camber_status camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number) {
     if (!tile->row_slots[row]) {
+        if (tile->row_count == INT16_MAX)
+            return camber_fail(tile->context, CAMBER_ERROR_LIMIT,
+                               "tiles: more than %d kinds of lines and areas in a mesh tile; let the style tell fewer "
+                               "apart, or begin at a higher --min-zoom",
+                               INT16_MAX);
         if (!camber_grow(tile->context, &tile->rows, &tile->row_capacity, tile->row_count + 1, sizeof *tile->rows))
-            return false;
+            return CAMBER_ERROR_MEMORY;
         tile->rows[tile->row_count++] = row;
         tile->row_slots[row] = (uint32_t)tile->row_count;
     }
     *number = (uint16_t)(tile->row_slots[row] - 1);
-    return true;
+    return CAMBER_OK;
 }
 
 static void number_row(cutter *c, line_walk *w) {
-    c->failed |= !camber_mesh_tile_number(c->tile, c->picture->plan->pair_rows[w->line->pair], &w->row);
+    const camber_status status = camber_mesh_tile_number(c->tile, c->picture->plan->pair_rows[w->line->pair], &w->row);
+    c->failed = c->failed ? c->failed : status;
     w->has_row = true;
 }
 
@@ -386,7 +392,8 @@ static void put_line(cutter *c, const camber_mesh_line *line) {
         return;
     tile->has_arc_length |= plan->has_arc_length[row];
     const camber_mesh_range range = {set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1};
-    c->failed |= !end_range(tile->context, &tile->ranges, &tile->range_count, &tile->range_capacity, range);
+    if (!end_range(tile->context, &tile->ranges, &tile->range_count, &tile->range_capacity, range))
+        c->failed = CAMBER_ERROR_MEMORY;
 }
 
 static camber_status clear(camber_mesh_tile *tile, const camber_mesh_plan *plan) {
@@ -421,13 +428,7 @@ camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_pi
     for (size_t i = 0; i < picture->line_count && !c.failed; i++)
         if (touches(&c, picture->lines + i))
             put_line(&c, picture->lines + i);
-    if (c.failed)
-        return CAMBER_ERROR_MEMORY;
-    if (tile->row_count > INT16_MAX)
-        return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "tiles: %zu kinds of lines in a mesh tile, and %d fit; let the style tell fewer apart",
-                           tile->row_count, INT16_MAX);
-    return CAMBER_OK;
+    return c.failed;
 }
 
 void camber_mesh_tile_free(camber_mesh_tile *tile) {

@@ -89,8 +89,8 @@ typedef struct camber_mesh_tile {
 camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_picture *picture, uint32_t tile_px,
                                    uint32_t x, uint32_t y, camber_mesh_tile *tile);
 void camber_mesh_tile_free(camber_mesh_tile *tile);
-/* The tile's number of a row of the plan. false: no memory. */
-bool camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number);
+/* The tile's number of a row of the plan. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (records have 15 bits). */
+camber_status camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number);
 /* Notes that the triangles from an index on are of the set. false: no memory. */
 bool camber_mesh_tile_end_fill(camber_mesh_tile *tile, size_t set, size_t first);
 

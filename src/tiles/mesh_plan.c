@@ -85,7 +85,8 @@ float camber_mesh_plan_offset(const camber_mesh_plan *plan, size_t layer, uint32
     return offset_of(plan, layer, plan->row_pairs[row], sample);
 }
 
-/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and gives its reach. */
+/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and gives its reach. Beyond the stroke that
+ * is an offset or a translation: the camera has it as what its window grows by. */
 static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t pair) {
     camber_stroke *stroke = plan->zoom->strokes + pair;
     float reach = -1.0f;
@@ -104,6 +105,8 @@ static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t 
                                      shrunk * hypotf(paint.translate_x_px, paint.translate_y_px) + 1.0f);
         }
     stroke->offset_px = 0.0f; /* tiles have the line, and shaders move it */
+    const float beyond = reach - (float)camber_plan_stroke_reach(stroke);
+    plan->zoom->plan.translate_px = fmaxf(plan->zoom->plan.translate_px, beyond);
     return reach;
 }
 

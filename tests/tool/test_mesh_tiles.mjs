@@ -151,6 +151,22 @@ check(points > 1000, 'there are points to compare', points);
 check(apart[0] <= TOLERANCE, 'each point of a tile is one of the tessellation', apart[0]);
 check(apart[1] <= TOLERANCE, 'each point of the tessellation is in its tile', apart[1]);
 
+// ---- What reaches into a tile from outside of its picture ----
+
+// A road 20 px west of the meridian 0, where a picture of tiles begins at zoom 4; its right is the east.
+const road = join(folder, 'road.geojson'), longitude = -20 / (256 * 16) * 360;
+writeFileSync(road, JSON.stringify({type: 'FeatureCollection', features: [{type: 'Feature', properties: {},
+    geometry: {type: 'LineString', coordinates: [[longitude, 2], [longitude, 20]]}}]}));
+for (const [name, moved] of [['an offset', {'line-offset': 30}], ['a translation', {'line-translate': [30, 0]}],
+    ['a translation of low zooms', {'line-translate': ['interpolate', ['linear'], ['zoom'], 3, ['literal', [30, 0]], 3.9, ['literal', [0, 0]]]}]]) {
+    const path = join(folder, 'moved/');
+    writeFileSync(style, JSON.stringify({version: 8, sources: {}, layers: [{id: 'road', type: 'line',
+        paint: {'line-width': 2, 'line-color': '#204060', ...moved}}]}));
+    run('tiles', road, '--style', style, '--format', 'glb', '--min-zoom', '4', '--max-zoom', '4', '-q', '-f', '-o', path);
+    check(tilesOf(path).some(tile => tile.name === '4/8/7.glb' && readTile(decoder, tile.bytes).attributes),
+        `a line with ${name} is in the tile beside it`);
+}
+
 // ---- Areas: what is covered, by the nonzero rule ----
 
 // A square with a hole, another square over its corner, and a third of the next row: degrees of 2^-13 turns, from the

@@ -52,6 +52,7 @@ static camber_status add_ring(camber_mesh_picture *picture, size_t *point_capaci
 
 camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const uint32_t *polylines,
                                              size_t polyline_count, const camber_excerpt_window *window) {
+    const camber_mesh_plan *meshes = picture->plan;
     const camber_zoom_plan *zoom = picture->plan->zoom;
     const camber_plan *plan = &zoom->plan;
     camber_plan_entries listed = {0};
@@ -60,7 +61,9 @@ camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         for (size_t i = listed.first_entries[s];
              i < listed.first_entries[s + 1] && camber_plan_is_area(plan, plan->sets + s) && status == CAMBER_OK; i++)
-            for (double shift = -1.0; shift <= 1.0 && status == CAMBER_OK; shift += 1.0)
+            for (double shift = -1.0; shift <= 1.0 && status == CAMBER_OK &&
+                                      meshes->reach_px[meshes->pair_rows[listed.entries[i].pair]] >= 0.0f;
+                 shift += 1.0)
                 status = add_ring(picture, &point_capacity, &ring_capacity, listed.entries + i, shift, window);
     camber_plan_entries_free(&listed);
     return status;
@@ -69,7 +72,14 @@ camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const
 /* ---- GLU ---- */
 
 /* Numbers of GLU; the callbacks are those with the polygon's data. */
-enum { GLU_VERTEX = 100107, GLU_EDGE_FLAG = 100110, GLU_COMBINE = 100111, GLU_RULE = 100140, GLU_NONZERO = 100131 };
+enum {
+    GLU_VERTEX = 100107,
+    GLU_ERROR = 100109,
+    GLU_EDGE_FLAG = 100110,
+    GLU_COMBINE = 100111,
+    GLU_RULE = 100140,
+    GLU_NONZERO = 100131
+};
 
 typedef void callback(void);
 typedef struct glu {
@@ -155,6 +165,12 @@ static void take_crossing(double at[3], void *corners[4], float weights[4], void
     *made = (void *)(uintptr_t)add_corner(user, floor(at[0] + 0.5), floor(at[1] + 0.5));
 }
 
+/* No memory: of polygons that begin, turn and end as these do it tells nothing else. */
+static void take_error(unsigned error, void *user) {
+    (void)error;
+    ((filler *)user)->failed = true;
+}
+
 static camber_status open_tess(filler *f) {
     if (!load(&f->glu))
         return camber_fail(f->tile->context, CAMBER_ERROR_IO,
@@ -165,6 +181,7 @@ static camber_status open_tess(filler *f) {
     f->glu.set_callback(f->tess, GLU_VERTEX, (callback *)take_vertex);
     f->glu.set_callback(f->tess, GLU_EDGE_FLAG, (callback *)take_edge_flag);
     f->glu.set_callback(f->tess, GLU_COMBINE, (callback *)take_crossing);
+    f->glu.set_callback(f->tess, GLU_ERROR, (callback *)take_error);
     f->glu.set_property(f->tess, GLU_RULE, GLU_NONZERO);
     f->glu.set_normal(f->tess, 0.0, 0.0, -1.0); /* y goes down, and outlines face up */
     return CAMBER_OK;

@@ -70,11 +70,6 @@ static uint8_t linear_byte(float srgb) {
     return (uint8_t)(255.0 * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)) + 0.5);
 }
 
-/* Fills of images are left out. */
-static bool draws(const camber_paint *paint) {
-    return paint->fill ? !paint->fill->image && paint->fill->color.a > 0.0f : paint->width_px > 0.0f;
-}
-
 static camber_color color_of(const camber_paint *paint) {
     return paint->fill ? paint->fill->color : paint->color;
 }
@@ -88,7 +83,7 @@ static look look_of(const encoder *e, uint32_t row, size_t set_index) {
             const camber_paint paint = camber_mesh_plan_paint(e->plan, layer, row, s);
             const camber_color color = color_of(&paint);
             const double shrunk = OUTLINE_STEPS * exp2(-camber_mesh_sample_zoom(s));
-            if (!draws(&paint))
+            if (!camber_mesh_plan_draws(&paint))
                 continue;
             const float width = paint.gap_px > 0.0f ? paint.gap_px + 2.0f * paint.width_px : paint.width_px;
             found.half_width = 0.5 * (double)width * shrunk;
@@ -324,16 +319,16 @@ static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     bool drawn = false;
     for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
         paints[s] = camber_mesh_plan_paint(e->plan, layer, row, s);
-        seen = draws(paints + s) || !drawn ? paints[s] : seen;
-        drawn = drawn || draws(paints + s);
+        seen = camber_mesh_plan_draws(paints + s) || !drawn ? paints[s] : seen;
+        drawn = drawn || camber_mesh_plan_draws(paints + s);
     }
     for (int k = 0; k < LISTS; k++)
         lists[k] = json_array();
     for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
         /* Where it is not drawn, it looks as where it is, so that shaders may go from one to the other. */
-        const bool is_drawn = draws(paints + s);
+        const bool is_drawn = camber_mesh_plan_draws(paints + s);
         const camber_paint *p = is_drawn ? paints + s : &seen;
-        append(e, lists[WIDTH], number((double)paints[s].width_px));
+        append(e, lists[WIDTH], number(is_drawn ? (double)p->width_px : 0.0));
         append(e, lists[OPACITY], number(p->fill && !is_drawn ? 0.0 : (double)color_of(p).a));
         append(e, lists[GAP], number((double)p->gap_px));
         append(e, lists[BLUR], number((double)p->blur_px));

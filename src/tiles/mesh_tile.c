@@ -328,12 +328,13 @@ static void put_ring(cutter *c, line_walk *w) {
 
 /* ---- A tile ---- */
 
-/* Whether a line's box comes near the tile. */
+/* Whether a line's box comes near the tile, and the line is drawn. */
 static bool touches(const cutter *c, const camber_mesh_line *line) {
     const camber_mesh_plan *plan = c->picture->plan;
-    const double reach = c->half + (double)plan->reach_px[plan->pair_rows[line->pair]];
-    return line->count > 1 && (double)line->x0 - c->centre_x <= reach && (double)line->x1 - c->centre_x >= -reach &&
-           (double)line->y0 - c->centre_y <= reach && (double)line->y1 - c->centre_y >= -reach;
+    const double own = (double)plan->reach_px[plan->pair_rows[line->pair]], reach = c->half + own;
+    return line->count > 1 && own >= 0.0 && (double)line->x0 - c->centre_x <= reach &&
+           (double)line->x1 - c->centre_x >= -reach && (double)line->y0 - c->centre_y <= reach &&
+           (double)line->y1 - c->centre_y >= -reach;
 }
 
 /* Chooses the units: as fine as 16 bits allow for what reaches farthest. */

@@ -167,6 +167,24 @@ for (const [name, moved] of [['an offset', {'line-offset': 30}], ['a translation
         `a line with ${name} is in the tile beside it`);
 }
 
+// ---- Images are left out ----
+
+// An image of 2 x 2 px.
+writeFileSync(join(folder, 'dot.png'), Buffer.from('iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAEUlEQVR42mP4z8DwH4QZYAwAR8oH+Rq28akAAAAASUVORK5CYII=',
+    'base64'));
+writeFileSync(join(folder, 'dot.json'), JSON.stringify({dot: {x: 0, y: 0, width: 2, height: 2, pixelRatio: 1}}));
+const fences = join(folder, 'fences.geojson'), images = join(folder, 'images/'), geometry = [[1, 1], [9, 1], [9, 9], [1, 1]];
+writeFileSync(fences, JSON.stringify({type: 'FeatureCollection', features: [['LineString', geometry], ['Polygon', [geometry]]]
+    .map(([type, coordinates]) => ({type: 'Feature', properties: {}, geometry: {type, coordinates}}))}));
+writeFileSync(style, JSON.stringify({version: 8, sources: {}, sprite: 'dot', layers: [
+    {id: 'areas', type: 'fill', paint: {'fill-pattern': 'dot'}},
+    {id: 'images', type: 'line', paint: {'line-width': 4, 'line-pattern': 'dot'}},
+    {id: 'lines', type: 'line', paint: {'line-width': 2, 'line-dasharray': [1, 1]}, filter: ['==', ['geometry-type'], 'LineString']}]}));
+run('tiles', fences, '--style', style, '--format', 'glb', '--min-zoom', '4', '--max-zoom', '4', '-q', '-o', images);
+const fenced = tilesOf(images).map(tile => readTile(decoder, tile.bytes));
+check(fenced.length > 0 && fenced.every(({extras, areas}) => !areas && extras.layers.map(({id}) => id).join() === 'lines'),
+    'patterns are left out', fenced.map(({extras, areas}) => [extras.layers, areas]));
+
 // ---- Areas: what is covered, by the nonzero rule ----
 
 // A square with a hole, another square over its corner, and a third of the next row: degrees of 2^-13 turns, from the

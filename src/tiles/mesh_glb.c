@@ -7,6 +7,7 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 
 #ifdef CAMBER_MESHOPT
@@ -220,6 +221,14 @@ static camber_status make_vertices(encoder *e) {
     return CAMBER_OK;
 }
 
+/* The versions of EXT_meshopt_compression. They are set for the whole process and not locked, so no tile sets them while
+ * another one is encoded. */
+static void set_versions(void) {
+    meshopt_encodeVertexVersion(0);
+    meshopt_encodeIndexVersion(1);
+}
+static pthread_once_t versions_are_set = PTHREAD_ONCE_INIT;
+
 static camber_status compress(encoder *e) {
     const camber_mesh_tile *tile = e->tile;
     const size_t count = 2 * tile->record_count, corners = tile->corner_count;
@@ -230,8 +239,7 @@ static camber_status compress(encoder *e) {
     };
     if (!(e->packed = camber_alloc_zero(e->context, room[VERTICES] + room[ALONGS] + room[INDICES] + 4 * STREAMS, 1)))
         return CAMBER_ERROR_MEMORY;
-    meshopt_encodeVertexVersion(0); /* those of EXT_meshopt_compression */
-    meshopt_encodeIndexVersion(1);
+    pthread_once(&versions_are_set, set_versions);
     for (int i = 0; i < STREAMS; i++) {
         uint8_t *to = e->packed + e->start[i];
         if (room[i])

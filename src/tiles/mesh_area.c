@@ -294,6 +294,26 @@ static camber_status fill_row(filler *f, size_t first, size_t end) {
     return CAMBER_OK;
 }
 
+/* Leaves out the corners that no triangle has: GLU made others where they met. */
+static camber_status drop_unused(camber_mesh_tile *tile) {
+    uint32_t *numbers = camber_alloc_zero(tile->context, tile->corner_count, sizeof *numbers);
+    uint32_t used = 0;
+    if (!numbers)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < tile->index_count; i++)
+        numbers[tile->triangles[i]] = 1;
+    for (size_t i = 0; i < tile->corner_count; i++)
+        if (numbers[i]) {
+            numbers[i] = used;
+            tile->corners[used++] = tile->corners[i];
+        }
+    for (size_t i = 0; i < tile->index_count; i++)
+        tile->triangles[i] = numbers[tile->triangles[i]];
+    tile->corner_count = used;
+    camber_free(tile->context, numbers);
+    return CAMBER_OK;
+}
+
 camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t x, uint32_t y,
                                     camber_mesh_tile *tile) {
     const double px = tile->tile_px;
@@ -318,5 +338,5 @@ camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t
         dlclose(f.glu.library);
     camber_free(tile->context, f.clipped[0]);
     camber_free(tile->context, f.clipped[1]);
-    return status;
+    return status == CAMBER_OK && tile->corner_count ? drop_unused(tile) : status;
 }

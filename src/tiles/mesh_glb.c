@@ -221,8 +221,8 @@ static camber_status make_vertices(encoder *e) {
     return CAMBER_OK;
 }
 
-/* The versions of EXT_meshopt_compression. They are set for the whole process and not locked, so no tile sets them while
- * another one is encoded. */
+/* The versions of EXT_meshopt_compression. They are set for the whole process and not locked, so no tile sets them
+ * while another one is encoded. */
 static void set_versions(void) {
     meshopt_encodeVertexVersion(0);
     meshopt_encodeIndexVersion(1);

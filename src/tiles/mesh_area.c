@@ -3,8 +3,8 @@
  * Input: the rings that a style fills in a picture of tiles. Output: for each tile corners and triangles, set by set.
  * Main idea: each ring is clipped to the tile's square and a px around it, side by side, which leaves how often it
  * winds around what is inside; then all rings of a row that follow each other are one polygon of GLU's tessellator, by
- * the nonzero rule, as they are one path for the kernels. GLU is loaded when the first area is met: no other tile needs
- * it. */
+ * the nonzero rule, as they are one path for the kernels. GLU is loaded where a tile has
+ * areas: no other one needs it. */
 #define _GNU_SOURCE /* RTLD_NODELETE: GLU stays, since each tile asks for it */
 
 #include "tiles/mesh_area.h"
@@ -111,6 +111,25 @@ static bool load(glu *g) {
            find(g, "gluTessEndContour", &g->end_contour) && find(g, "gluTessEndPolygon", &g->end_polygon);
 }
 
+static camber_status tell_missing(camber_context *context) {
+    return camber_fail(context, CAMBER_ERROR_DEVICE,
+                       "tiles: mesh tiles with areas need GLU (Debian: libglu1-mesa); install it, or name a style of "
+                       "lines alone with --style");
+}
+
+camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
+    const camber_plan *whole = &plan->zoom->plan;
+    bool fills = false;
+    for (size_t s = 0; s < whole->set_count; s++)
+        for (size_t k = 0; k < whole->sets[s].pair_count && camber_plan_is_area(whole, whole->sets + s); k++)
+            fills = fills || plan->reach_px[plan->pair_rows[whole->sets[s].first_pair + k]] >= 0.0f;
+    glu g = {0};
+    const bool found = !fills || load(&g);
+    if (g.library)
+        dlclose(g.library);
+    return found ? CAMBER_OK : tell_missing(plan->context);
+}
+
 /* ---- Triangles ---- */
 
 typedef struct filler {
@@ -173,9 +192,7 @@ static void take_error(unsigned error, void *user) {
 
 static camber_status open_tess(filler *f) {
     if (!load(&f->glu))
-        return camber_fail(f->tile->context, CAMBER_ERROR_IO,
-                           "tiles: mesh tiles with areas need GLU (Debian: libglu1-mesa); install it, or name a style "
-                           "of lines alone with --style");
+        return tell_missing(f->tile->context);
     if (!(f->tess = f->glu.create()))
         return CAMBER_ERROR_MEMORY;
     f->glu.set_callback(f->tess, GLU_VERTEX, (callback *)take_vertex);

@@ -1,10 +1,10 @@
 /* Makes triangles of the areas of mesh tiles.
  *
  * Input: the rings that a style fills in a picture of tiles. Output: for each tile corners and triangles, set by set.
- * Main idea: each ring is clipped to the tile's square and a px around it, side by side, which leaves how often it
- * winds around what is inside; then all rings of a row that follow each other are one polygon of GLU's tessellator, by
- * the nonzero rule, as they are one path for the kernels. GLU is loaded where a tile has
- * areas: no other one needs it. */
+ * Main idea: each ring is clipped to the tile's square and what its row reaches around it, side by side, which leaves
+ * how often it winds around what is inside; then all rings of a row that follow each other are one polygon of GLU's
+ * tessellator, by the nonzero rule, as they are one path for the kernels. GLU is loaded where a tile has areas: no
+ * other one needs it. */
 #define _GNU_SOURCE /* RTLD_NODELETE: GLU stays, since each tile asks for it */
 
 #include "tiles/mesh_area.h"
@@ -144,10 +144,6 @@ typedef struct filler {
     bool failed; /* no memory */
 } filler;
 
-static int16_t quantise(double px, double scale) {
-    return (int16_t)fmax(fmin(floor(px * scale + 0.5), 32767.0), -32767.0);
-}
-
 /* Adds a corner; its number. */
 static size_t add_corner(filler *f, double x, double y) {
     camber_mesh_tile *tile = f->tile;
@@ -263,8 +259,8 @@ static void put_ring(filler *f, const camber_mesh_line *ring) {
         return;
     f->glu.begin_contour(f->tess);
     for (size_t i = 0; i < count && !f->failed; i++) {
-        const int16_t x = quantise((double)f->clipped[0][2 * i], f->scale),
-                      y = quantise((double)f->clipped[0][2 * i + 1], f->scale);
+        const int16_t x = camber_mesh_quantise((double)f->clipped[0][2 * i], f->scale),
+                      y = camber_mesh_quantise((double)f->clipped[0][2 * i + 1], f->scale);
         double at[3] = {x, y, 0.0};
         if (x == last_x && y == last_y)
             continue;
@@ -279,13 +275,6 @@ static void put_ring(filler *f, const camber_mesh_line *ring) {
 static bool touches(const filler *f, const camber_mesh_line *ring) {
     return (double)ring->x0 - f->centre_x <= f->edge && (double)ring->x1 - f->centre_x >= -f->edge &&
            (double)ring->y0 - f->centre_y <= f->edge && (double)ring->y1 - f->centre_y >= -f->edge;
-}
-
-static size_t set_of(const camber_plan *plan, uint32_t pair) {
-    size_t set = 0;
-    while (pair >= plan->sets[set].first_pair + plan->sets[set].pair_count)
-        set++;
-    return set;
 }
 
 /* Fills the rings [first, end), which have one row. */
@@ -305,8 +294,9 @@ static camber_status fill_row(filler *f, size_t first, size_t end) {
             put_ring(f, rings + i);
     f->glu.end_polygon(f->tess);
     tile->index_count -= (tile->index_count - before) % 3; /* memory ran out */
-    if (f->failed || (tile->index_count > before &&
-                      !camber_mesh_tile_end_fill(tile, set_of(&plan->zoom->plan, rings[first].pair), before)))
+    if (f->failed ||
+        (tile->index_count > before &&
+         !camber_mesh_tile_end_fill(tile, camber_mesh_set_of(&plan->zoom->plan, rings[first].pair), before)))
         return CAMBER_ERROR_MEMORY;
     return CAMBER_OK;
 }
@@ -338,12 +328,12 @@ camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t
                 .tile = tile,
                 .centre_x = ((double)x + 0.5) * px,
                 .centre_y = ((double)y + 0.5) * px,
-                .edge = 0.5 * px + 1.0,
                 .scale = tile->units / px};
     const uint32_t *rows = picture->plan->pair_rows;
     camber_status status = CAMBER_OK;
     for (size_t i = 0, end; i < picture->ring_count && status == CAMBER_OK; i = end) {
         bool near = false;
+        f.edge = 0.5 * px + (double)picture->plan->reach_px[rows[picture->rings[i].pair]]; /* 1 px, and a translation */
         for (end = i; end < picture->ring_count && rows[picture->rings[end].pair] == rows[picture->rings[i].pair];
              end++)
             near = near || touches(&f, picture->rings + end);

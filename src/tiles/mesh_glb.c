@@ -1,8 +1,9 @@
 /* Encodes mesh tiles as binary glTF 2.0, quantised and compressed. docs/mesh-tiles.md has the layout.
  *
- * Input: the records of a tile. Output: a file of one primitive, a strip with two vertices a record: the line's left
- * and right edge at the tile's zoom, for plain viewers, and in both the record itself, for shaders. Ghosts between
- * lines have a vertex of the line before and one of the line behind, so that the triangles there have no area. */
+ * Input: the records and triangles of a tile. Output: a file of up to two primitives. Lines are a strip with two
+ * vertices a record: the line's left and right edge at the tile's zoom, for plain viewers, and in both the record
+ * itself, for shaders. Sentinels have a vertex of the line before and one of the line behind, so that the triangles
+ * there have no area. Areas are triangles with indices. */
 #include "tiles/mesh_tile.h"
 
 #include <jansson.h>

@@ -143,11 +143,6 @@ static cut_point between(cut_point a, cut_point b, double share) {
                        a.along_px + (b.along_px - a.along_px) * (float)share, a.total_px};
 }
 
-static int16_t quantise(double px, double scale) {
-    const double units = floor(px * scale + 0.5);
-    return (int16_t)(units > 32767.0 ? 32767.0 : units < -32767.0 ? -32767.0 : units);
-}
-
 static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
     camber_mesh_tile *tile = c->tile;
     if (c->failed ||
@@ -157,8 +152,12 @@ static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
         c->failed = CAMBER_ERROR_MEMORY;
         return;
     }
-    const camber_mesh_record made = {
-        quantise(at.x, c->scale), quantise(at.y, c->scale), row, (uint16_t)flags, at.along_px, at.total_px};
+    const camber_mesh_record made = {camber_mesh_quantise(at.x, c->scale),
+                                     camber_mesh_quantise(at.y, c->scale),
+                                     row,
+                                     (uint16_t)flags,
+                                     at.along_px,
+                                     at.total_px};
     camber_mesh_record *last = tile->record_count ? tile->records + tile->record_count - 1 : NULL;
     const bool repeats = last && last->x == made.x && last->y == made.y;
     if (!(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST)) && repeats) {
@@ -248,8 +247,8 @@ static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, 
     if (neighbour && !c->failed) {
         const cut_point before = neighbour_of(c, start, neighbour);
         camber_mesh_record *sentinel = c->tile->records + c->tile->record_count - 1;
-        sentinel->x = quantise(before.x, c->scale);
-        sentinel->y = quantise(before.y, c->scale);
+        sentinel->x = camber_mesh_quantise(before.x, c->scale);
+        sentinel->y = camber_mesh_quantise(before.y, c->scale);
         flags = CAMBER_MESH_RING;
     }
     put(c, start, w->row, CAMBER_MESH_FIRST | flags);
@@ -341,21 +340,17 @@ static bool touches(const cutter *c, const camber_mesh_line *line) {
 static void choose_units(cutter *c) {
     const camber_mesh_plan *plan = c->picture->plan;
     double most = 0.0;
-    for (size_t i = 0; i < c->picture->line_count; i++)
-        if (touches(c, c->picture->lines + i))
-            most = fmax(most, (double)plan->reach_px[plan->pair_rows[c->picture->lines[i].pair]]);
+    for (size_t i = 0; i < c->picture->line_count + c->picture->ring_count; i++) {
+        const camber_mesh_line *line =
+            i < c->picture->line_count ? c->picture->lines + i : c->picture->rings + (i - c->picture->line_count);
+        if (touches(c, line))
+            most = fmax(most, (double)plan->reach_px[plan->pair_rows[line->pair]]);
+    }
     c->tile->units = CAMBER_MESH_UNITS;
     do {
         c->scale = c->tile->units / (2.0 * c->half);
         c->limit = 32767.0 / c->scale;
     } while (c->limit < c->half + most + 1.0 && (c->tile->units /= 2) > 1);
-}
-
-static size_t set_of(const camber_plan *plan, uint32_t pair) {
-    size_t set = 0;
-    while (pair >= plan->sets[set].first_pair + plan->sets[set].pair_count)
-        set++;
-    return set;
 }
 
 /* Notes that items up to `end` belong to the set. false: no memory. */
@@ -392,7 +387,7 @@ static void put_line(cutter *c, const camber_mesh_line *line) {
     if (tile->segments == before || c->failed)
         return;
     tile->has_arc_length |= plan->has_arc_length[row];
-    const camber_mesh_range range = {set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1};
+    const camber_mesh_range range = {camber_mesh_set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1};
     if (!end_range(tile->context, &tile->ranges, &tile->range_count, &tile->range_capacity, range))
         c->failed = CAMBER_ERROR_MEMORY;
 }

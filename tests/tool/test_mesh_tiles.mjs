@@ -223,6 +223,14 @@ if (areas.stderr.includes('need GLU')) {
         check(_POINT.length === new Set(indices).size, 'each corner is one of a triangle', [_POINT, indices]);
         check(!materials[0].alphaMode, 'opaque areas are not blended', materials);
     }
+    // Those beside the meridian that are drawn beyond it, as far as they are moved.
+    writeFileSync(fields, JSON.stringify({type: 'FeatureCollection', features: [polygon('a', square(-4, 1, 4))]}));
+    writeFileSync(colors, JSON.stringify({version: 8, sources: {}, layers: [{id: 'fields', type: 'fill',
+        paint: {'fill-color': '#204060', 'fill-translate': [30, 0]}}]}));
+    run('tiles', fields, '--style', colors, '--format', 'glb', '--min-zoom', '10', '--max-zoom', '10', '-q', '-f', '-o', join(folder, 'moved/'));
+    const beside = tilesOf(join(folder, 'moved/')).find(({name}) => name === '10/512/511.glb');
+    const reached = beside ? Math.min(...readTile(decoder, beside.bytes).areas._POINT.map(([x]) => x)) : 0;
+    check(reached <= -16384 - 30 * 128, 'an area with a translation reaches as far', reached);
     check([...sampled].join(' ') === '0.5,0.625,0.75,0.875,1', 'opacities are sampled', [...sampled]);
     const unit = 16 * 16; // points of the grid a square unit
     check(Math.abs(covered['#204060'] / unit - 18) < 0.3, 'a hole and an overlap', covered);

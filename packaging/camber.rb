@@ -18,6 +18,7 @@ class Camber < Formula
   depends_on "libpng"
   depends_on :linux
   depends_on "mesa"
+  depends_on "mesa-glu" # areas of mesh tiles
   depends_on "opencl-icd-loader"
   depends_on "pocl"
   depends_on "protobuf-c"

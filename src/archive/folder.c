@@ -170,8 +170,9 @@ static camber_status tell_stranger(const camber_folder_visitor *visitor, const c
 }
 
 /* Whether a name is that of a file beside the tiles. */
-static bool is_beside(const char *entry) {
-    return strcmp(entry, "metadata.json") == 0 || strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0;
+static bool is_beside(const camber_folder_visitor *visitor, const char *entry) {
+    return strcmp(entry, "metadata.json") == 0 ||
+           (visitor->has_tileset && (strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0));
 }
 
 /* Lists what is named by a number in a folder, in ascending order. What is not goes to the visitor. */
@@ -183,7 +184,8 @@ static camber_status list(const camber_folder_visitor *visitor, const char *fold
     const struct dirent *entry;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
         name made;
-        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 || (top && is_beside(entry->d_name)))
+        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 ||
+            (top && is_beside(visitor, entry->d_name)))
             continue;
         if (!parse_name(entry->d_name, files, &made))
             status = tell_stranger(visitor, folder, entry->d_name);

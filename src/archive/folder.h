@@ -14,6 +14,7 @@ typedef struct camber_folder_visitor {
     camber_status (*take_file)(void *user, const camber_folder_file *file);
     camber_status (*take_stranger)(void *user, const char *path); /* a name that is none of a tile. NULL: not told */
     void *user;
+    bool has_tileset; /* tileset.json and subtrees are no strangers */
 } camber_folder_visitor;
 
 /* Visits the files by zoom, column and row. */

@@ -204,7 +204,7 @@ static camber_status take_stranger(void *user, const char *path) {
 }
 
 camber_status camber_verify_folder(camber_verify *v) {
-    const camber_folder_visitor names = {v->context, take_file, take_stranger, v};
+    const camber_folder_visitor names = {v->context, take_file, take_stranger, v, v->archive->type == CAMBER_TILE_GLB};
     if (!json_object_size(v->archive->metadata) && !v->archive->has_bounds)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "there is no metadata.json with a JSON object");
     camber_status status = camber_folder_visit(v->archive->path, &names);

@@ -87,7 +87,12 @@ static int check_encoding(const camber_option_reader *p) {
     if (options->format < 0)
         options->format = CAMBER_FORMAT_PNG;
     if (options->format == CAMBER_FORMAT_GLB && options->keep_empty)
-        return camber_options_refuse(p, "--keep-empty: a mesh tile without lines has nothing; leave it out");
+        return camber_options_refuse(p, "--keep-empty: a mesh tile without lines and areas has nothing; leave it out");
+#ifndef CAMBER_MESHOPT
+    if (options->format == CAMBER_FORMAT_GLB)
+        return camber_options_refuse(p, "--format glb: this build writes no mesh tiles (CAMBER_MESHOPT); build it with "
+                                        "meshoptimizer, or choose png");
+#endif
     if (!camber_encoding_is_built(camber_format_encoding(options->format)))
         return camber_options_refuse(
             p, "--format webp: this build writes no WebP (CAMBER_WEBP); build it with libwebp, or choose png");

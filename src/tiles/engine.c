@@ -177,7 +177,8 @@ camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, cam
             status = camber_zoom_plan_create(engine->features, &desc, &it->plan);
         if (it->mesh) {
             it->plan = it->mesh->zoom;
-            it->has_background = true; /* a tile without lines is left out */
+            it->has_background = true; /* a tile without lines and areas is left out */
+            status = camber_mesh_plan_find_glu(it->mesh);
         } else if (status == CAMBER_OK) {
             status = find_background(engine, it);
         }

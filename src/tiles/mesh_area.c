@@ -1,10 +1,10 @@
 /* Makes triangles of the areas of mesh tiles.
  *
  * Input: the rings that a style fills in a picture of tiles. Output: for each tile corners and triangles, set by set.
- * Main idea: each ring is clipped to the tile's square and a px around it, side by side, which leaves how often it
- * winds around what is inside; then all rings of a row that follow each other are one polygon of GLU's tessellator, by
- * the nonzero rule, as they are one path for the kernels. GLU is loaded when the first area is met: no other tile needs
- * it. */
+ * Main idea: each ring is clipped to the tile's square and what its row reaches around it, side by side, which leaves
+ * how often it winds around what is inside; then all rings of a row that follow each other are one polygon of GLU's
+ * tessellator, by the nonzero rule, as they are one path for the kernels. GLU is loaded where a tile has areas: no
+ * other one needs it. */
 #define _GNU_SOURCE /* RTLD_NODELETE: GLU stays, since each tile asks for it */
 
 #include "tiles/mesh_area.h"
@@ -52,6 +52,7 @@ static camber_status add_ring(camber_mesh_picture *picture, size_t *point_capaci
 
 camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const uint32_t *polylines,
                                              size_t polyline_count, const camber_excerpt_window *window) {
+    const camber_mesh_plan *meshes = picture->plan;
     const camber_zoom_plan *zoom = picture->plan->zoom;
     const camber_plan *plan = &zoom->plan;
     camber_plan_entries listed = {0};
@@ -60,7 +61,9 @@ camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         for (size_t i = listed.first_entries[s];
              i < listed.first_entries[s + 1] && camber_plan_is_area(plan, plan->sets + s) && status == CAMBER_OK; i++)
-            for (double shift = -1.0; shift <= 1.0 && status == CAMBER_OK; shift += 1.0)
+            for (double shift = -1.0; shift <= 1.0 && status == CAMBER_OK &&
+                                      meshes->reach_px[meshes->pair_rows[listed.entries[i].pair]] >= 0.0f;
+                 shift += 1.0)
                 status = add_ring(picture, &point_capacity, &ring_capacity, listed.entries + i, shift, window);
     camber_plan_entries_free(&listed);
     return status;
@@ -69,7 +72,14 @@ camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const
 /* ---- GLU ---- */
 
 /* Numbers of GLU; the callbacks are those with the polygon's data. */
-enum { GLU_VERTEX = 100107, GLU_EDGE_FLAG = 100110, GLU_COMBINE = 100111, GLU_RULE = 100140, GLU_NONZERO = 100131 };
+enum {
+    GLU_VERTEX = 100107,
+    GLU_ERROR = 100109,
+    GLU_EDGE_FLAG = 100110,
+    GLU_COMBINE = 100111,
+    GLU_RULE = 100140,
+    GLU_NONZERO = 100131
+};
 
 typedef void callback(void);
 typedef struct glu {
@@ -101,6 +111,25 @@ static bool load(glu *g) {
            find(g, "gluTessEndContour", &g->end_contour) && find(g, "gluTessEndPolygon", &g->end_polygon);
 }
 
+static camber_status tell_missing(camber_context *context) {
+    return camber_fail(context, CAMBER_ERROR_DEVICE,
+                       "tiles: mesh tiles with areas need GLU (Debian: libglu1-mesa); install it, or name a style of "
+                       "lines alone with --style");
+}
+
+camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
+    const camber_plan *whole = &plan->zoom->plan;
+    bool fills = false;
+    for (size_t s = 0; s < whole->set_count; s++)
+        for (size_t k = 0; k < whole->sets[s].pair_count && camber_plan_is_area(whole, whole->sets + s); k++)
+            fills = fills || plan->reach_px[plan->pair_rows[whole->sets[s].first_pair + k]] >= 0.0f;
+    glu g = {0};
+    const bool found = !fills || load(&g);
+    if (g.library)
+        dlclose(g.library);
+    return found ? CAMBER_OK : tell_missing(plan->context);
+}
+
 /* ---- Triangles ---- */
 
 typedef struct filler {
@@ -114,10 +143,6 @@ typedef struct filler {
     size_t clipped_capacity[2];
     bool failed; /* no memory */
 } filler;
-
-static int16_t quantise(double px, double scale) {
-    return (int16_t)fmax(fmin(floor(px * scale + 0.5), 32767.0), -32767.0);
-}
 
 /* Adds a corner; its number. */
 static size_t add_corner(filler *f, double x, double y) {
@@ -155,16 +180,21 @@ static void take_crossing(double at[3], void *corners[4], float weights[4], void
     *made = (void *)(uintptr_t)add_corner(user, floor(at[0] + 0.5), floor(at[1] + 0.5));
 }
 
+/* No memory: of polygons that begin, turn and end as these do it tells nothing else. */
+static void take_error(unsigned error, void *user) {
+    (void)error;
+    ((filler *)user)->failed = true;
+}
+
 static camber_status open_tess(filler *f) {
     if (!load(&f->glu))
-        return camber_fail(f->tile->context, CAMBER_ERROR_IO,
-                           "tiles: mesh tiles with areas need GLU (Debian: libglu1-mesa); install it, or name a style "
-                           "of lines alone with --style");
+        return tell_missing(f->tile->context);
     if (!(f->tess = f->glu.create()))
         return CAMBER_ERROR_MEMORY;
     f->glu.set_callback(f->tess, GLU_VERTEX, (callback *)take_vertex);
     f->glu.set_callback(f->tess, GLU_EDGE_FLAG, (callback *)take_edge_flag);
     f->glu.set_callback(f->tess, GLU_COMBINE, (callback *)take_crossing);
+    f->glu.set_callback(f->tess, GLU_ERROR, (callback *)take_error);
     f->glu.set_property(f->tess, GLU_RULE, GLU_NONZERO);
     f->glu.set_normal(f->tess, 0.0, 0.0, -1.0); /* y goes down, and outlines face up */
     return CAMBER_OK;
@@ -229,8 +259,8 @@ static void put_ring(filler *f, const camber_mesh_line *ring) {
         return;
     f->glu.begin_contour(f->tess);
     for (size_t i = 0; i < count && !f->failed; i++) {
-        const int16_t x = quantise((double)f->clipped[0][2 * i], f->scale),
-                      y = quantise((double)f->clipped[0][2 * i + 1], f->scale);
+        const int16_t x = camber_mesh_quantise((double)f->clipped[0][2 * i], f->scale),
+                      y = camber_mesh_quantise((double)f->clipped[0][2 * i + 1], f->scale);
         double at[3] = {x, y, 0.0};
         if (x == last_x && y == last_y)
             continue;
@@ -247,13 +277,6 @@ static bool touches(const filler *f, const camber_mesh_line *ring) {
            (double)ring->y0 - f->centre_y <= f->edge && (double)ring->y1 - f->centre_y >= -f->edge;
 }
 
-static size_t set_of(const camber_plan *plan, uint32_t pair) {
-    size_t set = 0;
-    while (pair >= plan->sets[set].first_pair + plan->sets[set].pair_count)
-        set++;
-    return set;
-}
-
 /* Fills the rings [first, end), which have one row. */
 static camber_status fill_row(filler *f, size_t first, size_t end) {
     camber_mesh_tile *tile = f->tile;
@@ -263,17 +286,38 @@ static camber_status fill_row(filler *f, size_t first, size_t end) {
     camber_status status = f->tess ? CAMBER_OK : open_tess(f);
     if (status != CAMBER_OK)
         return status;
-    if (!camber_mesh_tile_number(tile, plan->pair_rows[rings[first].pair], &f->row))
-        return CAMBER_ERROR_MEMORY;
+    if ((status = camber_mesh_tile_number(tile, plan->pair_rows[rings[first].pair], &f->row)) != CAMBER_OK)
+        return status;
     f->glu.begin_polygon(f->tess, f);
     for (size_t i = first; i < end; i++)
         if (touches(f, rings + i))
             put_ring(f, rings + i);
     f->glu.end_polygon(f->tess);
     tile->index_count -= (tile->index_count - before) % 3; /* memory ran out */
-    if (f->failed || (tile->index_count > before &&
-                      !camber_mesh_tile_end_fill(tile, set_of(&plan->zoom->plan, rings[first].pair), before)))
+    if (f->failed ||
+        (tile->index_count > before &&
+         !camber_mesh_tile_end_fill(tile, camber_mesh_set_of(&plan->zoom->plan, rings[first].pair), before)))
         return CAMBER_ERROR_MEMORY;
+    return CAMBER_OK;
+}
+
+/* Leaves out the corners that no triangle has: GLU made others where they met. */
+static camber_status drop_unused(camber_mesh_tile *tile) {
+    uint32_t *numbers = camber_alloc_zero(tile->context, tile->corner_count, sizeof *numbers);
+    uint32_t used = 0;
+    if (!numbers)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < tile->index_count; i++)
+        numbers[tile->triangles[i]] = 1;
+    for (size_t i = 0; i < tile->corner_count; i++)
+        if (numbers[i]) {
+            numbers[i] = used;
+            tile->corners[used++] = tile->corners[i];
+        }
+    for (size_t i = 0; i < tile->index_count; i++)
+        tile->triangles[i] = numbers[tile->triangles[i]];
+    tile->corner_count = used;
+    camber_free(tile->context, numbers);
     return CAMBER_OK;
 }
 
@@ -284,12 +328,12 @@ camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t
                 .tile = tile,
                 .centre_x = ((double)x + 0.5) * px,
                 .centre_y = ((double)y + 0.5) * px,
-                .edge = 0.5 * px + 1.0,
                 .scale = tile->units / px};
     const uint32_t *rows = picture->plan->pair_rows;
     camber_status status = CAMBER_OK;
     for (size_t i = 0, end; i < picture->ring_count && status == CAMBER_OK; i = end) {
         bool near = false;
+        f.edge = 0.5 * px + (double)picture->plan->reach_px[rows[picture->rings[i].pair]]; /* 1 px, and a translation */
         for (end = i; end < picture->ring_count && rows[picture->rings[end].pair] == rows[picture->rings[i].pair];
              end++)
             near = near || touches(&f, picture->rings + end);
@@ -301,5 +345,5 @@ camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t
         dlclose(f.glu.library);
     camber_free(tile->context, f.clipped[0]);
     camber_free(tile->context, f.clipped[1]);
-    return status;
+    return status == CAMBER_OK && tile->corner_count ? drop_unused(tile) : status;
 }

@@ -1,12 +1,14 @@
 /* Encodes mesh tiles as binary glTF 2.0, quantised and compressed. docs/mesh-tiles.md has the layout.
  *
- * Input: the records of a tile. Output: a file of one primitive, a strip with two vertices a record: the line's left
- * and right edge at the tile's zoom, for plain viewers, and in both the record itself, for shaders. Ghosts between
- * lines have a vertex of the line before and one of the line behind, so that the triangles there have no area. */
+ * Input: the records and triangles of a tile. Output: a file of up to two primitives. Lines are a strip with two
+ * vertices a record: the line's left and right edge at the tile's zoom, for plain viewers, and in both the record
+ * itself, for shaders. Sentinels have a vertex of the line before and one of the line behind, so that the triangles
+ * there have no area. Areas are triangles with indices. */
 #include "tiles/mesh_tile.h"
 
 #include <jansson.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 
 #ifdef CAMBER_MESHOPT
@@ -70,11 +72,6 @@ static uint8_t linear_byte(float srgb) {
     return (uint8_t)(255.0 * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)) + 0.5);
 }
 
-/* Fills of images are left out. */
-static bool draws(const camber_paint *paint) {
-    return paint->fill ? !paint->fill->image && paint->fill->color.a > 0.0f : paint->width_px > 0.0f;
-}
-
 static camber_color color_of(const camber_paint *paint) {
     return paint->fill ? paint->fill->color : paint->color;
 }
@@ -88,7 +85,7 @@ static look look_of(const encoder *e, uint32_t row, size_t set_index) {
             const camber_paint paint = camber_mesh_plan_paint(e->plan, layer, row, s);
             const camber_color color = color_of(&paint);
             const double shrunk = OUTLINE_STEPS * exp2(-camber_mesh_sample_zoom(s));
-            if (!draws(&paint))
+            if (!camber_mesh_plan_draws(&paint))
                 continue;
             const float width = paint.gap_px > 0.0f ? paint.gap_px + 2.0f * paint.width_px : paint.width_px;
             found.half_width = 0.5 * (double)width * shrunk;
@@ -225,6 +222,14 @@ static camber_status make_vertices(encoder *e) {
     return CAMBER_OK;
 }
 
+/* The versions of EXT_meshopt_compression. They are set for the whole process and not locked, so no tile sets them
+ * while another one is encoded. */
+static void set_versions(void) {
+    meshopt_encodeVertexVersion(0);
+    meshopt_encodeIndexVersion(1);
+}
+static pthread_once_t versions_are_set = PTHREAD_ONCE_INIT;
+
 static camber_status compress(encoder *e) {
     const camber_mesh_tile *tile = e->tile;
     const size_t count = 2 * tile->record_count, corners = tile->corner_count;
@@ -235,8 +240,7 @@ static camber_status compress(encoder *e) {
     };
     if (!(e->packed = camber_alloc_zero(e->context, room[VERTICES] + room[ALONGS] + room[INDICES] + 4 * STREAMS, 1)))
         return CAMBER_ERROR_MEMORY;
-    meshopt_encodeVertexVersion(0); /* those of EXT_meshopt_compression */
-    meshopt_encodeIndexVersion(1);
+    pthread_once(&versions_are_set, set_versions);
     for (int i = 0; i < STREAMS; i++) {
         uint8_t *to = e->packed + e->start[i];
         if (room[i])
@@ -324,16 +328,16 @@ static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     bool drawn = false;
     for (size_t s = CAMBER_MESH_SAMPLES; s-- > 0;) {
         paints[s] = camber_mesh_plan_paint(e->plan, layer, row, s);
-        seen = draws(paints + s) || !drawn ? paints[s] : seen;
-        drawn = drawn || draws(paints + s);
+        seen = camber_mesh_plan_draws(paints + s) || !drawn ? paints[s] : seen;
+        drawn = drawn || camber_mesh_plan_draws(paints + s);
     }
     for (int k = 0; k < LISTS; k++)
         lists[k] = json_array();
     for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
         /* Where it is not drawn, it looks as where it is, so that shaders may go from one to the other. */
-        const bool is_drawn = draws(paints + s);
+        const bool is_drawn = camber_mesh_plan_draws(paints + s);
         const camber_paint *p = is_drawn ? paints + s : &seen;
-        append(e, lists[WIDTH], number((double)paints[s].width_px));
+        append(e, lists[WIDTH], number(is_drawn ? (double)p->width_px : 0.0));
         append(e, lists[OPACITY], number(p->fill && !is_drawn ? 0.0 : (double)color_of(p).a));
         append(e, lists[GAP], number((double)p->gap_px));
         append(e, lists[BLUR], number((double)p->blur_px));

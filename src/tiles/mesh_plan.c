@@ -85,7 +85,9 @@ float camber_mesh_plan_offset(const camber_mesh_plan *plan, size_t layer, uint32
     return offset_of(plan, layer, plan->row_pairs[row], sample);
 }
 
-/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and gives its reach. */
+/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and gives its reach; below 0: it
+ * is not drawn. Beyond the stroke that
+ * is an offset or a translation: the camera has it as what its window grows by. */
 static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t pair) {
     camber_stroke *stroke = plan->zoom->strokes + pair;
     float reach = -1.0f;
@@ -97,13 +99,15 @@ static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t 
             camber_stroke own = *stroke;
             own.width_px = shrunk * whole_width(&paint);
             own.offset_px = shrunk * offset_of(plan, layer, pair, s);
-            if (!(paint.width_px > 0.0f) && !paint.fill)
+            if (!camber_mesh_plan_draws(&paint))
                 continue;
             stroke->width_px = fmaxf(stroke->width_px, own.width_px);
             reach = fmaxf(reach, (float)camber_plan_stroke_reach(&own) +
                                      shrunk * hypotf(paint.translate_x_px, paint.translate_y_px) + 1.0f);
         }
     stroke->offset_px = 0.0f; /* tiles have the line, and shaders move it */
+    const float beyond = reach - (float)camber_plan_stroke_reach(stroke);
+    plan->zoom->plan.translate_px = fmaxf(plan->zoom->plan.translate_px, beyond);
     return reach;
 }
 
@@ -152,7 +156,7 @@ static bool goes_along(const camber_mesh_plan *plan, const camber_plan_set *set,
     for (size_t n = 0, layer = set->first_layer; n < set->layer_count; n++, layer = plan->zoom->plan.layers[layer].next)
         for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
             const camber_paint paint = pair_paint(plan, layer, pair, s);
-            if (paint.dash || paint.ramp || paint.image || paint.trim_end > paint.trim_start)
+            if (paint.dash || paint.ramp || paint.trim_end > paint.trim_start)
                 return true;
         }
     return false;
@@ -176,9 +180,10 @@ static camber_status make_rows(camber_mesh_plan *plan, row_maker *m) {
         for (size_t k = 0; k < set->pair_count; k++) {
             const uint32_t pair = (uint32_t)(set->first_pair + k);
             const float reach = widen(plan, set, pair);
+            const size_t rows = plan->row_count;
             put_row(m, set, pair);
             const uint32_t row = plan->pair_rows[pair];
-            plan->reach_px[row] = fmaxf(plan->reach_px[row], reach);
+            plan->reach_px[row] = plan->row_count > rows ? reach : fmaxf(plan->reach_px[row], reach);
             plan->has_arc_length[row] = plan->has_arc_length[row] || goes_along(plan, set, pair);
         }
     }

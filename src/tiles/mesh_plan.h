@@ -19,7 +19,7 @@ typedef struct camber_mesh_plan {
     uint32_t *pair_rows;    /* by pair: pairs with equal paints and strokes have one row */
     uint32_t *row_pairs;    /* row_count: the first pair of each row */
     size_t row_count;
-    float *reach_px;      /* by row: how far from its lines pixels are touched, px of zoom z */
+    float *reach_px;      /* by row: how far from its lines it is drawn, px of zoom z; below 0: it is not drawn */
     bool *has_arc_length; /* by row: a paint goes by what lies along its lines */
 } camber_mesh_plan;
 
@@ -31,6 +31,10 @@ void camber_mesh_plan_destroy(camber_mesh_plan *plan);
 /* The paint that a layer of the zoom's plan gives a row of its set at a sample. Its width is 0 where it is not drawn.
  */
 camber_paint camber_mesh_plan_paint(const camber_mesh_plan *plan, size_t layer, uint32_t row, size_t sample);
+/* Whether mesh tiles have what is drawn with a paint. Images are left out, of lines and of areas. */
+static inline bool camber_mesh_plan_draws(const camber_paint *paint) {
+    return paint->fill ? !paint->fill->image && paint->fill->color.a > 0.0f : paint->width_px > 0.0f && !paint->image;
+}
 /* The offset of a row in a layer at a sample, px of that zoom. */
 float camber_mesh_plan_offset(const camber_mesh_plan *plan, size_t layer, uint32_t row, size_t sample);
 /* Whether the row is one of the set. */

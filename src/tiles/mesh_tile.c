@@ -103,7 +103,7 @@ typedef struct cutter {
     double limit;              /* of what 16 bits hold, px from the centre */
     double scale;              /* units a px */
     bool sentinel_is_used;     /* the last sentinel has the neighbour of a ring */
-    bool failed;               /* no memory */
+    camber_status failed;      /* CAMBER_OK: not */
 } cutter;
 
 typedef struct cut_point {
@@ -143,22 +143,21 @@ static cut_point between(cut_point a, cut_point b, double share) {
                        a.along_px + (b.along_px - a.along_px) * (float)share, a.total_px};
 }
 
-static int16_t quantise(double px, double scale) {
-    const double units = floor(px * scale + 0.5);
-    return (int16_t)(units > 32767.0 ? 32767.0 : units < -32767.0 ? -32767.0 : units);
-}
-
 static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
     camber_mesh_tile *tile = c->tile;
     if (c->failed ||
         !camber_grow(tile->context, &tile->records, &tile->record_capacity, tile->record_count + 1,
                      sizeof *tile->records) ||
         !tile->records) {
-        c->failed = true;
+        c->failed = CAMBER_ERROR_MEMORY;
         return;
     }
-    const camber_mesh_record made = {
-        quantise(at.x, c->scale), quantise(at.y, c->scale), row, (uint16_t)flags, at.along_px, at.total_px};
+    const camber_mesh_record made = {camber_mesh_quantise(at.x, c->scale),
+                                     camber_mesh_quantise(at.y, c->scale),
+                                     row,
+                                     (uint16_t)flags,
+                                     at.along_px,
+                                     at.total_px};
     camber_mesh_record *last = tile->record_count ? tile->records + tile->record_count - 1 : NULL;
     const bool repeats = last && last->x == made.x && last->y == made.y;
     if (!(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST)) && repeats) {
@@ -209,19 +208,25 @@ static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, boo
     return own && !(last & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
 }
 
-bool camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number) {
+camber_status camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number) {
     if (!tile->row_slots[row]) {
+        if (tile->row_count == INT16_MAX)
+            return camber_fail(tile->context, CAMBER_ERROR_LIMIT,
+                               "tiles: more than %d kinds of lines and areas in a mesh tile; let the style tell fewer "
+                               "apart, or begin at a higher --min-zoom",
+                               INT16_MAX);
         if (!camber_grow(tile->context, &tile->rows, &tile->row_capacity, tile->row_count + 1, sizeof *tile->rows))
-            return false;
+            return CAMBER_ERROR_MEMORY;
         tile->rows[tile->row_count++] = row;
         tile->row_slots[row] = (uint32_t)tile->row_count;
     }
     *number = (uint16_t)(tile->row_slots[row] - 1);
-    return true;
+    return CAMBER_OK;
 }
 
 static void number_row(cutter *c, line_walk *w) {
-    c->failed |= !camber_mesh_tile_number(c->tile, c->picture->plan->pair_rows[w->line->pair], &w->row);
+    const camber_status status = camber_mesh_tile_number(c->tile, c->picture->plan->pair_rows[w->line->pair], &w->row);
+    c->failed = c->failed ? c->failed : status;
     w->has_row = true;
 }
 
@@ -242,8 +247,8 @@ static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, 
     if (neighbour && !c->failed) {
         const cut_point before = neighbour_of(c, start, neighbour);
         camber_mesh_record *sentinel = c->tile->records + c->tile->record_count - 1;
-        sentinel->x = quantise(before.x, c->scale);
-        sentinel->y = quantise(before.y, c->scale);
+        sentinel->x = camber_mesh_quantise(before.x, c->scale);
+        sentinel->y = camber_mesh_quantise(before.y, c->scale);
         flags = CAMBER_MESH_RING;
     }
     put(c, start, w->row, CAMBER_MESH_FIRST | flags);
@@ -322,33 +327,30 @@ static void put_ring(cutter *c, line_walk *w) {
 
 /* ---- A tile ---- */
 
-/* Whether a line's box comes near the tile. */
+/* Whether a line's box comes near the tile, and the line is drawn. */
 static bool touches(const cutter *c, const camber_mesh_line *line) {
     const camber_mesh_plan *plan = c->picture->plan;
-    const double reach = c->half + (double)plan->reach_px[plan->pair_rows[line->pair]];
-    return line->count > 1 && (double)line->x0 - c->centre_x <= reach && (double)line->x1 - c->centre_x >= -reach &&
-           (double)line->y0 - c->centre_y <= reach && (double)line->y1 - c->centre_y >= -reach;
+    const double own = (double)plan->reach_px[plan->pair_rows[line->pair]], reach = c->half + own;
+    return line->count > 1 && own >= 0.0 && (double)line->x0 - c->centre_x <= reach &&
+           (double)line->x1 - c->centre_x >= -reach && (double)line->y0 - c->centre_y <= reach &&
+           (double)line->y1 - c->centre_y >= -reach;
 }
 
 /* Chooses the units: as fine as 16 bits allow for what reaches farthest. */
 static void choose_units(cutter *c) {
     const camber_mesh_plan *plan = c->picture->plan;
     double most = 0.0;
-    for (size_t i = 0; i < c->picture->line_count; i++)
-        if (touches(c, c->picture->lines + i))
-            most = fmax(most, (double)plan->reach_px[plan->pair_rows[c->picture->lines[i].pair]]);
+    for (size_t i = 0; i < c->picture->line_count + c->picture->ring_count; i++) {
+        const camber_mesh_line *line =
+            i < c->picture->line_count ? c->picture->lines + i : c->picture->rings + (i - c->picture->line_count);
+        if (touches(c, line))
+            most = fmax(most, (double)plan->reach_px[plan->pair_rows[line->pair]]);
+    }
     c->tile->units = CAMBER_MESH_UNITS;
     do {
         c->scale = c->tile->units / (2.0 * c->half);
         c->limit = 32767.0 / c->scale;
     } while (c->limit < c->half + most + 1.0 && (c->tile->units /= 2) > 1);
-}
-
-static size_t set_of(const camber_plan *plan, uint32_t pair) {
-    size_t set = 0;
-    while (pair >= plan->sets[set].first_pair + plan->sets[set].pair_count)
-        set++;
-    return set;
 }
 
 /* Notes that items up to `end` belong to the set. false: no memory. */
@@ -385,8 +387,9 @@ static void put_line(cutter *c, const camber_mesh_line *line) {
     if (tile->segments == before || c->failed)
         return;
     tile->has_arc_length |= plan->has_arc_length[row];
-    const camber_mesh_range range = {set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1};
-    c->failed |= !end_range(tile->context, &tile->ranges, &tile->range_count, &tile->range_capacity, range);
+    const camber_mesh_range range = {camber_mesh_set_of(&plan->zoom->plan, line->pair), first, tile->record_count - 1};
+    if (!end_range(tile->context, &tile->ranges, &tile->range_count, &tile->range_capacity, range))
+        c->failed = CAMBER_ERROR_MEMORY;
 }
 
 static camber_status clear(camber_mesh_tile *tile, const camber_mesh_plan *plan) {
@@ -421,13 +424,7 @@ camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_pi
     for (size_t i = 0; i < picture->line_count && !c.failed; i++)
         if (touches(&c, picture->lines + i))
             put_line(&c, picture->lines + i);
-    if (c.failed)
-        return CAMBER_ERROR_MEMORY;
-    if (tile->row_count > INT16_MAX)
-        return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "tiles: %zu kinds of lines in a mesh tile, and %d fit; let the style tell fewer apart",
-                           tile->row_count, INT16_MAX);
-    return CAMBER_OK;
+    return c.failed;
 }
 
 void camber_mesh_tile_free(camber_mesh_tile *tile) {

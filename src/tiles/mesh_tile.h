@@ -7,6 +7,8 @@
 #include "camber_tiles.h"
 #include "tiles/mesh_plan.h"
 
+#include <math.h>
+
 /* Flags of a record. */
 enum {
     CAMBER_MESH_SENTINEL = 1, /* it stands between polylines */
@@ -89,10 +91,23 @@ typedef struct camber_mesh_tile {
 camber_status camber_mesh_tile_cut(camber_context *context, const camber_mesh_picture *picture, uint32_t tile_px,
                                    uint32_t x, uint32_t y, camber_mesh_tile *tile);
 void camber_mesh_tile_free(camber_mesh_tile *tile);
-/* The tile's number of a row of the plan. false: no memory. */
-bool camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number);
+/* The tile's number of a row of the plan. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (records have 15 bits). */
+camber_status camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number);
 /* Notes that the triangles from an index on are of the set. false: no memory. */
 bool camber_mesh_tile_end_fill(camber_mesh_tile *tile, size_t set, size_t first);
+
+/* Px as whole units; what 16 bits do not hold, becomes the farthest that they do. */
+static inline int16_t camber_mesh_quantise(double px, double scale) {
+    const double units = floor(px * scale + 0.5);
+    return (int16_t)(units > 32767.0 ? 32767.0 : units < -32767.0 ? -32767.0 : units);
+}
+/* The set that has a pair. */
+static inline size_t camber_mesh_set_of(const camber_plan *plan, uint32_t pair) {
+    size_t set = 0;
+    while (pair >= plan->sets[set].first_pair + plan->sets[set].pair_count)
+        set++;
+    return set;
+}
 
 /* Whether this build writes mesh tiles. */
 bool camber_mesh_is_built(void);
@@ -102,7 +117,7 @@ typedef struct camber_mesh_place {
     uint32_t column, row;
     double ratio; /* device px a CSS px */
 } camber_mesh_place;
-/* Encodes a tile that has records. *bytes are freed with camber_free. Returns CAMBER_ERROR_MEMORY. */
+/* Encodes a tile that has records or triangles. *bytes are freed with camber_free. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_mesh_tile_encode(const camber_mesh_tile *tile, const camber_mesh_plan *plan,
                                       const camber_mesh_place *place, uint8_t **bytes, size_t *size_bytes);
 

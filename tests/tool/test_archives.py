@@ -329,6 +329,7 @@ def test_folder_rules():
     make("rule/", 300)
     tile = read("rule/1/0/0.png")
     change(None, lambda: None)
+    change("is no tile by its name", lambda: write("rule/tileset.json", b"{}")) # these are not meshes
     change("is no tile by its name", lambda: write("rule/1/0/01.png", tile))
     change("is no tile by its name", lambda: os.mkdir("rule/maps"))
     change("no such column or row", lambda: write("rule/1/0/2.png", tile))

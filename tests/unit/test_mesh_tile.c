@@ -222,11 +222,32 @@ static void test_seam(void **state) {
     end(&f);
 }
 
+/* Records have 15 bits for a row: one more is refused, and those that are there keep their numbers. */
+static void test_rows(void **state) {
+    (void)state;
+    static const float points[][2] = {{20, 20}, {30, 20}};
+    fixture f;
+    uint16_t number = 0;
+    make(&f, points, 2, 0, 0);
+    f.plan.row_count = 70000;
+    f.picture.line_count = 0;
+    cut(&f);
+    for (uint32_t row = 0; row < INT16_MAX; row++) {
+        assert_int_equal(camber_mesh_tile_number(&f.tile, 69999 - row, &number), CAMBER_OK);
+        assert_int_equal(number, row);
+    }
+    assert_int_equal(camber_mesh_tile_number(&f.tile, 0, &number), CAMBER_ERROR_LIMIT);
+    assert_int_equal(camber_mesh_tile_number(&f.tile, 69999, &number), CAMBER_OK);
+    assert_int_equal(number, 0);
+    end(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units), cmocka_unit_test(test_leaves),         cmocka_unit_test(test_far),
         cmocka_unit_test(test_wide),  cmocka_unit_test(test_beside),         cmocka_unit_test(test_small),
         cmocka_unit_test(test_ring),  cmocka_unit_test(test_cut_by_picture), cmocka_unit_test(test_seam),
+        cmocka_unit_test(test_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

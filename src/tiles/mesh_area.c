@@ -83,7 +83,7 @@ enum {
 
 typedef void callback(void);
 typedef struct glu {
-    void *library;
+    void *handle;
     void *(*create)(void);
     void (*destroy)(void *);
     void (*set_callback)(void *, unsigned, callback *);
@@ -97,14 +97,14 @@ typedef struct glu {
 } glu;
 
 static bool find(const glu *g, const char *name, void *function) {
-    void *found = dlsym(g->library, name);
+    void *found = dlsym(g->handle, name);
     memcpy(function, &found, sizeof found);
     return found != NULL;
 }
 
 static bool load(glu *g) {
-    g->library = dlopen("libGLU.so.1", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    return g->library && find(g, "gluNewTess", &g->create) && find(g, "gluDeleteTess", &g->destroy) &&
+    g->handle = dlopen("libGLU.so.1", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    return g->handle && find(g, "gluNewTess", &g->create) && find(g, "gluDeleteTess", &g->destroy) &&
            find(g, "gluTessCallback", &g->set_callback) && find(g, "gluTessProperty", &g->set_property) &&
            find(g, "gluTessNormal", &g->set_normal) && find(g, "gluTessBeginPolygon", &g->begin_polygon) &&
            find(g, "gluTessBeginContour", &g->begin_contour) && find(g, "gluTessVertex", &g->put_vertex) &&
@@ -125,8 +125,8 @@ camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
             fills = fills || plan->reach_px[plan->pair_rows[whole->sets[s].first_pair + k]] >= 0.0f;
     glu g = {0};
     const bool found = !fills || load(&g);
-    if (g.library)
-        dlclose(g.library);
+    if (g.handle)
+        dlclose(g.handle);
     return found ? CAMBER_OK : tell_missing(plan->context);
 }
 
@@ -341,8 +341,8 @@ camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t
     }
     if (f.tess)
         f.glu.destroy(f.tess);
-    if (f.glu.library)
-        dlclose(f.glu.library);
+    if (f.glu.handle)
+        dlclose(f.glu.handle);
     camber_free(tile->context, f.clipped[0]);
     camber_free(tile->context, f.clipped[1]);
     return status == CAMBER_OK && tile->corner_count ? drop_unused(tile) : status;

@@ -25,8 +25,8 @@
  * loop over work-items around each, which takes twice as long and runs no faster. min_vector_width: LLVM halves
  * AVX-512's vectors unless a function asks for them whole; processors without such take no notice. */
 #ifdef CAMBER_DEVICE
-#define CAMBER_LIST(...) __VA_ARGS__
 #if CAMBER_POINT_CHUNK == CAMBER_BLOCK
+#define CAMBER_LIST(...) __VA_ARGS__ /* for CPUs alone: NVIDIA's compiler knows no such macro */
 #define CAMBER_WORK_ITEM item_id
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     static void name##_item(const size_t item_id, CAMBER_LIST parameters)                                              \

@@ -198,7 +198,7 @@ typedef struct camber_overdraw_desc {
 
 typedef struct camber_overdraw {
     uint64_t fragments;       /* shaded: every pixel of every triangle of the ranges, those without coverage too */
-    uint64_t drawn_pixels;    /* with coverage, once a range */
+    uint64_t drawn_pixels;    /* with coverage, 1e-5 or more, once a range */
     uint64_t repeated_pixels; /* with coverage from more than one fragment of a range, once a range */
 } camber_overdraw;
 

@@ -54,7 +54,7 @@ static void draw_place(void **state, const place *shown, const char *name, cambe
         assert_int_equal(camber_mesh_tessellate(mesh, camber_scene_get_polylines(map), &desc), CAMBER_OK);
         const camber_frame frame = camber_scene_get_frame(map, mesh);
         picture drawn = picture_draw(s->on.renderer[b], &frame);
-        good = golden_judge(name, &drawn);
+        good = golden_judge(s, name, &drawn);
         if (!good)
             printf("%s: not as it should be with %s\n", name, fixture_name(b));
         picture_free(&drawn);
@@ -63,7 +63,7 @@ static void draw_place(void **state, const place *shown, const char *name, cambe
             assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
             const camber_frame again = camber_scene_get_frame(map, mesh);
             drawn = picture_draw(s->on.renderer[b], &again);
-            good = golden_judge(name, &drawn);
+            good = golden_judge(s, name, &drawn);
             if (!good)
                 printf("%s: not as it should be by the network with %s, round %d\n", name, fixture_name(b), round);
             picture_free(&drawn);

@@ -297,7 +297,7 @@ static void test_sheet(void **state) {
             printf("# %-20s with %s: %.3f of 255 on average\n", names[i], fixture_name(k), error);
             good = good && error <= bounds[i];
         }
-        assert_true(golden_judge("polygons", &drawn) && good);
+        assert_true(golden_judge(s, "polygons", &drawn) && good);
         picture_free(&drawn);
         camber_mesh_destroy(mesh);
     }

@@ -13,11 +13,16 @@ typedef struct foot {
     bool is_past;           /* an end */
 } foot;
 
+/* hypot is right for numbers that are far from here, too, and takes several times as long. */
+static double length_of(double x, double y) {
+    return sqrt(x * x + y * y);
+}
+
 double camber_along_length(const float *points, size_t count) {
     double total = 0;
     for (size_t i = 1; i < count; i++)
-        total += hypot((double)points[2 * i] - (double)points[2 * i - 2],
-                       (double)points[2 * i + 1] - (double)points[2 * i - 1]);
+        total += length_of((double)points[2 * i] - (double)points[2 * i - 2],
+                           (double)points[2 * i + 1] - (double)points[2 * i - 1]);
     return total;
 }
 
@@ -27,9 +32,9 @@ static foot foot_of(const camber_along_desc *d, double x, double y) {
     for (size_t i = 0; i + 1 < d->count; i++) {
         const double ax = (double)d->points[2 * i], ay = (double)d->points[2 * i + 1];
         const double dx = (double)d->points[2 * i + 2] - ax, dy = (double)d->points[2 * i + 3] - ay;
-        const double length = hypot(dx, dy), at = ((x - ax) * dx + (y - ay) * dy) / length;
+        const double length = length_of(dx, dy), at = ((x - ax) * dx + (y - ay) * dy) / length;
         const double within = fmin(fmax(at, 0), length);
-        const double distance = hypot(x - ax - within * dx / length, y - ay - within * dy / length);
+        const double distance = length_of(x - ax - within * dx / length, y - ay - within * dy / length);
         if (distance < nearest.distance)
             nearest = (foot){before + within, distance, (i == 0 && at < 0) || (i + 2 == d->count && at > length)};
         before += length;
@@ -70,7 +75,7 @@ static double share_at(const camber_along_desc *d, foot p, double progress) {
         const double dash = dash_distance(d, p.along);
         if (d->cap == CAMBER_CAP_BUTT && dash > 0)
             return 0;
-        p.distance = hypot(p.distance, dash);
+        p.distance = length_of(p.distance, dash);
     }
     if (blur > 0) {
         const double rim = outer - p.distance, inner = gap > 0 ? p.distance - 0.5 * gap + blur : rim;

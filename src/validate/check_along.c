@@ -90,7 +90,13 @@ static void add_inside(size_t line, camber_fill_rule rule, float *rgba) {
     }
 }
 
-static void make_truth(size_t number, float truth[2 * PIXELS]) {
+/* A row, and its pixels by samples. */
+typedef struct expected {
+    size_t number;
+    float levels[2 * PIXELS];
+} expected;
+
+static bool make_truth(size_t number, float truth[2 * PIXELS]) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
     const camber_paint *paint = &rows[number].paint;
     float *rgba = calloc(PIXELS, 4 * sizeof *rgba);
@@ -108,7 +114,9 @@ static void make_truth(size_t number, float truth[2 * PIXELS]) {
         truth[i] = rgba[4 * i];
         truth[PIXELS + i] = rgba[4 * i + 3];
     }
+    const bool made = rgba != NULL;
     free(rgba);
+    return made;
 }
 
 static camber_status draw(camber_context *context, const camber_drawing_path *path, size_t number, camber_method method,
@@ -158,41 +166,47 @@ static bool find(const float *truth, const channels *drawn, camber_check *check)
 }
 
 static camber_status check_row(camber_validation *v, const camber_checked_device *checked,
-                               const camber_checked_drawer *drawer, camber_method method, size_t number) {
+                               const camber_checked_drawer *drawer, camber_method method, const expected *row) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
     camber_check check =
         camber_check_start(checked->name, drawer->name, "along lines: %s: %s: pixels, on %s, %s",
-                           camber_method_get_name(method), rows[number].name, checked->name, drawer->name);
-    float *truth = calloc(2 * PIXELS, sizeof *truth);
+                           camber_method_get_name(method), rows[row->number].name, checked->name, drawer->name);
     channels *drawn = calloc(1, sizeof *drawn);
-    check.most = rows[number].bounds;
-    camber_status made = CAMBER_ERROR_MEMORY;
-    if (truth && drawn) {
-        make_truth(number, truth);
-        made = draw(v->desc->context, &drawer->paths[0], number, method, drawn);
-    }
-    camber_status status = made;
-    if (status == CAMBER_OK && find(truth, drawn, &check)) {
+    check.most = rows[row->number].bounds;
+    camber_status status =
+        drawn ? draw(v->desc->context, &drawer->paths[0], row->number, method, drawn) : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK && find(row->levels, drawn, &check)) {
         check.result = CAMBER_RESULT_FAILED;
-        status = camber_failure_image_write(v, window, truth, drawn->levels, &check.finding);
+        status = camber_failure_image_write(v, window, row->levels, drawn->levels, &check.finding);
     }
     if (status == CAMBER_OK)
         camber_results_add(&v->results, &check);
     free(drawn);
-    free(truth);
     return status;
 }
 
-camber_status camber_check_along(camber_validation *v) {
+static camber_status check_drawer(camber_validation *v, const camber_checked_device *checked,
+                                  const camber_checked_drawer *drawer, const expected *row) {
     const camber_validation_desc *desc = v->desc;
     camber_status status = CAMBER_OK;
-    for (size_t r = 0; r < v->devices.count; r++)
-        for (size_t e = 0; e < v->devices.list[r].drawer_count; e++)
-            for (int method = 0; method < 3; method++)
-                for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_OK; i++)
-                    if ((desc->method < 0 || desc->method == method) &&
-                        camber_draws_method(desc, (camber_method)method) && !v->devices.list[r].broken[method])
-                        status =
-                            check_row(v, &v->devices.list[r], &v->devices.list[r].drawers[e], (camber_method)method, i);
+    for (int method = 0; method < 3 && status == CAMBER_OK; method++)
+        if ((desc->method < 0 || desc->method == method) && camber_draws_method(desc, (camber_method)method) &&
+            !checked->broken[method])
+            status = check_row(v, checked, drawer, (camber_method)method, row);
+    return status;
+}
+
+/* Row after row, since samples take the most time. */
+camber_status camber_check_along(camber_validation *v) {
+    expected *row = malloc(sizeof *row);
+    camber_status status = row ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_OK; i++) {
+        row->number = i;
+        status = make_truth(i, row->levels) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+        for (size_t r = 0; r < v->devices.count; r++)
+            for (size_t e = 0; e < v->devices.list[r].drawer_count && status == CAMBER_OK; e++)
+                status = check_drawer(v, &v->devices.list[r], &v->devices.list[r].drawers[e], row);
+    }
+    free(row);
     return status;
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The tests under AddressSanitizer and UBSan: test_sanitize.sh build SOURCE FOLDER [CMAKE ARGS...], then run FOLDER
+# The tests under AddressSanitizer and UBSan: test_sanitize.sh build SOURCE FOLDER [CMAKE ARGS...], then run FOLDER K/N:
+# every N-th test, from the K-th on
 set -eu
 verb=$1
 shift
@@ -17,6 +18,10 @@ build)
 run)
     # Real cities are for ./dev test --sanitize, and test_kernels is for oclgrind: the other tests call the same.
     unset CAMBER_DATA
-    ctest --test-dir "$1" --output-on-failure -j2 -LE "fuzz|deep|cities" -E '^test_kernels$'
+    # Shares run side by side, and each writes a log in a folder of its own.
+    folder=$1/share-${2%/*}
+    mkdir -p "$folder"
+    echo 'subdirs("..")' >"$folder/CTestTestfile.cmake"
+    ctest --test-dir "$folder" --output-on-failure -I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^test_kernels$'
     ;;
 esac

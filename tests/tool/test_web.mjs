@@ -218,6 +218,31 @@ async function checkDensity(browser, blank) {
     }
 }
 
+// Where the map rests, nothing is copied but a tile that comes; a canvas that was made anew gets all.
+async function checkRest(browser, blank) {
+    const page = await openPage(browser, 'roads', 14), before = await shoot(page, 'rest');
+    const copies = await page.evaluate(() => {
+        const copy = gl.blitFramebuffer, counts = [];
+        let count = 0;
+        gl.blitFramebuffer = (...all) => {
+            count++;
+            copy.apply(gl, all);
+        };
+        const [, entry] = [...tiles].find(([, one]) => one.tile && one.seen === frame);
+        for (const change of [() => {}, () => entry.key = '', fitCanvas]) {
+            count = 0;
+            change();
+            drawFrame();
+            counts.push(count);
+        }
+        return counts;
+    });
+    const found = await comparePictures(blank, await shoot(page, 'rest-again'), before);
+    check(copies[0] === 0 && copies[1] === 1 && copies[2] > 3, 'where the map rests, what is there stays', copies);
+    check(found.same && found.off === 0, 'and is as before', found);
+    await page.context().close();
+}
+
 async function checkBackground(browser) {
     makeTiles('late');
     complaints.length = 0;
@@ -353,6 +378,7 @@ try {
     await checkMoves(browser);
     await checkPointer(browser);
     await checkDensity(browser, blank);
+    await checkRest(browser, blank);
     await checkBackground(browser);
     await checkMemory(browser);
     await checkSubtrees(browser);

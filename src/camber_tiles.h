@@ -83,9 +83,9 @@ typedef struct camber_tiles_findings {
 } camber_tiles_findings;
 
 /* Checks every promise that an archive makes: its header, counts, zooms, bounds, order and sections, its tables,
- * indices and metadata, and each tile: where it lies, and that it is what its type says. A damaged archive has
- * findings, and is no failure. Free *findings with camber_tiles_findings_destroy. Returns CAMBER_ERROR_NOT_FOUND,
- * CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
+ * indices and metadata, the tileset of a folder of meshes, and each tile: where it lies, and that it is what its type
+ * says. A damaged archive has findings, and is no failure. Free *findings with camber_tiles_findings_destroy. Returns
+ * CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_tiles_verify(camber_context *context, const char *path,
                                              camber_tiles_findings **findings);
 CAMBER_API void camber_tiles_findings_destroy(camber_tiles_findings *findings);

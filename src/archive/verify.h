@@ -14,6 +14,7 @@ typedef enum camber_verify_kind {
     CAMBER_VERIFY_BOUNDS,
     CAMBER_VERIFY_BYTES,
     CAMBER_VERIFY_NAME,
+    CAMBER_VERIFY_TILESET,
     CAMBER_VERIFY_KINDS,
 } camber_verify_kind;
 

@@ -1,12 +1,19 @@
-/* Verifies MBTiles and folders: tables, indices, metadata, names, and each tile. */
+/* Verifies MBTiles and folders: tables, indices, metadata, names, tilesets, and each tile. */
+#define _XOPEN_SOURCE 700
+
 #include "archive/folder.h"
+#include "archive/tileset.h"
 #include "archive/verify.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
+#include <unistd.h>
 
 /* ---- Tiles ---- */
 
@@ -187,6 +194,101 @@ camber_status camber_verify_mbtiles(camber_verify *v) {
     return status;
 }
 
+/* ---- Tilesets ---- */
+
+typedef struct tileset {
+    camber_verify *v;
+    bool is_left;    /* tileset.json is missing, or is another's: subtrees are not looked at */
+    uint64_t *names; /* hashes of the subtrees' names */
+    size_t count, capacity;
+} tileset;
+
+/* tileset.json is camber's own, or says other things of the tiles. */
+static void check_root(tileset *t, const char *found, size_t size_bytes, bool same) {
+    json_t *read = same ? NULL : json_loadb(found, size_bytes, JSON_REJECT_DUPLICATES, NULL);
+    t->is_left = !same;
+    if (!same)
+        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, !read, "tileset.json %s",
+                           read ? "is not the one that camber tiles writes; subtrees are not checked" : "is no JSON");
+    json_decref(read);
+}
+
+/* Compares a file beside the tiles with what they give. */
+static camber_status compare_file(void *user, const char *name, const void *bytes, size_t size_bytes) {
+    tileset *t = user;
+    const bool is_root = t->count == 0 && strcmp(name, "tileset.json") == 0;
+    char path[PATH_MAX], *found = NULL;
+    size_t found_bytes = 0;
+    if (t->is_left)
+        return CAMBER_OK;
+    if (!is_root) {
+        if (!camber_grow(t->v->context, &t->names, &t->capacity, t->count + 1, sizeof *t->names))
+            return CAMBER_ERROR_MEMORY;
+        const char *own = strchr(name, '/') + 1;
+        t->names[t->count++] = camber_hash(CAMBER_HASH_START, own, strlen(own));
+    }
+    if (snprintf(path, sizeof path, "%s/%s", t->v->archive->path, name) >= (int)sizeof path)
+        return camber_file_fail(t->v->context, t->v->archive->path, ENAMETOOLONG);
+    if (access(path, F_OK) != 0) {
+        t->is_left = is_root;
+        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, !is_root, "%s is missing%s", name,
+                           is_root ? ": viewers of 3D Tiles find no tiles"
+                                   : ", and with it the tiles that it tells of");
+        return CAMBER_OK;
+    }
+    const camber_status status = camber_read_file(t->v->context, path, CAMBER_NAMED_BY_CALLER, &found, &found_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    const bool same = found_bytes == size_bytes && memcmp(found, bytes, size_bytes) == 0;
+    if (is_root)
+        check_root(t, found, found_bytes, same);
+    else if (!same)
+        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "%s tells of other tiles than there are", name);
+    camber_free(t->v->context, found);
+    return CAMBER_OK;
+}
+
+/* Subtrees that no tile is below. */
+static camber_status check_others(tileset *t) {
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/subtrees", t->v->archive->path) >= (int)sizeof path)
+        return camber_file_fail(t->v->context, t->v->archive->path, ENAMETOOLONG);
+    DIR *opened = opendir(path);
+    const struct dirent *entry;
+    if (t->count)
+        qsort(t->names, t->count, sizeof *t->names, compare_ids);
+    while (opened && (entry = readdir(opened)) != NULL) {
+        const uint64_t hash = camber_hash(CAMBER_HASH_START, entry->d_name, strlen(entry->d_name));
+        if (entry->d_name[0] != '.' && !has_id(t->names, t->count, hash))
+            camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "subtrees/%.80s tells of no tile", entry->d_name);
+    }
+    if (opened)
+        closedir(opened);
+    return CAMBER_OK;
+}
+
+/* The tileset that the tiles give, against the one that is there. The tally is sorted. */
+static camber_status check_tileset(camber_verify *v) {
+    tileset t = {.v = v};
+    const camber_tally_place *places = v->tally.places;
+    camber_archive_run *runs = camber_alloc(v->context, v->tally.place_count, sizeof *runs);
+    camber_archive_plan plan = {.context = v->context, .runs = runs, .metadata = v->archive->metadata};
+    if (!runs)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < v->tally.place_count; i++)
+        if (plan.run_count && runs[plan.run_count - 1].number + runs[plan.run_count - 1].length >= places[i].number)
+            runs[plan.run_count - 1].length = places[i].number + 1 - runs[plan.run_count - 1].number;
+        else
+            runs[plan.run_count++] = (camber_archive_run){.number = places[i].number, .length = 1};
+    plan.max_zoom = camber_archive_zoom(places[v->tally.place_count - 1].number);
+    camber_status status = camber_tileset_write(&plan, compare_file, &t);
+    if (status == CAMBER_OK && !t.is_left)
+        status = check_others(&t);
+    camber_free(v->context, t.names);
+    camber_free(v->context, runs);
+    return status;
+}
+
 /* ---- Folders ---- */
 
 static camber_status take_file(void *user, const camber_folder_file *file) {
@@ -212,5 +314,6 @@ camber_status camber_verify_folder(camber_verify *v) {
         status = camber_archive_walk(v->archive, take_tile, v);
     if (status == CAMBER_OK)
         check_twice(v);
-    return status;
+    return status == CAMBER_OK && v->archive->type == CAMBER_TILE_GLB && v->tally.place_count ? check_tileset(v)
+                                                                                              : status;
 }

@@ -231,6 +231,7 @@ static int read_archive(reading *it) {
     it->shown.attribution = options->attribution ? options->attribution : attribution;
     it->shown.reader = it->reader;
     it->shown.metadata = info->metadata;
+    it->shown.tileset = type == CAMBER_ROUTE_GLB && strcmp(info->format, "folder") == 0 ? options->inputs[0] : NULL;
     it->shown.min_zoom = info->min_zoom;
     it->shown.max_zoom = info->max_zoom;
     it->shown.has_bounds = info->has_bounds;

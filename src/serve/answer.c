@@ -10,7 +10,9 @@
 #include "serve/gzip.h"
 #include "serve/page.h"
 
+#include <limits.h>
 #include <poll.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -208,6 +210,26 @@ static enum MHD_Result answer_stored(request *r, const camber_view_of_shown *vie
     return send_answer(r, &a);
 }
 
+/* The tileset of a folder of mesh tiles. Its files are named by numbers. */
+static enum MHD_Result answer_tileset(request *r) {
+    const camber_view_of_shown view = look(r->listener->server, false, NULL);
+    const bool is_root = r->route.route == CAMBER_ROUTE_TILESET;
+    char path[PATH_MAX];
+    if (!view.ready)
+        return send_error(r, 503);
+    if (!view.tileset)
+        return send_error(r, 404);
+    const int length = is_root ? snprintf(path, sizeof path, "%s/tileset.json", view.tileset)
+                               : snprintf(path, sizeof path, "%s/subtrees/%d.%u.%u.subtree", view.tileset,
+                                          r->route.zoom, r->route.column, r->route.row);
+    reply a = {.status = 200,
+               .body = length < (int)sizeof path ? camber_body_read(path) : NULL,
+               .media_type = is_root ? "application/json" : "application/octet-stream",
+               .cache_control = "public, max-age=300"};
+    memcpy(a.last_modified, view.last_modified, sizeof a.last_modified);
+    return a.body ? send_answer(r, &a) : send_error(r, 404);
+}
+
 static void wake(camber_ask *ask) {
     const request *r = ask->user;
     MHD_resume_connection(r->connection);
@@ -341,6 +363,8 @@ static enum MHD_Result answer(request *r) {
     switch (r->route.route) {
     case CAMBER_ROUTE_PAGE: return answer_page(r);
     case CAMBER_ROUTE_TILEJSON: return answer_tilejson(r);
+    case CAMBER_ROUTE_TILESET:
+    case CAMBER_ROUTE_SUBTREE: return answer_tileset(r);
     case CAMBER_ROUTE_TILE:
     case CAMBER_ROUTE_STATIC: return answer_drawn(r);
     case CAMBER_ROUTE_HEALTH: return answer_health(r);

@@ -20,6 +20,7 @@ typedef struct camber_view_of_shown {
     camber_route_type type;      /* of an archive's tiles */
     bool gzipped;                /* an archive's tiles are compressed */
     camber_body *tilejson[2][2]; /* light or the only one, and dark; plain and compressed. NULL: there is none */
+    const char *tileset;         /* the folder with a tileset. NULL: there is none */
     char last_modified[CAMBER_DATE_SIZE]; /* "": not told */
 } camber_view_of_shown;
 

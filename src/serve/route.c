@@ -20,8 +20,8 @@ static const struct {
 };
 
 const char *camber_route_get_name(camber_route route) {
-    static const char *const names[CAMBER_ROUTES] = {"none",   "page",   "tilejson", "tile",
-                                                     "static", "health", "events",   "metrics"};
+    static const char *const names[CAMBER_ROUTES] = {"none",    "page",   "tilejson", "tile",   "tileset",
+                                                     "subtree", "static", "health",   "events", "metrics"};
     return names[route];
 }
 
@@ -116,14 +116,30 @@ static bool take_ending(cursor *c, const camber_route_limits *limits, camber_rou
 
 /* ---- Routes ---- */
 
-static bool take_tile(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+static const char SUBTREES[] = "subtrees/";
+
+static bool take_place(cursor *c, const char *between, camber_route_request *r) {
     uint32_t zoom;
-    if (!take_count(c, &zoom) || zoom > MOST_ZOOM || !take(c, "/") || !take_count(c, &r->column) || !take(c, "/") ||
-        !take_count(c, &r->row) || r->column >> zoom || r->row >> zoom)
+    if (!take_count(c, &zoom) || zoom > MOST_ZOOM || !take(c, between) || !take_count(c, &r->column) ||
+        !take(c, between) || !take_count(c, &r->row) || r->column >> zoom || r->row >> zoom)
         return false;
     r->zoom = (int)zoom;
+    return true;
+}
+
+static bool take_tile(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
     r->route = CAMBER_ROUTE_TILE;
-    return take_ending(c, limits, r);
+    return take_place(c, "/", r) && take_ending(c, limits, r);
+}
+
+static bool take_subtree(cursor *c, camber_route_request *r) {
+    r->route = CAMBER_ROUTE_SUBTREE;
+    return take_place(c, ".", r) && take(c, ".subtree") && c->at == c->end;
+}
+
+/* 3d-tiles-renderer 0.5 writes two slashes before what a tileset at the root of a server refers to. */
+static bool take_of_tileset(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    return take(c, SUBTREES) ? take_subtree(c, r) : take_tile(c, limits, r) && r->type == CAMBER_ROUTE_GLB;
 }
 
 static bool take_static(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
@@ -171,8 +187,12 @@ static bool take_path(cursor *c, const camber_route_limits *limits, camber_route
         r->name = c->at;
         return true;
     }
+    if (take(c, "/"))
+        return take_of_tileset(c, limits, r);
     if (take(c, "page/"))
         return take_name(c, r);
+    if (take(c, SUBTREES))
+        return take_subtree(c, r);
     r->dark = take(c, "dark/");
     if (is_digit(c))
         return take_tile(c, limits, r);
@@ -180,8 +200,8 @@ static bool take_path(cursor *c, const camber_route_limits *limits, camber_route
         return take_static(c, limits, r);
     return take_word(c, "tiles.json", CAMBER_ROUTE_TILEJSON, r) ||
            (!r->dark &&
-            (take_word(c, "health", CAMBER_ROUTE_HEALTH, r) || take_word(c, "events", CAMBER_ROUTE_EVENTS, r) ||
-             take_word(c, "metrics", CAMBER_ROUTE_METRICS, r)));
+            (take_word(c, "tileset.json", CAMBER_ROUTE_TILESET, r) || take_word(c, "health", CAMBER_ROUTE_HEALTH, r) ||
+             take_word(c, "events", CAMBER_ROUTE_EVENTS, r) || take_word(c, "metrics", CAMBER_ROUTE_METRICS, r)));
 }
 
 int camber_route_parse(const camber_route_limits *limits, const char *method, const char *path,

@@ -4,12 +4,14 @@
  *     /page/NAME                              a file of the page
  *     /tiles.json                             TileJSON
  *     /{z}/{x}/{y}[@Rx].{type}                a tile
+ *     /tileset.json                           3D Tiles: of a folder of mesh tiles
+ *     /subtrees/{z}.{x}.{y}.subtree           which of its tiles there are below one
  *     /static/{lon},{lat},{zoom}[@bearing[,pitch]]/{w}x{h}[@Rx].{type}
  *                                             a picture of any place
  *     /health   /events   /metrics
  *
  * /dark before a tile, a picture and tiles.json asks for the built-in style's dark theme. There are no other paths, and
- * no file is found by a path. */
+ * files are found by numbers alone. */
 #ifndef CAMBER_SERVE_ROUTE_H
 #define CAMBER_SERVE_ROUTE_H
 
@@ -22,6 +24,8 @@ typedef enum camber_route {
     CAMBER_ROUTE_PAGE,
     CAMBER_ROUTE_TILEJSON,
     CAMBER_ROUTE_TILE,
+    CAMBER_ROUTE_TILESET,
+    CAMBER_ROUTE_SUBTREE,
     CAMBER_ROUTE_STATIC,
     CAMBER_ROUTE_HEALTH,
     CAMBER_ROUTE_EVENTS,
@@ -51,7 +55,7 @@ typedef struct camber_route_request {
     bool dark;
     camber_route_type type;
     uint32_t ratio;
-    int zoom; /* of a tile */
+    int zoom; /* of a tile, or of a subtree's root */
     uint32_t column, row;
     double longitude, latitude, map_zoom, bearing_deg, pitch_deg; /* of a picture */
     uint32_t width, height;                                       /* CSS px */

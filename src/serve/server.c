@@ -304,7 +304,8 @@ const char *camber_server_get_metrics_address(const camber_server *server) {
 static bool describe(const camber_server *server, const camber_shown *shown, camber_view_of_shown *view) {
     const bool has_dark = !shown->reader && shown->chart.styles[1];
     struct tm parts;
-    *view = (camber_view_of_shown){.ready = true, .is_archive = shown->reader != NULL, .has_dark = has_dark};
+    *view = (camber_view_of_shown){
+        .ready = true, .is_archive = shown->reader != NULL, .has_dark = has_dark, .tileset = shown->tileset};
     if (shown->modified && gmtime_r(&shown->modified, &parts))
         (void)strftime(view->last_modified, sizeof view->last_modified, "%a, %d %b %Y %H:%M:%S GMT", &parts);
     for (int dark = 0; dark < (has_dark ? 2 : 1); dark++) {

@@ -47,14 +47,18 @@ static camber_body *read_body(int file) {
     return body;
 }
 
-camber_body *camber_tile_folder_get(const camber_tile_folder *folder, uint64_t input, camber_tile_key key) {
-    char path[PATH_MAX];
-    const int file = name_tile(folder, input, key, path) ? open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1;
+camber_body *camber_body_read(const char *path) {
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0)
         return NULL;
     camber_body *body = read_body(file);
     close(file);
     return body;
+}
+
+camber_body *camber_tile_folder_get(const camber_tile_folder *folder, uint64_t input, camber_tile_key key) {
+    char path[PATH_MAX];
+    return name_tile(folder, input, key, path) ? camber_body_read(path) : NULL;
 }
 
 void camber_tile_folder_put(camber_tile_folder *folder, uint64_t input, camber_tile_key key, const camber_body *body) {

@@ -17,6 +17,8 @@ typedef struct camber_tile_folder {
     atomic_bool fails;
 } camber_tile_folder;
 
+/* The bytes of a file, which the caller then holds. NULL: it is not there, is empty, or cannot be read. */
+camber_body *camber_body_read(const char *path);
 /* The tile, which the caller then holds. NULL: it is not there, or cannot be read. */
 camber_body *camber_tile_folder_get(const camber_tile_folder *folder, uint64_t input, camber_tile_key key);
 void camber_tile_folder_put(camber_tile_folder *folder, uint64_t input, camber_tile_key key, const camber_body *body);

@@ -273,15 +273,16 @@ static json_t *number(double value) {
     return rounded == floor(rounded) ? json_integer((json_int_t)rounded) : json_real(rounded);
 }
 
-/* Sets a list of samples, or one where all are the same; nothing where that is the default. Takes the list. */
+/* Sets a list of samples, or one where all are the same; nothing where that is the default. Takes both. */
 static void set_samples(encoder *e, json_t *object, const char *key, json_t *samples, json_t *normal) {
     bool same = true;
+    e->ok &= normal != NULL;
     for (size_t s = 1; s < json_array_size(samples); s++)
         same = same && json_equal(json_array_get(samples, 0), json_array_get(samples, s));
     json_t *first = json_array_get(samples, 0);
     if (!same)
         set(e, object, key, json_incref(samples));
-    else if (!normal || !json_equal(first, normal))
+    else if (!json_equal(first, normal))
         set(e, object, key, json_incref(first));
     json_decref(samples);
     json_decref(normal);
@@ -349,7 +350,7 @@ static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     }
     for (int k = 0; k < LISTS; k++)
         set_samples(e, object, names[k], lists[k],
-                    k == COLOR || (k == WIDTH && !seen.fill) ? NULL
+                    k == COLOR || (k == WIDTH && !seen.fill) ? json_null()
                     : k == OPACITY                           ? json_integer(1)
                     : k == MOVE                              ? json_pack("[i, i]", 0, 0)
                                                              : json_integer(0));
@@ -381,6 +382,7 @@ static json_t *layer_json(encoder *e, size_t layer, const camber_mesh_range *ran
     json_t *object = json_pack("{s:s, s:[I, I], s:o}", "id", own->look.layer->id,
                                own->part == CAMBER_PLAN_AREA ? "indices" : "range", (json_int_t)range->first,
                                (json_int_t)(range->end - range->first), "paints", paints);
+    e->ok &= object != NULL;
     if (opacity < 1.0)
         set(e, object, "opacity", number(opacity));
     if (own->look.layer->overlap != CAMBER_OVERLAP_FLATTEN)
@@ -577,16 +579,27 @@ static uint8_t *put_u32(uint8_t *to, size_t value) {
     return to;
 }
 
-static camber_status write_file(encoder *e, const char *json, uint8_t **bytes, size_t *size_bytes) {
-    const size_t length = strlen(json), text = (length + 3) / 4 * 4;
+static camber_status fail_json(const encoder *e) {
+    return camber_fail(e->context, CAMBER_ERROR_MEMORY, "tiles: no memory for the style of a mesh tile");
+}
+
+/* jansson's functions for memory are the process's: they may be others than ours, so the text is written in place. */
+static camber_status write_file(encoder *e, const json_t *root, uint8_t **bytes, size_t *size_bytes) {
+    enum { AS = JSON_COMPACT | JSON_REAL_PRECISION(10) };
+    const size_t length = e->ok ? json_dumpb(root, NULL, 0, AS) : 0, text = (length + 3) / 4 * 4;
     const size_t binary = e->start[STREAMS], total = 12 + 8 + text + 8 + binary;
-    uint8_t *file = camber_alloc_zero(e->context, total, 1);
+    uint8_t *file = length ? camber_alloc_zero(e->context, total, 1) : NULL;
+    if (!length)
+        return fail_json(e);
     if (!file)
         return CAMBER_ERROR_MEMORY;
     uint8_t *to = put_u32(put_u32(put_u32(file, 0x46546c67u), 2), total); /* glTF */
     to = put_u32(put_u32(to, text), 0x4e4f534au);                         /* JSON */
     memset(to, ' ', text);
-    memcpy(to, json, length);
+    if (json_dumpb(root, (char *)to, length, AS) != length) {
+        camber_free(e->context, file);
+        return fail_json(e);
+    }
     to = put_u32(put_u32(to + text, binary), 0x004e4942u); /* BIN */
     memcpy(to, e->packed, binary);
     *bytes = file;
@@ -602,10 +615,7 @@ camber_status camber_mesh_tile_encode(const camber_mesh_tile *tile, const camber
         status = compress(&e);
     if (status == CAMBER_OK) {
         json_t *root = root_json(&e);
-        char *json = root && e.ok ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(10)) : NULL;
-        status = json ? write_file(&e, json, bytes, size_bytes)
-                      : camber_fail(e.context, CAMBER_ERROR_MEMORY, "tiles: no memory for the style of a mesh tile");
-        free(json);
+        status = write_file(&e, root, bytes, size_bytes);
         json_decref(root);
     }
     camber_free(e.context, e.packed);

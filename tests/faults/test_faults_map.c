@@ -1,10 +1,13 @@
-/* The n-th allocation fails, for every n, in libcamber-map: styles, files of every kind, scenes, GLB. The status says
- * so in one line, nothing is kept, what failed works afterwards. jansson allocates by itself, with functions that
- * belong to the process: the library leaves them alone, and here they fail too. GDAL's cannot be replaced. */
+/* The n-th allocation fails, for every n, in libcamber-map: styles, files of every kind, scenes, GLB, mesh tiles. The
+ * status says so in one line, nothing is kept, what failed works afterwards. jansson allocates by itself, with
+ * functions that belong to the process: the library leaves them alone, and here they fail too. GDAL's cannot be
+ * replaced. */
 #include "core.h"
 
 #include "camber_map.h"
+#include "kernels/layout.h"
 #include "source/features.h"
+#include "tiles/mesh_tile.h"
 
 #include <cpl_conv.h>
 #include <errno.h>
@@ -69,6 +72,7 @@ typedef struct desk {
     uint64_t scene_hash;
     camber_mesh_data mesh;
     byte_list glb;
+    uint64_t mesh_tile; /* hash of its bytes. 0: it was not made yet */
 } desk;
 
 /* ---- The result as a number ---- */
@@ -223,6 +227,66 @@ static camber_status try_glb(camber_context *context, void *user) {
 
 /* ---- Files ---- */
 
+/* A zigzag through the tile for each pair that has lines, drawn or not. */
+enum { ZIGZAG = 40, PAIRS_MOST = 64 };
+static void make_lines(const camber_mesh_plan *plan, camber_record *records, camber_mesh_picture *picture) {
+    const camber_plan *p = &plan->zoom->plan;
+    *picture = (camber_mesh_picture){.plan = plan, .lines = calloc(PAIRS_MOST, sizeof *picture->lines)};
+    picture->data.records = records;
+    assert_non_null(picture->lines);
+    for (size_t set = 0; set < p->set_count; set++)
+        for (size_t k = 0; k < p->sets[set].pair_count && !camber_plan_is_area(p, p->sets + set); k++) {
+            const size_t first = ZIGZAG * picture->line_count;
+            assert_true(picture->line_count < PAIRS_MOST);
+            picture->lines[picture->line_count++] = (camber_mesh_line){.first = first,
+                                                                       .count = ZIGZAG,
+                                                                       .pair = (uint32_t)(p->sets[set].first_pair + k),
+                                                                       .x0 = 0,
+                                                                       .y0 = 0,
+                                                                       .x1 = 20 * ZIGZAG,
+                                                                       .y1 = 100};
+            for (size_t i = 0; i < ZIGZAG; i++)
+                records[first + i] = (camber_record){.x = 20.0f * (float)i,
+                                                     .y = i % 2 ? 100.0f : 0.0f,
+                                                     .last = CAMBER_POINT_REAL | (i ? 0u : CAMBER_POINT_FIRST) |
+                                                             (i + 1 < ZIGZAG ? 0u : CAMBER_POINT_LAST)};
+        }
+    picture->data.info.record_count = ZIGZAG * picture->line_count;
+}
+
+/* Plans, cuts and encodes a mesh tile. What a device draws for it is made by hand, and free of the context. */
+static camber_status try_mesh_tile(camber_context *context, void *user) {
+    desk *d = user;
+    static camber_record records[ZIGZAG * PAIRS_MOST];
+    const camber_zoom_desc desc = {.zoom = 10, .scale_px = 512 << 10, .ratio = 1, .simplify_px = 0.1};
+    const camber_mesh_place place = {10, 540, 350, 1};
+    camber_mesh_plan *plan = NULL;
+    camber_mesh_tile tile = {0};
+    uint8_t *bytes = NULL;
+    size_t size_bytes = 0;
+    camber_status status = camber_mesh_plan_create(d->features, &desc, &plan);
+    if (status == CAMBER_OK) {
+        camber_mesh_picture picture;
+        make_lines(plan, records, &picture);
+        assert_true(picture.line_count > 2);
+        status = camber_mesh_tile_cut(context, &picture, 512, 0, 0, &tile);
+        free(picture.lines);
+    }
+    if (status == CAMBER_OK) {
+        assert_true(tile.record_count > ZIGZAG && tile.range_count > 1);
+        status = camber_mesh_tile_encode(&tile, plan, &place, &bytes, &size_bytes);
+    }
+    if (status == CAMBER_OK) {
+        const uint64_t hash = camber_hash(CAMBER_HASH_START, bytes, size_bytes);
+        assert_true(size_bytes > 500 && (!d->mesh_tile || d->mesh_tile == hash));
+        d->mesh_tile = hash;
+    }
+    camber_free(context, bytes);
+    camber_mesh_tile_free(&tile);
+    camber_mesh_plan_destroy(plan);
+    return status;
+}
+
 static void write_text(const char *path, const char *text) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
@@ -341,6 +405,12 @@ static void test_glb(void **state) {
     each_fails(*state, try_glb);
 }
 
+static void test_mesh_tiles(void **state) {
+    if (!camber_mesh_is_built())
+        skip();
+    each_fails(*state, try_mesh_tile);
+}
+
 /* A set that has a file already keeps it whole through every failure to read another, and takes that one afterwards.
  * Five arrays shrink at the end: one that cannot stays as it is, and the file is read. */
 static void test_set_stays(void **state) {
@@ -439,13 +509,15 @@ static void each_json_fails(desk *d, camber_status (*attempt)(camber_context *co
 static void test_json(void **state) {
     each_json_fails(*state, try_style);
     each_json_fails(*state, try_glb);
+    if (camber_mesh_is_built())
+        each_json_fails(*state, try_mesh_tile);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_styles), cmocka_unit_test(test_files),     cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_glb),    cmocka_unit_test(test_set_stays), cmocka_unit_test(test_settings),
-        cmocka_unit_test(test_json),
+        cmocka_unit_test(test_styles),   cmocka_unit_test(test_files),      cmocka_unit_test(test_scenes),
+        cmocka_unit_test(test_glb),      cmocka_unit_test(test_mesh_tiles), cmocka_unit_test(test_set_stays),
+        cmocka_unit_test(test_settings), cmocka_unit_test(test_json),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,6 +1,8 @@
 // What the tests that drive Debian's Chromium share: starting it, and comparing what it shows with what camber draws.
+import {spawn} from 'node:child_process';
 import {existsSync} from 'node:fs';
 import {createRequire} from 'node:module';
+import {createServer} from 'node:net';
 import {join} from 'node:path';
 
 const modules = process.env.NODE_PATH ?? '';
@@ -24,6 +26,36 @@ export function launchBrowser(...names) {
     return createRequire(import.meta.url)('playwright-core').chromium.launch({executablePath,
         args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
             ...names.filter(isSwitch)]});
+}
+
+// Starts `camber serve` of an input: its URL without a slash at its end, and what stops it. Where the build has no
+// server, the URL is null.
+export async function startServe(tool, input) {
+    const port = await new Promise(resolve => {
+        const socket = createServer().listen(0, '127.0.0.1', () => {
+            const found = socket.address().port;
+            socket.close(() => resolve(found));
+        });
+    });
+    const url = `http://127.0.0.1:${port}`;
+    const serve = spawn(tool, ['serve', '-q', input, '--listen', `127.0.0.1:${port}`],
+        {stdio: ['ignore', 'ignore', 'pipe']});
+    let complaint = '';
+    serve.stderr.on('data', text => complaint += text);
+    const gone = new Promise(resolve => serve.on('close', resolve));
+    const isReady = () => fetch(url + '/health').then(answer => answer.ok, () => false);
+    for (let wait = 0; wait < 100 && serve.exitCode === null && !await isReady(); wait++)
+        await new Promise(resolve => setTimeout(resolve, 100));
+    const stop = () => {
+        serve.kill();
+        return gone;
+    };
+    if (serve.exitCode === null)
+        return {url, stop};
+    await gone;
+    if (!complaint.includes('this build has no server'))
+        throw new Error(complaint);
+    return {url: null, stop};
 }
 
 // The corner of tiles of 256 px next to a place. Such a tile has one zoom more than the map.

@@ -704,6 +704,43 @@ def test_archives():
     server.stop()
 
 
+def test_tileset():
+    """A folder of mesh tiles has a tileset, whose files are named by numbers; other archives have none."""
+    write_map("map.json")
+    for name in ("m/", "m.pmtiles"):
+        done = subprocess.run([TOOL, "tiles", "map.json", "-o", name, "-q", "--format", "glb", "--min-zoom", "8", "--max-zoom", "13"],
+                              capture_output=True, text=True, timeout=120, check=False)
+        if "this build writes no mesh tiles" in done.stderr:
+            print("test_tileset: no meshoptimizer: skipped")
+            return
+        expect(done.returncode == 0, done.stderr)
+    subtrees = sorted(os.listdir("m/subtrees"))
+    paths = ["tileset.json", *("subtrees/" + name for name in subtrees)]
+    expect(len(subtrees) > 1, subtrees)
+    for name in ("m/", "m"):
+        server = Server(name)
+        for path in paths:
+            with open("m/" + path, "rb") as file:
+                body = file.read()
+            status, headers, got = server.get("/" + path)
+            kind = "application/json" if path == "tileset.json" else "application/octet-stream"
+            expect(status == 200 and got == body and headers["content-type"] == kind, f"{path}: {status}")
+            expect(server.request("/" + path, If_None_Match=headers["etag"])[0] == 304, "304 of a tileset")
+        # A viewer writes two slashes where a tileset lies at the root.
+        expect(server.get("//" + paths[1])[0] == 200, "two slashes")
+        for path in ("/subtrees/0.0.1.subtree", "/subtrees/7.0.0.subtree", "/metadata.json", "/subtrees/metadata.json"):
+            expect(server.get(path)[0] == 404, path)
+        expect(server.metric('requests_total{route="tileset",status="200"}') == 1, "tilesets are not counted")
+        server.stop()
+    server = Server("m.pmtiles")
+    expect(server.get("/" + paths[0])[0] == server.get("/" + paths[1])[0] == 404, "a tileset of PMTiles")
+    server.stop()
+    subprocess.run([TOOL, "tiles", "merge", "m.pmtiles", "-o", "again/", "-q"], check=True, timeout=120)
+    for path in paths:
+        with open("m/" + path, "rb") as one, open("again/" + path, "rb") as other:
+            expect(one.read() == other.read(), f"{path} of a folder that was merged")
+
+
 def test_cut_archive():
     """An archive that is cut or overwritten while it is served: errors, and no end of the server."""
     write_map("map.json")

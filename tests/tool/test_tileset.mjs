@@ -5,7 +5,7 @@ import {execFileSync} from 'node:child_process';
 import {existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {extname, join, normalize} from 'node:path';
-import {launchBrowser} from './browser.mjs';
+import {launchBrowser, startServe} from './browser.mjs';
 
 const SIZE = {width: 512, height: 512}, ZOOM = 13; // MapLibre's: tiles of 256 px have one more
 const [tool, input, folder] = process.argv.slice(2), modules = process.env.NODE_PATH ?? '';
@@ -40,7 +40,7 @@ const scene = new Scene(), half = ${metres} / 2;
 scene.background = new Color('#ffffff');
 const camera = new OrthographicCamera(-half, half, half, -half, 1, 20000);
 camera.position.set(${east}, ${north}, 10000);
-const tiles = new TilesRenderer('/tiles/tileset.json');
+const tiles = new TilesRenderer(new URLSearchParams(location.search).get('tiles') ?? '/tiles/tileset.json');
 const loader = new GLTFLoader(tiles.manager);
 loader.setMeshoptDecoder(MeshoptDecoder);
 tiles.manager.addHandler(/\\.(gltf|glb)$/g, loader);
@@ -81,22 +81,34 @@ const server = createServer((request, response) => {
 }).listen(0, '127.0.0.1');
 await new Promise(resolve => server.on('listening', resolve));
 
-const tab = await browser.newPage({viewport: SIZE}), said = [];
-tab.on('console', message => ['error', 'warning'].includes(message.type()) && said.push(message.text()));
-tab.on('pageerror', error => said.push(String(error)));
-await tab.goto(`http://127.0.0.1:${server.address().port}/`);
-await tab.waitForFunction(() => window.models > 0 && window.visible > 0 && window.loading === 0, null, {timeout: 90000})
-    .catch(error => said.push(String(error)));
-const start = await tab.evaluate(() => window.frames ?? 0);
-await tab.waitForFunction(least => window.frames > least, start + 3, {timeout: 30000}).catch(error => said.push(String(error)));
-const shown = await tab.screenshot();
+async function look(tab, tileset, from) {
+    const said = [];
+    tab.on('console', message => ['error', 'warning'].includes(message.type()) && said.push(message.text()));
+    tab.on('pageerror', error => said.push(String(error)));
+    await tab.goto(`http://127.0.0.1:${server.address().port}/${tileset}`);
+    await tab.waitForFunction(() => window.models > 0 && window.visible > 0 && window.loading === 0, null, {timeout: 90000})
+        .catch(error => said.push(String(error)));
+    const start = await tab.evaluate(() => window.frames ?? 0);
+    await tab.waitForFunction(least => window.frames > least, start + 3, {timeout: 30000}).catch(error => said.push(String(error)));
+    const shown = await tab.screenshot();
+    const state = await tab.evaluate(() => ({errors: window.errors, models: window.models, visible: window.visible}));
+    check(state.models > 0 && state.visible > 0, `tiles ${from} are loaded and seen`, state);
+    check(state.errors?.length === 0, 'without an error', state.errors);
+    const own = said.filter(text => !/limited support|GPU stall|GL Driver Message/.test(text));
+    check(own.length === 0, 'and nothing is said on the console', own.slice(0, 5));
+    check(missing.length === 0, 'all that is asked for is there', missing.slice(0, 5));
+    return shown;
+}
+const tab = await browser.newPage({viewport: SIZE}), shown = await look(tab, '', 'of a folder');
 writeFileSync(join(folder, 'tileset.png'), shown);
-const state = await tab.evaluate(() => ({errors: window.errors, models: window.models, visible: window.visible}));
-check(state.models > 0 && state.visible > 0, 'tiles are loaded and seen', state);
-check(state.errors?.length === 0, 'without an error', state.errors);
-const own = said.filter(text => !/limited support|GPU stall|GL Driver Message/.test(text));
-check(own.length === 0, 'and nothing is said on the console', own.slice(0, 5));
-check(missing.length === 0, 'all that is asked for is there', missing.slice(0, 5));
+const {url: served, stop} = await startServe(tool, drawn);
+if (served !== null) {
+    const other = await browser.newPage({viewport: SIZE});
+    const again = await look(other, '?tiles=' + encodeURIComponent(served + '/tileset.json'), 'of camber serve');
+    check(again.equals(shown), 'and look the same');
+    await other.close();
+    await stop();
+}
 
 // Lines are where camber draws them: of the pixels that it colours most are coloured, and few others.
 const drawing = join(folder, 'drawn.png');

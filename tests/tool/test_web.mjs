@@ -2,11 +2,11 @@
 // usage: test_web.mjs CAMBER PAGE INPUT FOLDER
 // INPUT has streets around CENTER. npm's playwright-core is found through NODE_PATH, Chromium on PATH. Tiles and
 // screenshots stay in FOLDER. Exit status: 1 where a check failed, 77 where something is not installed.
-import {execFileSync, spawn} from 'node:child_process';
+import {execFileSync} from 'node:child_process';
 import {mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {join} from 'node:path';
-import {comparePictures, launchBrowser, skip} from './browser.mjs';
+import {comparePictures, launchBrowser, skip, startServe} from './browser.mjs';
 
 const CENTER = [-122.0268, 36.9735]; // Santa Cruz
 const WIDE = {width: 1280, height: 720};
@@ -218,6 +218,31 @@ async function checkDensity(browser, blank) {
     }
 }
 
+// Where the map rests, nothing is copied but a tile that comes; a canvas that was made anew gets all.
+async function checkRest(browser, blank) {
+    const page = await openPage(browser, 'roads', 14), before = await shoot(page, 'rest');
+    const copies = await page.evaluate(() => {
+        const copy = gl.blitFramebuffer, counts = [];
+        let count = 0;
+        gl.blitFramebuffer = (...all) => {
+            count++;
+            copy.apply(gl, all);
+        };
+        const [, entry] = [...tiles].find(([, one]) => one.tile && one.seen === frame);
+        for (const change of [() => {}, () => entry.key = '', fitCanvas]) {
+            count = 0;
+            change();
+            drawFrame();
+            counts.push(count);
+        }
+        return counts;
+    });
+    const found = await comparePictures(blank, await shoot(page, 'rest-again'), before);
+    check(copies[0] === 0 && copies[1] === 1 && copies[2] > 3, 'where the map rests, what is there stays', copies);
+    check(found.same && found.off === 0, 'and is as before', found);
+    await page.context().close();
+}
+
 async function checkBackground(browser) {
     makeTiles('late');
     complaints.length = 0;
@@ -312,32 +337,15 @@ async function checkDamage(browser) {
 // The same tiles from camber serve, at another address.
 async function checkServe(browser) {
     complaints.length = 0;
-    const port = await new Promise(resolve => {
-        const socket = createServer().listen(0, '127.0.0.1', () => {
-            const found = socket.address().port;
-            socket.close(() => resolve(found));
-        });
-    });
-    const serve = spawn(tool, ['serve', '-q', makeTiles('roads') + '/', '--listen', `127.0.0.1:${port}`],
-        {stdio: ['ignore', 'ignore', 'pipe']});
-    let complaint = '';
-    serve.stderr.on('data', text => complaint += text);
-    const gone = new Promise(resolve => serve.on('close', resolve));
-    const isReady = () => fetch(`http://127.0.0.1:${port}/health`).then(answer => answer.ok, () => false);
-    for (let wait = 0; wait < 100 && serve.exitCode === null && !await isReady(); wait++)
-        await new Promise(resolve => setTimeout(resolve, 100));
-    if (serve.exitCode === null) {
-        const page = await openPage(browser, encodeURIComponent(`http://127.0.0.1:${port}/tiles.json`), 14);
-        const state = await page.locator('#state').textContent(), told = await page.locator('#notice').textContent();
-        check(/ [1-9][0-9]* tiles/.test(state) && told === '' && complaints.length === 0,
-            'camber serve hands out the tiles', {state, told, complaints});
-        await page.context().close();
-        serve.kill();
-        await gone;
-    } else {
-        await gone;
-        check(complaint.includes('this build has no server'), 'camber serve starts, if it was built', complaint);
-    }
+    const {url: at, stop} = await startServe(tool, makeTiles('roads') + '/');
+    if (at === null)
+        return;
+    const page = await openPage(browser, encodeURIComponent(at + '/tiles.json'), 14);
+    const state = await page.locator('#state').textContent(), told = await page.locator('#notice').textContent();
+    check(/ [1-9][0-9]* tiles/.test(state) && told === '' && complaints.length === 0,
+        'camber serve hands out the tiles', {state, told, complaints});
+    await page.context().close();
+    await stop();
 }
 
 async function checkNoTiles(browser) {
@@ -370,6 +378,7 @@ try {
     await checkMoves(browser);
     await checkPointer(browser);
     await checkDensity(browser, blank);
+    await checkRest(browser, blank);
     await checkBackground(browser);
     await checkMemory(browser);
     await checkSubtrees(browser);

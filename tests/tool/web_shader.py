@@ -15,14 +15,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / 'examples' / 'web' / 'index.html'
-# The variants of the stroke shader that the page draws: seen from above, with every join, cap and width; and with RICH,
-# gaps, blurs and dashes, too.
-PLAIN = dict(CAMBER_GLSL=1, METHOD=0, SHARP_JOINS=1, FLAT_CAPS=1, TIPS=1, THIN=1, LINEAR=0, COUNT=0, UNION=0, GAP=0,
-             BLUR=0, DASH=0, TRIM=0, RAMP=0, MASK=0, PATTERN=0, PITCHED=0, TEXELS_A_ROW=4)
-RICH = PLAIN | dict(GAP=1, BLUR=1, DASH=1)
+# The stroke shader as the page draws with it, seen from above; what it may have is in FLAGS.
+VARIANT = dict(CAMBER_GLSL=1, METHOD=0, TIPS=1, THIN=1, LINEAR=0, COUNT=0, UNION=0, TRIM=0, RAMP=0, MASK=0, PATTERN=0,
+               PITCHED=0, TEXELS_A_ROW=4)
+# The page's own macros, each with those of camber that it stands for.
+FLAGS = {'SHARP': ['SHARP_JOINS'], 'FLAT': ['FLAT_CAPS'], 'RICH': ['GAP', 'BLUR', 'DASH']}
 # The page calls these itself. It has a main of its own for vertices, since its records are others.
-CALLED = {'stroke.vert': ['row_texel', 'camber_turn_between', 'camber_line_ends', 'camber_stub_pack', 'camber_join_word', 'camber_cap_word', 'edge_at',
-                          'hand_over'],
+CALLED = {'stroke.vert': ['row_texel', 'camber_turn_between', 'camber_line_ends', 'camber_stub_pack',
+                          'camber_join_word', 'camber_cap_word', 'tan_half', 'hand_over'],
           'stroke.frag': ['main']}
 
 
@@ -61,19 +61,23 @@ def name_of(part):
     return head and (head[1] or head[2])
 
 
-def prune(parts, roots):
-    """Keeps what the roots need, in order, and what comes in and goes out."""
+def find_needed(parts, roots):
+    """The names of what the roots call and use, and all words in these."""
     by_name = {name_of(part): part for part in parts if name_of(part)}
-    wanted, queue = set(), list(roots)
+    names, queue = set(), list(roots)
     while queue:
         name = queue.pop()
-        if name in by_name and name not in wanted:
-            wanted.add(name)
+        if name in by_name and name not in names:
+            names.add(name)
             queue += re.findall(r'\w+', by_name[name])
-    words = {word for name in wanted for word in re.findall(r'\w+', by_name[name])}
+    return names, {word for name in names for word in re.findall(r'\w+', by_name[name])}
+
+
+def prune(parts, names, words):
+    """Keeps what is needed, in order, and what comes in and goes out."""
     return [part for part in parts if
-            name_of(part) in wanted or (not name_of(part) and (part.startswith('precision') or
-                                                               re.findall(r'\w+', part)[-1] in words))]
+            name_of(part) in names or (not name_of(part) and (part.startswith('precision') or
+                                                              re.findall(r'\w+', part)[-1] in words))]
 
 
 def lay_out(part):
@@ -102,21 +106,29 @@ def wrap(line):
     return '\n'.join(lines + [line])
 
 
-def make_block(compiler, shader):
-    """Both variants in one text: declarations that only one of them has stand between #if and #endif."""
-    plain, rich = ([lay_out(part) for part in prune(split(tidy(preprocess(compiler, shader, variant))), CALLED[shader])]
-                   for variant in (PLAIN, RICH))
-    lines = []
-    for what, i, j, k, m in difflib.SequenceMatcher(None, plain, rich, False).get_opcodes():
+def make_variants(read_parts, needed, flags, variant):
+    """The lines of all variants. What only some have is one item with its #if and #endif."""
+    if not flags:
+        return [line for part in prune(read_parts(variant), *needed) for line in lay_out(part).split('\n')]
+    flag, *rest = flags
+    without, having = (make_variants(read_parts, needed, rest, variant | dict.fromkeys(FLAGS[flag], on)) for on in (0, 1))
+    items = []
+    for what, i, j, k, m in difflib.SequenceMatcher(None, without, having, False).get_opcodes():
         if what == 'equal':
-            lines += plain[i:j]
-        elif what == 'insert':
-            lines += ['#if RICH', *rich[k:m], '#endif']
-        elif what == 'delete':
-            lines += ['#if !RICH', *plain[i:j], '#endif']
+            items += without[i:j]
         else:
-            lines += ['#if RICH', *rich[k:m], '#else', *plain[i:j], '#endif']
-    return '\n'.join(lines) + '\n'
+            both = ['#else'] if what == 'replace' else []
+            first = f'#if {flag}' if k < m else f'#if !{flag}'
+            items.append('\n'.join([first, *having[k:m], *both, *without[i:j], '#endif']))
+    return items
+
+
+def make_block(compiler, shader):
+    def read_parts(variant):
+        return split(tidy(preprocess(compiler, shader, variant)))
+    everything = VARIANT | {name: 1 for names in FLAGS.values() for name in names}
+    needed = find_needed(read_parts(everything), CALLED[shader])
+    return '\n'.join(make_variants(read_parts, needed, list(FLAGS), VARIANT)) + '\n'
 
 
 def main():

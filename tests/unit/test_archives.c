@@ -1,5 +1,6 @@
 /* The writer of archives: its bytes depend on tiles alone, equal tiles are stored once, neighbours are runs,
- * directories have leaves, tiles are renewed and removed; and GDAL, as another reader, shows the pixels of MBTiles. */
+ * directories have leaves, tiles are renewed and removed, tilesets are verified; and GDAL, as another reader, shows the
+ * pixels of MBTiles. */
 #include "core.h"
 
 #include "archive/archive.h"
@@ -181,6 +182,53 @@ static void test_meshes(void **state) {
     }
 }
 
+static void make_meshes(place *p, const char *path) {
+    static const camber_tile_index ends[] = {{0, 0}, {1, 0}, {1023, 1023}};
+    static const unsigned char glb[12] = "glTF\2\0\0\0\14\0\0";
+    const camber_archive_desc desc = {
+        .path = path, .format = CAMBER_ARCHIVE_FOLDER, .type = CAMBER_TILE_GLB, .force = true};
+    camber_archive_writer *writer = NULL;
+    assert_int_equal(camber_archive_writer_create(p->context, &desc, &writer), CAMBER_OK);
+    for (int zoom = 0; zoom < 10; zoom++)
+        assert_int_equal(camber_archive_writer_add(writer, zoom, ends[0], glb, sizeof glb), CAMBER_OK);
+    for (size_t i = 0; i < 3; i++)
+        assert_int_equal(camber_archive_writer_add(writer, 10, ends[i], glb, sizeof glb), CAMBER_OK);
+    finish(writer);
+}
+
+/* Verifying compares a folder's tileset with its tiles. */
+static void test_tilesets(void **state) {
+    place *p = *state;
+    static const struct {
+        const char *command, *told;
+        bool error;
+    } rows[] = {{"true", NULL, false},
+                {"rm 10/1/0.glb", "subtrees/6.0.0.subtree tells of other tiles than there are", true},
+                {"rm 10/1023/1023.glb", "subtrees/0.0.0.subtree tells of other tiles than there are", true},
+                {"rm 10/1023/1023.glb", "subtrees/6.63.63.subtree tells of no tile", true},
+                {"cp subtrees/6.0.0.subtree subtrees/x", "subtrees/x tells of no tile", true},
+                {"rm subtrees/6.63.63.subtree", "subtrees/6.63.63.subtree is missing", true},
+                {"rm -r subtrees", "subtrees/0.0.0.subtree is missing", true},
+                {"rm tileset.json", "tileset.json is missing", false},
+                {"echo {} >tileset.json", "tileset.json is not the one that camber tiles writes", false},
+                {"echo { >tileset.json", "tileset.json is no JSON", true}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char path[128], command[256];
+        camber_tiles_findings *found = NULL;
+        bool told = !rows[i].told;
+        snprintf(path, sizeof path, "%s/t/", p->folder);
+        make_meshes(p, path);
+        snprintf(command, sizeof command, "cd '%s' && %s", path, rows[i].command);
+        assert_int_equal(system(command), 0);
+        assert_int_equal(camber_tiles_verify(p->context, path, &found), CAMBER_OK);
+        for (size_t k = 0; k < found->count && rows[i].told; k++)
+            told |= strncmp(found->findings[k].message, rows[i].told, strlen(rows[i].told)) == 0 &&
+                    found->findings[k].error == rows[i].error;
+        assert_true(told && (rows[i].told || found->count == 0));
+        camber_tiles_findings_destroy(found);
+    }
+}
+
 static void test_runs(void **state) {
     place *p = *state;
     camber_archive_writer *writer = open_writer(p, "runs.pmtiles", false);
@@ -306,6 +354,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_single, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_order, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_meshes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_tilesets, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_runs, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_empty, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_leaves, set_up, tear_down),

@@ -25,6 +25,11 @@ static void finds_each_route(void **state) {
                 {"/dark/24/16777215/16777215@4x.webp", CAMBER_ROUTE_TILE},
                 {"/static/0,0,0/1x1.png", CAMBER_ROUTE_STATIC},
                 {"/dark/static/0,0,0/1x1.png", CAMBER_ROUTE_STATIC},
+                {"/tileset.json", CAMBER_ROUTE_TILESET},
+                {"/subtrees/0.0.0.subtree", CAMBER_ROUTE_SUBTREE},
+                {"/subtrees/24.16777215.0.subtree?x", CAMBER_ROUTE_SUBTREE},
+                {"//subtrees/0.0.0.subtree", CAMBER_ROUTE_SUBTREE},
+                {"//0/0/0.glb", CAMBER_ROUTE_TILE},
                 {"/health", CAMBER_ROUTE_HEALTH},
                 {"/events", CAMBER_ROUTE_EVENTS},
                 {"/metrics", CAMBER_ROUTE_METRICS}};
@@ -48,6 +53,10 @@ static void reads_a_tile(void **state) {
     assert_int_equal(request.row, 6133);
     assert_int_equal(request.ratio, 2);
     assert_int_equal(request.type, CAMBER_ROUTE_WEBP);
+    assert_int_equal(parse("/subtrees/8.131.97.subtree", &request), 200);
+    assert_int_equal(request.zoom, 8);
+    assert_int_equal(request.column, 131);
+    assert_int_equal(request.row, 97);
     assert_int_equal(parse("/14/7800/6133.mvt", &request), 200);
     assert_int_equal(request.type, CAMBER_ROUTE_MVT);
     assert_int_equal(request.ratio, 1);
@@ -116,6 +125,20 @@ static void knows_no_other_path(void **state) {
                                         "/%31/0/0.png",
                                         "/%2e%2e/etc/passwd",
                                         "/../../etc/passwd",
+                                        "//0/0/0.png",
+                                        "//tileset.json",
+                                        "///0/0/0.glb",
+                                        "/dark/tileset.json",
+                                        "/tileset.jsonx",
+                                        "/subtrees/",
+                                        "/subtrees/1/0/0.subtree",
+                                        "/subtrees/1.2.0.subtree",
+                                        "/subtrees/01.0.0.subtree",
+                                        "/subtrees/25.0.0.subtree",
+                                        "/subtrees/1.0.0",
+                                        "/subtrees/1.0.0.subtreex",
+                                        "/subtrees/../1.0.0.subtree",
+                                        "/dark/subtrees/1.0.0.subtree",
                                         "/page/",
                                         "/page/../route.c",
                                         "/page/..",

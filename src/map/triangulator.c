@@ -150,15 +150,21 @@ static void take_error(unsigned error, void *user) {
     ((camber_triangulator *)user)->failed = true;
 }
 
+camber_status camber_triangulator_tell_missing(camber_context *context) {
+    return camber_fail(context, CAMBER_ERROR_DEVICE,
+                       "mesh: areas need GLU (Debian: libglu1-mesa); install it, or name a style of lines alone with "
+                       "--style");
+}
+
 camber_status camber_triangulator_create(camber_context *context, camber_triangulator **triangulator) {
     camber_triangulator *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     if (!load(&made->glu) || !(made->tess = made->glu.create())) {
-        const camber_status status = made->glu.end_polygon ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_DEVICE;
+        const bool found = made->glu.end_polygon;
         camber_triangulator_destroy(made);
-        return status;
+        return found ? CAMBER_ERROR_MEMORY : camber_triangulator_tell_missing(context);
     }
     made->glu.set_callback(made->tess, GLU_VERTEX, (callback *)take_vertex);
     made->glu.set_callback(made->tess, GLU_EDGE_FLAG, (callback *)take_edge_flag);

@@ -34,6 +34,8 @@ typedef struct camber_triangulator camber_triangulator;
 
 /* Whether GLU is here, which makes triangles of rings that meet. */
 bool camber_triangulator_is_here(void);
+/* Says that it is not; returns CAMBER_ERROR_DEVICE. */
+camber_status camber_triangulator_tell_missing(camber_context *context);
 /* Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (GLU is not here). */
 camber_status camber_triangulator_create(camber_context *context, camber_triangulator **triangulator);
 void camber_triangulator_destroy(camber_triangulator *triangulator);

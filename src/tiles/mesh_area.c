@@ -71,19 +71,13 @@ static bool touches(const camber_mesh_line *ring, const camber_ring_window *wind
     return camber_ring_touches(&box, window);
 }
 
-static camber_status tell_missing(camber_context *context) {
-    return camber_fail(context, CAMBER_ERROR_DEVICE,
-                       "tiles: mesh tiles with areas need GLU (Debian: libglu1-mesa); install it, or name a style of "
-                       "lines alone with --style");
-}
-
 camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
     const camber_plan *whole = &plan->zoom->plan;
     bool fills = false;
     for (size_t s = 0; s < whole->set_count; s++)
         for (size_t k = 0; k < whole->sets[s].pair_count && camber_plan_is_area(whole, whole->sets + s); k++)
             fills = fills || plan->reach_px[plan->pair_rows[whole->sets[s].first_pair + k]] >= 0.0f;
-    return !fills || camber_triangulator_is_here() ? CAMBER_OK : tell_missing(plan->context);
+    return !fills || camber_triangulator_is_here() ? CAMBER_OK : camber_triangulator_tell_missing(plan->context);
 }
 
 /* Puts what was filled behind the triangles of the tile. */
@@ -112,8 +106,6 @@ static camber_status fill_row(const camber_mesh_picture *picture, size_t first, 
     camber_status status = CAMBER_OK;
     if (!tile->triangulator)
         status = camber_triangulator_create(tile->context, &tile->triangulator);
-    if (status == CAMBER_ERROR_DEVICE)
-        return tell_missing(tile->context);
     if (status == CAMBER_OK)
         status = camber_mesh_tile_number(tile, plan->pair_rows[picture->rings[first].pair], &row);
     for (size_t i = first; i < end && status == CAMBER_OK; i++)

@@ -79,6 +79,8 @@ struct camber_triangulator {
     size_t side_capacity;
     uint32_t *numbers; /* by corner: which one it is of those that triangles have */
     size_t number_capacity;
+    uint32_t *slots; /* hashed by place: numbers + 1; 0: free */
+    size_t slot_capacity;
     ear_point *ears;
     size_t ear_capacity;
     bool failed; /* no memory */
@@ -190,6 +192,7 @@ void camber_triangulator_destroy(camber_triangulator *triangulator) {
     camber_free(triangulator->context, triangulator->clipped[1]);
     camber_free(triangulator->context, triangulator->sides);
     camber_free(triangulator->context, triangulator->numbers);
+    camber_free(triangulator->context, triangulator->slots);
     camber_free(triangulator->context, triangulator->ears);
     camber_free(triangulator->context, triangulator);
 }
@@ -379,9 +382,11 @@ static void find_side(const camber_triangulator *t, ring *r) {
 
 /* ---- Rings beside each other ---- */
 
-/* Point i of a ring that does not touch itself, counted so that its inside is where turns are above 0. */
+/* Point i of a ring that does not touch itself, counted once or twice around so that its inside is where turns are
+ * above 0. */
 static camber_corner ordered_point(const camber_triangulator *t, const ring *r, size_t i) {
-    return t->corners[r->first + (r->side > 0 ? i % r->count : r->count - 1 - i % r->count)];
+    const size_t k = i < r->count ? i : i - r->count;
+    return t->corners[r->first + (r->side > 0 ? k : r->count - 1 - k)];
 }
 
 /* A corner of such a ring. */
@@ -607,21 +612,45 @@ static void fill_group(camber_triangulator *t, const ring *head) {
     t->index_count -= (t->index_count - before) % 3; /* memory ran out */
 }
 
-/* Leaves out the corners that no triangle has. */
-static camber_status drop_unused(camber_triangulator *t) {
+/* Finds the number of a corner, or gives it the next one. slots has room for twice as many. */
+static uint32_t number_corner(camber_triangulator *t, camber_corner c, size_t slots, uint32_t *used) {
+    size_t at = (size_t)camber_mix(0, (uint64_t)(uint32_t)c.x << 32 | (uint32_t)c.y) & (slots - 1);
+    for (; t->slots[at]; at = (at + 1) & (slots - 1))
+        if (t->corners[t->slots[at] - 1].x == c.x && t->corners[t->slots[at] - 1].y == c.y)
+            return t->slots[at] - 1;
+    t->corners[*used] = c;
+    t->slots[at] = ++*used;
+    return *used - 1;
+}
+
+/* Leaves out the corners that no triangle has, makes one of those at one place, and drops triangles that are none then.
+ */
+static camber_status merge_corners(camber_triangulator *t) {
     uint32_t used = 0;
-    if (!camber_grow(t->context, &t->numbers, &t->number_capacity, t->corner_count, sizeof *t->numbers))
+    size_t slots = 16;
+    while (slots / 2 < t->corner_count)
+        slots *= 2;
+    if (!camber_grow(t->context, &t->numbers, &t->number_capacity, t->corner_count, sizeof *t->numbers) ||
+        !camber_grow(t->context, &t->slots, &t->slot_capacity, slots, sizeof *t->slots))
         return CAMBER_ERROR_MEMORY;
     memset(t->numbers, 0, t->corner_count * sizeof *t->numbers);
+    memset(t->slots, 0, slots * sizeof *t->slots);
     for (size_t i = 0; i < t->index_count; i++)
         t->numbers[t->indices[i]] = 1;
     for (size_t i = 0; i < t->corner_count; i++)
-        if (t->numbers[i]) {
-            t->numbers[i] = used;
-            t->corners[used++] = t->corners[i];
-        }
-    for (size_t i = 0; i < t->index_count; i++)
-        t->indices[i] = t->numbers[t->indices[i]];
+        if (t->numbers[i])
+            t->numbers[i] = number_corner(t, t->corners[i], slots, &used);
+    size_t kept = 0;
+    for (size_t i = 0; i < t->index_count; i += 3) {
+        const uint32_t a = t->numbers[t->indices[i]], b = t->numbers[t->indices[i + 1]],
+                       c = t->numbers[t->indices[i + 2]];
+        if (a == b || b == c || c == a)
+            continue;
+        t->indices[kept++] = a;
+        t->indices[kept++] = b;
+        t->indices[kept++] = c;
+    }
+    t->index_count = kept;
     t->corner_count = used;
     return CAMBER_OK;
 }
@@ -650,7 +679,7 @@ camber_status camber_triangulator_fill(camber_triangulator *t, camber_triangles 
             status = CAMBER_ERROR_MEMORY;
     }
     if (status == CAMBER_OK)
-        status = drop_unused(t);
+        status = merge_corners(t);
     *triangles = (camber_triangles){t->corners, t->corner_count, t->indices, t->index_count};
     t->ring_count = t->corner_count = 0;
     t->failed = false;

@@ -315,12 +315,19 @@ static void measure(const camber_triangulator *t, ring *r) {
     r->side = !r->convex ? 0 : right ? 1 : -1;
 }
 
+/* Gets ready for the next fill, and returns the status. */
+static camber_status forget(camber_triangulator *t, camber_status status) {
+    t->ring_count = t->corner_count = 0;
+    t->failed = false;
+    return status;
+}
+
 camber_status camber_triangulator_add(camber_triangulator *t, const float *points, size_t count,
                                       const camber_ring_window *window) {
     ring made = {.first = t->corner_count};
     size_t left = count ? count - 1 : 0; /* the first point is the last, too */
     if (!want_clipped(t, 0, count + 1))
-        return CAMBER_ERROR_MEMORY;
+        return forget(t, CAMBER_ERROR_MEMORY);
     for (size_t i = 0; i < left; i++) {
         t->clipped[0][2 * i] = points[2 * i] - (float)window->centre_x;
         t->clipped[0][2 * i + 1] = points[2 * i + 1] - (float)window->centre_y;
@@ -333,10 +340,10 @@ camber_status camber_triangulator_add(camber_triangulator *t, const float *point
     close_ring(t, &made);
     if (made.count < 3) {
         t->corner_count = made.first;
-        return t->failed ? CAMBER_ERROR_MEMORY : CAMBER_OK;
+        return t->failed ? forget(t, CAMBER_ERROR_MEMORY) : CAMBER_OK;
     }
     if (t->failed || !camber_grow(t->context, &t->rings, &t->ring_capacity, t->ring_count + 1, sizeof *t->rings))
-        return CAMBER_ERROR_MEMORY;
+        return forget(t, CAMBER_ERROR_MEMORY);
     measure(t, &made);
     made.group = (uint32_t)t->ring_count;
     t->rings[t->ring_count++] = made;
@@ -681,7 +688,5 @@ camber_status camber_triangulator_fill(camber_triangulator *t, camber_triangles 
     if (status == CAMBER_OK)
         status = merge_corners(t);
     *triangles = (camber_triangles){t->corners, t->corner_count, t->indices, t->index_count};
-    t->ring_count = t->corner_count = 0;
-    t->failed = false;
-    return status;
+    return forget(t, status);
 }

@@ -349,9 +349,10 @@ static json_t *material(const camber_glb_desc *desc, bool areas, bool *ok) {
 /* Adds an accessor; its number. view: of the bufferView. */
 static int add_accessor(json_t *root, size_t view, const attribute *a, uint64_t count, bool *ok) {
     json_t *list = json_object_get(root, "accessors");
-    json_t *accessor =
-        json_pack("{s:I, s:i, s:i, s:I, s:s}", "bufferView", (json_int_t)view, "byteOffset", a->offset_bytes,
-                  "componentType", a->component, "count", (json_int_t)count, "type", a->type);
+    json_t *accessor = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", (json_int_t)view, "componentType", a->component,
+                                 "count", (json_int_t)count, "type", a->type);
+    if (a->name) /* indices have a view of their own */
+        set(accessor, "byteOffset", json_integer(a->offset_bytes), ok);
     if (a->normalized)
         set(accessor, "normalized", json_true(), ok);
     append(list, accessor, ok);
@@ -375,7 +376,7 @@ static size_t add_view(json_t *root, uint64_t start, uint64_t size_bytes, int st
     return json_array_size(views) - 1;
 }
 
-static const attribute INDEX = {"", "SCALAR", GLTF_UNSIGNED_INT, 0, false};
+static const attribute INDEX = {NULL, "SCALAR", GLTF_UNSIGNED_INT, 0, false};
 
 /* Adds the primitive of the lines, whose bytes come first. */
 static void describe_lines(json_t *root, json_t *primitives, const writer *w, bool *ok) {

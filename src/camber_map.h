@@ -274,6 +274,8 @@ typedef struct camber_scene_desc {
     /* The scene's own features, where nothing else is drawn of them: their points go as soon as they are in the
      * network, as by camber_features_release_points. Needs still. NULL: they stay. */
     camber_features *spent;
+    /* true: its network and passes have lines alone; camber_scene_triangulate has the areas. */
+    bool lines_only;
 } camber_scene_desc;
 
 typedef struct camber_scene_info {
@@ -342,6 +344,32 @@ CAMBER_API const camber_stroke *camber_scene_get_strokes(const camber_scene *sce
  * mesh holds the scene as camber_scene_tessellate left it, or the tessellated polylines of the projected scene. */
 CAMBER_API camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh);
 
+/* Areas of a scene that have one fill and follow each other: triangles that do not overlap. */
+typedef struct camber_area_fill {
+    const char *layer;               /* the id of its layer. The style owns it */
+    uint32_t level;                  /* how many layers of areas lie below */
+    camber_color color;              /* straight sRGB, straight alpha, opacities multiplied in */
+    size_t first_point, point_count; /* its own points */
+    size_t first_index, index_count;
+} camber_area_fill;
+
+typedef struct camber_area_data {
+    camber_context *context; /* frees the rest; NULL: empty */
+    float *points;           /* point_count pairs of px, y down */
+    size_t point_count;
+    uint32_t *indices; /* index_count: three points a triangle, counter-clockwise as seen */
+    size_t index_count;
+    camber_area_fill *fills; /* fill_count, in drawing order */
+    size_t fill_count;
+} camber_area_data;
+
+/* Makes triangles of the areas that the view sees, cut a px outside of the picture. They cover what the nonzero rule
+ * fills, each place once a fill. Points lie on 256ths of a px. Patterns are left out. A view with a pitch is taken
+ * without it. Free them with camber_area_data_destroy, also after a failure. The features must have their points.
+ * Returns CAMBER_ERROR_DEVICE (areas are there, and GLU is not, Debian's libglu1-mesa), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_scene_triangulate(const camber_scene *scene, camber_area_data *areas);
+CAMBER_API void camber_area_data_destroy(camber_area_data *areas);
+
 /* ---- GLB ------------------------------------------------------------------------------------------- */
 
 typedef struct camber_mesh_data camber_mesh_data; /* camber_proof.h */
@@ -350,13 +378,16 @@ typedef struct camber_glb_desc {
     const camber_stroke *strokes; /* stroke_count. They go to the file's extras, with the paints */
     const camber_paint *paints;   /* NULL: none; else stroke_count */
     size_t stroke_count;
-    const char *copyright; /* asset.copyright. NULL: none */
+    const char *copyright;         /* asset.copyright. NULL: none */
+    const camber_area_data *areas; /* they lie below the lines. NULL: none */
 } camber_glb_desc;
 
 /* Writes a mesh as a binary glTF 2.0 that any reader loads. It has triangles, or strips whose restarts are degenerate
  * triangles; x goes right, y up, z is 0, and a unit is a pixel.
  * POSITION is the true outline of the lines, at the widths of the strokes. camber's shaders draw from _CENTER,
  * _SEGMENT, _EXTRUDE, _TURN, _FLAGS and _ROW, which glb.c describes.
+ * Areas are triangles of a primitive of their own, before that of the lines, with POSITION and COLOR_0; layers of areas
+ * lie at z = -1, the topmost, and a px below each other.
  * Returns CAMBER_ERROR_ARGUMENT (a paint that is not finite, a copyright that is not UTF-8), CAMBER_ERROR_IO where the
  * sink refuses, CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,

@@ -252,8 +252,7 @@ static int open_map(camber_input *input) {
     const double start_ms = camber_clock_ms();
     bool done = false;
     int status = open_style(input);
-    if (status == CAMBER_EXIT_DONE &&
-        (session->options->verb == CAMBER_VERB_TESSELLATE || session->options->verb == CAMBER_VERB_VALIDATE))
+    if (status == CAMBER_EXIT_DONE && session->options->verb == CAMBER_VERB_VALIDATE)
         camber_style_leave_out_areas(input->style);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         take_view(input);
@@ -290,7 +289,8 @@ static camber_status project_map(camber_input *input) {
                                     .simplify_px = input->session->options->simplify_px,
                                     .on_device = once,
                                     .still = once,
-                                    .spent = once ? input->features : NULL};
+                                    .spent = once ? input->features : NULL,
+                                    .lines_only = input->session->options->verb == CAMBER_VERB_TESSELLATE};
     camber_status status = camber_scene_create(input->features, &desc, &input->scene);
     if (status != CAMBER_OK || !once)
         return status;

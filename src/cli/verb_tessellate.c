@@ -15,6 +15,7 @@ typedef struct job {
     camber_mesh *mesh;
     camber_paint *paints;
     camber_mesh_data data;
+    camber_area_data areas;
     double tessellate_ms, write_ms, total_ms;
     size_t written_bytes;
 } job;
@@ -46,6 +47,7 @@ static int write_mesh(job *j) {
     if (!gather_paints(j, desc.stroke_count))
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     desc.paints = j->paints;
+    desc.areas = &j->areas;
     camber_report_progress(session->report, "writing", -1);
     const camber_status status = camber_glb_write(session->context, &j->data, &desc, camber_output_sink(&j->output));
     if (status != CAMBER_OK)
@@ -69,7 +71,6 @@ static int run(job *j) {
         status = camber_input_project(&j->input);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_input_warn_empty(&j->input, "the mesh is empty");
     camber_report_progress(session->report, "tessellating", -1);
     const double began_ms = camber_clock_ms();
     camber_status made = camber_mesh_create(session->device, NULL, &j->mesh);
@@ -77,9 +78,13 @@ static int run(job *j) {
         made = camber_input_tessellate(&j->input, j->mesh);
     if (made == CAMBER_OK)
         made = camber_mesh_read(j->mesh, &j->data);
+    if (made == CAMBER_OK)
+        made = camber_scene_triangulate(j->input.scene, &j->areas);
     j->tessellate_ms = camber_clock_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
+    if (j->areas.index_count == 0)
+        camber_input_warn_empty(&j->input, "the mesh is empty");
     return write_mesh(j);
 }
 
@@ -98,6 +103,8 @@ static int print_json(const job *j) {
         camber_json_count(mesh->triangle_count), "joins", camber_json_count(mesh->joins));
     if (!object)
         return camber_report_json(session->report, NULL);
+    json_object_set_new(object, "area_vertices", camber_json_count(j->areas.point_count));
+    json_object_set_new(object, "area_triangles", camber_json_count(j->areas.index_count / 3));
     camber_session_describe(session, object);
     json_object_set_new(object, "start_ms", camber_json_ms(start_ms(j)));
     json_object_set_new(object, "read_ms", camber_json_ms(j->input.read_ms));
@@ -121,6 +128,8 @@ static void print_text(const job *j) {
     camber_report_say(report, "%s: %zu vertices, %zu triangle%s (%s), %zu bytes",
                       path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count, triangles,
                       camber_plural(triangles), camber_method_get_name(j->data.info.method), j->written_bytes);
+    if (j->areas.index_count)
+        camber_report_say(report, "areas: %zu vertices, %zu triangles", j->areas.point_count, j->areas.index_count / 3);
     camber_report_say(report, "%zu feature%s, %zu polyline%s, %zu point%s", scene.features,
                       camber_plural(scene.features), scene.polylines, camber_plural(scene.polylines), scene.points,
                       camber_plural(scene.points));
@@ -141,6 +150,7 @@ int camber_verb_tessellate(camber_session *session) {
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)
         print_text(&j);
+    camber_area_data_destroy(&j.areas);
     camber_mesh_data_destroy(&j.data);
     free(j.paints);
     camber_mesh_destroy(j.mesh);

@@ -1,11 +1,16 @@
 /* Binary glTF 2.0 of a mesh.
  *
- * One node, one mesh, one primitive: TRIANGLES, or a TRIANGLE_STRIP whose restarts became degenerate triangles
- * (glTF has no restart index; as a list of triangles the indices would take three times the space). x points
+ * One node and one mesh. Its lines are a primitive: TRIANGLES, or a TRIANGLE_STRIP whose restarts became degenerate
+ * triangles (glTF has no restart index; as a list of triangles the indices would take three times the space). x points
  * right, y up, z is 0, one unit is a device pixel, and the picture's top left is the origin: everything is
  * camber_vertex mirrored at y = 0. The formulas of camber.h hold as they stand, in the mirrored frame.
  *
- * Attributes, interleaved:
+ * Areas, where there are some, are another primitive before it, of TRIANGLES, with POSITION and COLOR_0. Layers of
+ * areas lie at z = -1, -2 and so on, so that viewers see the first one lowest, and lines above all. The primitive's
+ * extras.fills has {layer, color: straight sRGB RGBA, indices: [first, count]} in drawing order. The triangles of a
+ * fill do not overlap.
+ *
+ * Attributes of lines, interleaved:
  *     POSITION  VEC3 float      the stroke's true outline: the formula of camber_vertex with g = half the stroke's
  *                               width. Vertices at a butt end lie on the end point's normal: the limit that they
  *                               carry is the pad of anti-aliasing, which an outline does not have. Round caps and
@@ -42,6 +47,7 @@ enum {
     GLTF_FLOAT = 5126,
     GLTF_ARRAY_BUFFER = 34962,
     GLTF_ELEMENT_ARRAY_BUFFER = 34963,
+    AREA_STRIDE = 20, /* POSITION and COLOR_0 of areas */
     GLTF_TRIANGLES = 4,
     GLTF_TRIANGLE_STRIP = 5,
 };
@@ -78,8 +84,9 @@ typedef struct writer {
     size_t used;
     uint64_t taken, total; /* bytes */
     bool refused;
-    float low[3], high[3]; /* bounds of POSITION */
-    uint64_t index_count;  /* written, restarts replaced */
+    float low[3], high[3];                 /* bounds of POSITION */
+    uint64_t index_count;                  /* written, restarts replaced */
+    uint64_t line_bytes[2], area_bytes[2]; /* of vertices and indices */
 } writer;
 
 /* ---- Bytes ---- */
@@ -160,16 +167,18 @@ static uint16_t normalized_of(double c) {
     return (uint16_t)(fmin(fmax(c, 0.0), 1.0) * 65535.0 + 0.5);
 }
 
+static void make_color(camber_color c, uint16_t *color) {
+    color[0] = normalized_of(linear_of((double)c.r));
+    color[1] = normalized_of(linear_of((double)c.g));
+    color[2] = normalized_of(linear_of((double)c.b));
+    color[3] = normalized_of((double)c.a);
+}
+
 /* Converts the paints to COLOR_0. NULL: out of memory. */
 static uint16_t *make_colors(const writer *w) {
     uint16_t *colors = camber_alloc(w->context, w->desc->stroke_count, 4 * sizeof *colors);
-    for (size_t i = 0; colors && i < w->desc->stroke_count; i++) {
-        const camber_color c = w->desc->paints[i].color;
-        colors[4 * i] = normalized_of(linear_of((double)c.r));
-        colors[4 * i + 1] = normalized_of(linear_of((double)c.g));
-        colors[4 * i + 2] = normalized_of(linear_of((double)c.b));
-        colors[4 * i + 3] = normalized_of((double)c.a);
-    }
+    for (size_t i = 0; colors && i < w->desc->stroke_count; i++)
+        make_color(w->desc->paints[i].color, colors + 4 * i);
     return colors;
 }
 
@@ -195,6 +204,34 @@ static void put_vertices(writer *w, const uint16_t *colors) {
         put_u16(w, 0);
         for (size_t k = 0; colors && k < 4; k++)
             put_u16(w, colors[4 * v->row + k]);
+    }
+}
+
+/* ---- Areas ---- */
+
+/* The height of a fill: the topmost layer lies at -1. */
+static float height_of(const camber_area_data *areas, const camber_area_fill *fill) {
+    return (float)fill->level - (float)areas->fills[areas->fill_count - 1].level - 1.0f;
+}
+
+static void put_areas(writer *w) {
+    const camber_area_data *areas = w->desc->areas;
+    for (size_t i = 0; i < areas->fill_count && !w->refused; i++) {
+        const camber_area_fill *fill = areas->fills + i;
+        uint16_t color[4];
+        make_color(fill->color, color);
+        for (size_t k = fill->first_point; k < fill->first_point + fill->point_count && !w->refused; k++) {
+            want(w, AREA_STRIDE);
+            put_f32(w, areas->points[2 * k]);
+            put_f32(w, up(areas->points[2 * k + 1]));
+            put_f32(w, height_of(areas, fill));
+            for (size_t c = 0; c < 4; c++)
+                put_u16(w, color[c]);
+        }
+    }
+    for (size_t i = 0; i < areas->index_count && !w->refused; i++) {
+        want(w, 4);
+        put_u32(w, areas->indices[i]);
     }
 }
 
@@ -290,78 +327,149 @@ static json_t *style_table(const camber_glb_desc *desc, bool *ok) {
     return rows;
 }
 
-/* The material is unlit and seen from both sides. */
-static json_t *material(const camber_glb_desc *desc, bool *ok) {
-    json_t *pbr = json_pack("{s:f, s:f}", "metallicFactor", 0.0, "roughnessFactor", 1.0);
+static bool is_translucent(const camber_glb_desc *desc, bool areas) {
     bool translucent = false;
-    for (size_t i = 0; desc->paints && i < desc->stroke_count; i++)
+    for (size_t i = 0; areas && i < desc->areas->fill_count; i++)
+        translucent |= desc->areas->fills[i].color.a < 1.0f;
+    for (size_t i = 0; !areas && desc->paints && i < desc->stroke_count; i++)
         translucent |= desc->paints[i].color.a < 1.0f;
-    if (!desc->paints) /* grey is seen on a viewer's black and on its white */
+    return translucent;
+}
+
+/* The material is unlit and seen from both sides. */
+static json_t *material(const camber_glb_desc *desc, bool areas, bool *ok) {
+    json_t *pbr = json_pack("{s:f, s:f}", "metallicFactor", 0.0, "roughnessFactor", 1.0);
+    if (!areas && !desc->paints) /* grey is seen on a viewer's black and on its white */
         set(pbr, "baseColorFactor", json_pack("[f,f,f,f]", 0.5, 0.5, 0.5, 1.0), ok);
-    return json_pack("{s:s, s:b, s:s, s:o, s:{s:{}}}", "name", "lines", "doubleSided", 1, "alphaMode",
-                     translucent ? "BLEND" : "OPAQUE", "pbrMetallicRoughness", pbr, "extensions",
+    return json_pack("{s:s, s:b, s:s, s:o, s:{s:{}}}", "name", areas ? "areas" : "lines", "doubleSided", 1, "alphaMode",
+                     is_translucent(desc, areas) ? "BLEND" : "OPAQUE", "pbrMetallicRoughness", pbr, "extensions",
                      "KHR_materials_unlit");
 }
 
-static json_t *accessors(const writer *w, size_t attribute_count, bool *ok) {
-    json_t *list = json_array();
-    for (size_t i = 0; i < attribute_count; i++) {
-        const attribute *a = ATTRIBUTES + i;
-        json_t *accessor =
-            json_pack("{s:i, s:i, s:i, s:I, s:s}", "bufferView", 0, "byteOffset", a->offset_bytes, "componentType",
-                      a->component, "count", (json_int_t)w->mesh->info.vertex_count, "type", a->type);
-        if (a->normalized)
-            set(accessor, "normalized", json_true(), ok);
-        if (i == 0) {
-            set(accessor, "min", json_pack("[f,f,f]", (double)w->low[0], (double)w->low[1], (double)w->low[2]), ok);
-            set(accessor, "max", json_pack("[f,f,f]", (double)w->high[0], (double)w->high[1], (double)w->high[2]), ok);
-        }
-        append(list, accessor, ok);
-    }
-    append(list,
-           json_pack("{s:i, s:i, s:I, s:s}", "bufferView", 1, "componentType", GLTF_UNSIGNED_INT, "count",
-                     (json_int_t)w->index_count, "type", "SCALAR"),
-           ok);
-    return list;
+/* Adds an accessor; its number. view: of the bufferView. */
+static int add_accessor(json_t *root, size_t view, const attribute *a, uint64_t count, bool *ok) {
+    json_t *list = json_object_get(root, "accessors");
+    json_t *accessor = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", (json_int_t)view, "componentType", a->component,
+                                 "count", (json_int_t)count, "type", a->type);
+    if (a->name) /* indices have a view of their own */
+        set(accessor, "byteOffset", json_integer(a->offset_bytes), ok);
+    if (a->normalized)
+        set(accessor, "normalized", json_true(), ok);
+    append(list, accessor, ok);
+    return (int)json_array_size(list) - 1;
 }
 
-static void describe_mesh(json_t *root, const writer *w, uint64_t vertex_bytes, bool *ok) {
-    const uint64_t index_bytes = 4 * w->index_count;
+static void set_bounds(json_t *root, int accessor, const float low[3], const float high[3], bool *ok) {
+    json_t *it = json_array_get(json_object_get(root, "accessors"), (size_t)accessor);
+    set(it, "min", json_pack("[f,f,f]", (double)low[0], (double)low[1], (double)low[2]), ok);
+    set(it, "max", json_pack("[f,f,f]", (double)high[0], (double)high[1], (double)high[2]), ok);
+}
+
+/* Adds a bufferView behind those that are there. stride: 0 of indices. */
+static size_t add_view(json_t *root, uint64_t start, uint64_t size_bytes, int stride, bool *ok) {
+    json_t *views = json_object_get(root, "bufferViews");
+    json_t *view = json_pack("{s:i, s:I, s:I, s:i}", "buffer", 0, "byteOffset", (json_int_t)start, "byteLength",
+                             (json_int_t)size_bytes, "target", stride ? GLTF_ARRAY_BUFFER : GLTF_ELEMENT_ARRAY_BUFFER);
+    if (stride)
+        set(view, "byteStride", json_integer(stride), ok);
+    append(views, view, ok);
+    return json_array_size(views) - 1;
+}
+
+static const attribute INDEX = {NULL, "SCALAR", GLTF_UNSIGNED_INT, 0, false};
+
+/* Adds the primitive of the lines, whose bytes come first. */
+static void describe_lines(json_t *root, json_t *primitives, const writer *w, bool *ok) {
     const size_t attribute_count = w->desc->paints ? ATTRIBUTE_COUNT : ATTRIBUTE_COUNT - 1;
-    json_t *attributes = json_object();
-    for (size_t i = 0; i < attribute_count; i++)
-        set(attributes, ATTRIBUTES[i].name, json_integer((json_int_t)i), ok);
+    const size_t vertices = add_view(root, 0, w->line_bytes[0], w->desc->paints ? COLORED_STRIDE : PLAIN_STRIDE, ok);
+    const size_t indices = add_view(root, w->line_bytes[0], w->line_bytes[1], 0, ok);
+    json_t *attributes = json_object(), *materials = json_object_get(root, "materials");
+    for (size_t i = 0; i < attribute_count; i++) {
+        const int made = add_accessor(root, vertices, ATTRIBUTES + i, w->mesh->info.vertex_count, ok);
+        if (i == 0)
+            set_bounds(root, made, w->low, w->high, ok);
+        set(attributes, ATTRIBUTES[i].name, json_integer(made), ok);
+    }
+    append(primitives,
+           json_pack("{s:i, s:o, s:i, s:i}", "mode", w->mesh->info.strips ? GLTF_TRIANGLE_STRIP : GLTF_TRIANGLES,
+                     "attributes", attributes, "indices", add_accessor(root, indices, &INDEX, w->index_count, ok),
+                     "material", (int)json_array_size(materials)),
+           ok);
+    append(materials, material(w->desc, false, ok), ok);
+}
+
+/* Adds the primitive of the areas, whose bytes lie behind those of the lines. */
+static void describe_areas(json_t *root, json_t *primitives, const writer *w, bool *ok) {
+    static const attribute position = {"POSITION", "VEC3", GLTF_FLOAT, 0, false},
+                           color = {"COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 12, true};
+    const camber_area_data *areas = w->desc->areas;
+    const uint64_t start = w->line_bytes[0] + w->line_bytes[1];
+    const size_t vertices = add_view(root, start, w->area_bytes[0], AREA_STRIDE, ok);
+    const size_t indices = add_view(root, start + w->area_bytes[0], w->area_bytes[1], 0, ok);
+    const int positions = add_accessor(root, vertices, &position, areas->point_count, ok),
+              colors = add_accessor(root, vertices, &color, areas->point_count, ok);
+    float low[3] = {FLT_MAX, FLT_MAX, height_of(areas, areas->fills)}, high[3] = {-FLT_MAX, -FLT_MAX, -1.0f};
+    for (size_t i = 0; i < areas->point_count; i++) {
+        const float xy[2] = {areas->points[2 * i], up(areas->points[2 * i + 1])};
+        for (int k = 0; k < 2; k++) {
+            low[k] = fminf(low[k], xy[k]);
+            high[k] = fmaxf(high[k], xy[k]);
+        }
+    }
+    set_bounds(root, positions, low, high, ok);
+    json_t *fills = json_array(), *materials = json_object_get(root, "materials");
+    for (size_t i = 0; i < areas->fill_count; i++) {
+        const camber_area_fill *fill = areas->fills + i;
+        const camber_color c = fill->color;
+        append(fills,
+               json_pack("{s:s, s:[f,f,f,f], s:[I,I]}", "layer", fill->layer, "color", (double)c.r, (double)c.g,
+                         (double)c.b, (double)c.a, "indices", (json_int_t)fill->first_index,
+                         (json_int_t)fill->index_count),
+               ok);
+    }
+    append(primitives,
+           json_pack("{s:i, s:{s:i, s:i}, s:i, s:i, s:{s:o}}", "mode", GLTF_TRIANGLES, "attributes", "POSITION",
+                     positions, "COLOR_0", colors, "indices",
+                     add_accessor(root, indices, &INDEX, areas->index_count, ok), "material",
+                     (int)json_array_size(materials), "extras", "fills", fills),
+           ok);
+    append(materials, material(w->desc, true, ok), ok);
+}
+
+static uint64_t binary_bytes_of(const writer *w) {
+    return w->line_bytes[0] + w->line_bytes[1] + w->area_bytes[0] + w->area_bytes[1];
+}
+
+static void describe_mesh(json_t *root, const writer *w, bool *ok) {
+    json_t *primitives = json_array();
     set(root, "extensionsUsed", json_pack("[s]", "KHR_materials_unlit"), ok);
     set(root, "nodes", json_pack("[{s:s, s:i}]", "name", "lines", "mesh", 0), ok);
-    set(root, "materials", json_pack("[o]", material(w->desc, ok)), ok);
+    set(root, "materials", json_array(), ok);
+    set(root, "accessors", json_array(), ok);
+    set(root, "bufferViews", json_array(), ok);
+    if (w->area_bytes[0])
+        describe_areas(root, primitives, w, ok);
+    if (w->line_bytes[0])
+        describe_lines(root, primitives, w, ok);
     set(root, "meshes",
-        json_pack("[{s:s, s:[{s:i, s:o, s:i, s:i}], s:{s:s, s:o}}]", "name", "lines", "primitives", "mode",
-                  w->mesh->info.strips ? GLTF_TRIANGLE_STRIP : GLTF_TRIANGLES, "attributes", attributes, "indices",
-                  (int)attribute_count, "material", 0, "extras", "method", camber_method_get_name(w->mesh->info.method),
-                  "rows", style_table(w->desc, ok)),
+        json_pack("[{s:s, s:o, s:{s:s, s:o}}]", "name", "lines", "primitives", primitives, "extras", "method",
+                  camber_method_get_name(w->mesh->info.method), "rows", style_table(w->desc, ok)),
         ok);
-    set(root, "accessors", accessors(w, attribute_count, ok), ok);
-    set(root, "bufferViews",
-        json_pack("[{s:i, s:i, s:I, s:i, s:i}, {s:i, s:I, s:I, s:i}]", "buffer", 0, "byteOffset", 0, "byteLength",
-                  (json_int_t)vertex_bytes, "byteStride", w->desc->paints ? COLORED_STRIDE : PLAIN_STRIDE, "target",
-                  GLTF_ARRAY_BUFFER, "buffer", 0, "byteOffset", (json_int_t)vertex_bytes, "byteLength",
-                  (json_int_t)index_bytes, "target", GLTF_ELEMENT_ARRAY_BUFFER),
-        ok);
-    set(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)(vertex_bytes + index_bytes)), ok);
+    set(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)binary_bytes_of(w)), ok);
 }
 
 /* Returns the text of the JSON chunk; free it with camber_free. NULL: out of memory, and nothing has been logged. */
-static char *make_json(const writer *w, uint64_t vertex_bytes) {
+static char *make_json(const writer *w) {
     bool ok = true;
     char generator[32];
     snprintf(generator, sizeof generator, "camber %s", camber_version());
     json_t *asset = json_pack("{s:s, s:s}", "version", "2.0", "generator", generator);
     if (w->desc->copyright) /* what is optional to json_pack is left out where memory is short */
         set(asset, "copyright", json_string(w->desc->copyright), &ok);
-    json_t *scene = w->index_count ? json_pack("{s:[i]}", "nodes", 0) : json_object();
+    json_t *scene = binary_bytes_of(w) ? json_pack("{s:[i]}", "nodes", 0) : json_object();
     json_t *root = json_pack("{s:o, s:i, s:[o]}", "asset", asset, "scene", 0, "scenes", scene);
-    if (w->index_count)
-        describe_mesh(root, w, vertex_bytes, &ok);
+    if (binary_bytes_of(w))
+        describe_mesh(root, w, &ok);
     const size_t size = root && ok ? json_dumpb(root, NULL, 0, JSON_COMPACT) : 0;
     char *text = size ? camber_resize_quietly(w->context, NULL, size + 1) : NULL;
     if (text)
@@ -413,6 +521,12 @@ static camber_status check_desc(camber_context *context, const camber_glb_desc *
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "GLB: the width or the colour of paint %zu is no finite number; give one", i);
     }
+    for (size_t i = 0; desc->areas && i < desc->areas->fill_count; i++) {
+        const camber_color c = desc->areas->fills[i].color;
+        if (!isfinite(c.r) || !isfinite(c.g) || !isfinite(c.b) || !isfinite(c.a))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "GLB: the colour of fill %zu is no finite number; give one", i);
+    }
     return CAMBER_OK;
 }
 
@@ -424,7 +538,8 @@ static camber_status check_size(camber_context *context, uint64_t size_bytes) {
                        (unsigned long long)size_bytes);
 }
 
-static camber_status write_file(writer *w, const char *json, const uint16_t *colors, uint64_t binary_bytes) {
+static camber_status write_file(writer *w, const char *json, const uint16_t *colors) {
+    const uint64_t binary_bytes = binary_bytes_of(w);
     const size_t length = strlen(json), padded = (length + 3) / 4 * 4;
     w->total = 12 + 8 + padded + (binary_bytes ? 8 + binary_bytes : 0);
     const camber_status status = check_size(w->context, w->total);
@@ -440,8 +555,12 @@ static camber_status write_file(writer *w, const char *json, const uint16_t *col
     }
     if (binary_bytes) {
         put_chunk_head(w, binary_bytes, 0x004e4942u); /* BIN */
-        put_vertices(w, colors);
-        put_indices(w, false);
+        if (w->line_bytes[0]) {
+            put_vertices(w, colors);
+            put_indices(w, false);
+        }
+        if (w->area_bytes[0])
+            put_areas(w);
     }
     flush(w);
     return w->refused ? CAMBER_ERROR_IO : CAMBER_OK;
@@ -460,24 +579,25 @@ camber_status camber_glb_write(camber_context *context, const camber_mesh_data *
     if (!w.block)
         return status;
     put_indices(&w, true);
-    uint64_t vertex_bytes = 0, index_bytes = 0;
     if (w.index_count) {
-        vertex_bytes = (uint64_t)mesh->info.vertex_count * (desc->paints ? COLORED_STRIDE : PLAIN_STRIDE);
-        index_bytes = w.index_count * 4;
-        status = check_size(context, vertex_bytes + index_bytes); /* before the work */
-        if (status != CAMBER_OK)
-            goto done;
-        status = CAMBER_ERROR_MEMORY;
-        measure(&w);
-        if (desc->paints) {
-            colors = make_colors(&w);
-            if (!colors)
-                goto done;
-        }
+        w.line_bytes[0] = (uint64_t)mesh->info.vertex_count * (desc->paints ? COLORED_STRIDE : PLAIN_STRIDE);
+        w.line_bytes[1] = w.index_count * 4;
     }
-    json = make_json(&w, vertex_bytes);
+    if (desc->areas && desc->areas->index_count) {
+        w.area_bytes[0] = (uint64_t)desc->areas->point_count * AREA_STRIDE;
+        w.area_bytes[1] = (uint64_t)desc->areas->index_count * 4;
+    }
+    status = check_size(context, binary_bytes_of(&w)); /* before the work */
+    if (status != CAMBER_OK)
+        goto done;
+    status = CAMBER_ERROR_MEMORY;
+    if (w.index_count)
+        measure(&w);
+    if (w.index_count && desc->paints && !(colors = make_colors(&w)))
+        goto done;
+    json = make_json(&w);
     if (json)
-        status = write_file(&w, json, colors, vertex_bytes + index_bytes);
+        status = write_file(&w, json, colors);
     else
         status = camber_fail(context, CAMBER_ERROR_MEMORY,
                              "GLB: no memory for the style table of %zu rows; give it fewer rows or more memory",

@@ -5,6 +5,7 @@
  * made once for a plan, and stays while the view moves and the plan does not change. camber_scene_project makes the
  * same on the host, by the CPU twin. */
 #include "map/passes.h"
+#include "map/plan_areas.h"
 #include "map/plan_network.h"
 
 #include <assert.h>
@@ -16,7 +17,7 @@ struct camber_scene {
     camber_context *context;
     const camber_features *features;
     double simplify_px;
-    bool still;
+    bool still, lines_only;
     camber_features *spent; /* the features while their points may go; then NULL */
 
     camber_view view;
@@ -141,12 +142,27 @@ void camber_scene_release_lines(camber_scene *scene) {
 
 /* ---- The scene ---- */
 
+/* The network then has none of them. */
+static void leave_out_areas(camber_plan *plan) {
+    size_t count = 0;
+    for (size_t s = 0, end = 0; s < plan->set_count; s++) {
+        const size_t first = end;
+        end = plan->all.first_entries[s + 1];
+        plan->all.first_entries[s] = count;
+        for (size_t i = first; i < end && !camber_plan_is_area(plan, plan->sets + s); i++)
+            plan->all.entries[count++] = plan->all.entries[i];
+    }
+    plan->all.first_entries[plan->set_count] = count;
+}
+
 /* Makes the network. Points that the view leaves out go first, if the scene may drop them: else most of them would be
  * in memory beside the network. */
 static camber_status make_geometry(camber_scene *scene) {
     /* As camber_network_aim has it: with a pitch the tolerance is smaller near the camera. */
     const bool flat = !(scene->view.pitch_deg > 0.0);
     const camber_still still = {flat ? (float)(scene->simplify_px / scene->view.scale_px) : 0.0f};
+    if (scene->lines_only)
+        leave_out_areas(&scene->plan);
     camber_status status = CAMBER_OK;
     if (scene->spent && !scene->plan.has_arc_length)
         status = camber_features_thin(scene->spent, still.least_importance);
@@ -189,10 +205,11 @@ static void empty(camber_scene *scene) {
     camber_plan_destroy(&scene->plan);
 }
 
-static camber_scene bare_scene(const camber_features *features, double simplify_px) {
+static camber_scene bare_scene(const camber_features *features, double simplify_px, bool lines_only) {
     return (camber_scene){.context = features->context,
                           .features = features,
                           .simplify_px = simplify_px,
+                          .lines_only = lines_only,
                           .plan = {.context = features->context}};
 }
 
@@ -251,7 +268,7 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     if (!made)
         return CAMBER_ERROR_MEMORY;
     camber_plan_network none = {0};
-    *made = bare_scene(features, desc->simplify_px);
+    *made = bare_scene(features, desc->simplify_px, desc->lines_only);
     assert(!desc->spent || (desc->still && desc->spent == features));
     made->still = desc->still;
     made->spent = desc->spent;
@@ -271,7 +288,7 @@ camber_status camber_scene_create(const camber_features *features, const camber_
 }
 
 camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
-    camber_scene moved = bare_scene(scene->features, scene->simplify_px);
+    camber_scene moved = bare_scene(scene->features, scene->simplify_px, scene->lines_only);
     moved.still = scene->still;
     /* The network belongs to one of the two, never to both. */
     camber_plan_network geometry = scene->geometry;
@@ -299,6 +316,10 @@ camber_network *camber_scene_get_network(const camber_scene *scene, camber_camer
     *camera = camera_of(scene);
     *desc = desc_of(scene, CAMBER_METHOD_STRIP);
     return scene->geometry.network;
+}
+
+camber_status camber_scene_triangulate(const camber_scene *scene, camber_area_data *areas) {
+    return camber_plan_triangulate(scene->features, &scene->plan, &scene->view, scene->simplify_px, areas);
 }
 
 void camber_scene_destroy(camber_scene *scene) {

@@ -437,5 +437,6 @@ void camber_mesh_tile_free(camber_mesh_tile *tile) {
     camber_free(tile->context, tile->triangles);
     camber_free(tile->context, tile->fills);
     camber_free(tile->context, tile->row_slots);
+    camber_triangulator_destroy(tile->triangulator);
     *tile = (camber_mesh_tile){0};
 }

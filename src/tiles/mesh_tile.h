@@ -5,6 +5,7 @@
 
 #include "camber_proof.h"
 #include "camber_tiles.h"
+#include "map/triangulator.h"
 #include "tiles/mesh_plan.h"
 
 #include <math.h>
@@ -84,6 +85,7 @@ typedef struct camber_mesh_tile {
     size_t fill_count, fill_capacity;
     uint32_t *row_slots; /* row_slot_count: by row of the plan, the tile's row + 1 */
     size_t row_slot_count;
+    camber_triangulator *triangulator; /* NULL: none was needed yet */
 } camber_mesh_tile;
 
 /* Cuts tile x, y of a picture, counted from its north-western one. *tile keeps its room from one call to the next; free

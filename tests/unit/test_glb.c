@@ -324,6 +324,56 @@ static void test_random_lines(void **state) {
     }
 }
 
+/* A square and a triangle of another layer, with lines above them and alone. */
+static void test_areas(void **state) {
+    const fixture *f = *state;
+    float corners[] = {10, 10, 60, 10, 60, 60, 10, 60, 20, 20, 30, 20, 20, 30};
+    uint32_t indices[] = {0, 2, 1, 0, 3, 2, 4, 6, 5};
+    camber_area_fill fills[] = {{"water", 0, {0.0f, 0.5f, 1.0f, 1.0f}, 0, 4, 0, 6},
+                                {"wood", 1, {0.0f, 1.0f, 0.0f, 0.5f}, 4, 3, 6, 3}};
+    const camber_area_data areas = {f->context, corners, 7, indices, 9, fills, 2};
+    const float points[] = {10, 20, 60, 20, 60, 90};
+    const uint32_t offsets[] = {0, 3};
+    const camber_polylines_desc lines = {.points = points, .point_count = 3, .offsets = offsets, .polyline_count = 1};
+    const camber_stroke stroke = {.width_px = 10};
+    camber_mesh_data mesh = tessellate(f, &lines, &stroke, 1, CAMBER_METHOD_STRIP), none = {.context = f->context};
+    for (int alone = 0; alone < 2; alone++) {
+        file bytes = {0};
+        const camber_glb_desc desc = {.strokes = &stroke, .stroke_count = 1, .areas = &areas};
+        assert_int_equal(camber_glb_write(f->context, alone ? &none : &mesh, &desc, sink_of(&bytes)), CAMBER_OK);
+        const glb g = parse(&bytes);
+        json_t *primitives = get(at(get(g.json, "meshes"), 0), "primitives"),
+               *made = get(get(at(primitives, 0), "extras"), "fills");
+        assert_int_equal(json_array_size(primitives), alone ? 1 : 2);
+        assert_string_equal(json_string_value(get(at(made, 1), "layer")), "wood");
+        assert_int_equal(json_integer_value(at(get(at(made, 1), "indices"), 0)), 6);
+        json_t *position = accessor_of(&g, "POSITION"), *color = accessor_of(&g, "COLOR_0");
+        assert_int_equal(integer(position, "count"), 7);
+        for (size_t i = 0; i < 7; i++) {
+            assert_true(element(&g, position, i, 0) == (double)corners[2 * i]);
+            assert_true(element(&g, position, i, 1) == -(double)corners[2 * i + 1]);
+            assert_true(element(&g, position, i, 2) == (i < 4 ? -2.0 : -1.0));
+        }
+        assert_true(json_number_value(at(get(position, "min"), 2)) == -2.0);
+        assert_true(json_number_value(at(get(position, "max"), 2)) == -1.0);
+        assert_true(fabs(element(&g, color, 0, 1) - 0.21404) < 1e-4 && fabs(element(&g, color, 6, 3) - 0.5) < 1e-4);
+        json_t *taken = at(get(g.json, "accessors"), integer(primitive_of(&g), "indices"));
+        for (size_t i = 0; i < 9; i++)
+            assert_true((uint32_t)element(&g, taken, i, 0) == indices[i]);
+        json_t *material = at(get(g.json, "materials"), integer(primitive_of(&g), "material"));
+        assert_string_equal(json_string_value(get(material, "alphaMode")), "BLEND");
+        save(f, &bytes, alone ? "areas_alone" : "areas");
+        json_decref(g.json);
+        free(bytes.bytes);
+    }
+    fills[1].color.g = INFINITY;
+    file bytes = {0};
+    const camber_glb_desc desc = {.areas = &areas};
+    assert_int_equal(camber_glb_write(f->context, &none, &desc, sink_of(&bytes)), CAMBER_ERROR_ARGUMENT);
+    free(bytes.bytes);
+    camber_mesh_data_destroy(&mesh);
+}
+
 /* Turns are stored in 16 bits, which moves a corner by up to 2e-4 px here. */
 static bool has_position(const glb *g, double x, double y) {
     json_t *position = accessor_of(g, "POSITION");
@@ -471,9 +521,9 @@ int main(int argc, char **argv) {
         CAMBER_OK)
         return 1;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_prestate(test_random_lines, &f), cmocka_unit_test_prestate(test_outline_by_hand, &f),
-        cmocka_unit_test_prestate(test_restarts, &f),     cmocka_unit_test_prestate(test_empty, &f),
-        cmocka_unit_test_prestate(test_failures, &f),
+        cmocka_unit_test_prestate(test_areas, &f),           cmocka_unit_test_prestate(test_random_lines, &f),
+        cmocka_unit_test_prestate(test_outline_by_hand, &f), cmocka_unit_test_prestate(test_restarts, &f),
+        cmocka_unit_test_prestate(test_empty, &f),           cmocka_unit_test_prestate(test_failures, &f),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     camber_context_destroy(f.context);

@@ -20,6 +20,8 @@ typedef struct camber_setup_args {
     camber_u32 columns, rows;   /* tiles */
     float horizon;              /* rows of pixels at the picture's top in which no segment is drawn */
     camber_eye eye;
+    /* The range's records at which the brush changes, and how many changes of the same input lie before the part. */
+    camber_u32 first_change, change_count, changes_before;
 } camber_setup_args;
 
 /* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
@@ -66,12 +68,12 @@ typedef struct camber_spill_args {
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
 
 #ifdef CAMBER_DEVICE
-typedef char camber_setup_args_has_68_bytes[sizeof(camber_setup_args) == 68 ? 1 : -1];
+typedef char camber_setup_args_has_80_bytes[sizeof(camber_setup_args) == 80 ? 1 : -1];
 typedef char camber_bin_args_has_36_bytes[sizeof(camber_bin_args) == 36 ? 1 : -1];
 typedef char camber_target_args_has_80_bytes[sizeof(camber_target_args) == 80 ? 1 : -1];
 typedef char camber_spill_args_has_24_bytes[sizeof(camber_spill_args) == 24 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_setup_args) == 68, "setup reads 68 bytes");
+_Static_assert(sizeof(camber_setup_args) == 80, "setup reads 80 bytes");
 _Static_assert(sizeof(camber_bin_args) == 36, "bin_count and bin_scatter read 36 bytes");
 _Static_assert(sizeof(camber_target_args) == 80, "rasterize reads 80 bytes");
 _Static_assert(sizeof(camber_spill_args) == 24, "rasterize reads 24 bytes");

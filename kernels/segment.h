@@ -47,6 +47,20 @@ typedef struct camber_brush {
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
+/* How many of the changes of brush, ascending records, lie at a record or before it. */
+CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *changes, camber_u32 count,
+                                          camber_u32 record) {
+    camber_u32 low = 0u, high = count;
+    while (low < high) {
+        const camber_u32 middle = low + (high - low) / 2u;
+        if (changes[middle] <= record)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* ---- A segment as tiles and pixels read it ---- */
 
 /* The words of a segment, in the order in which setup writes them. */

@@ -1,8 +1,9 @@
 /* setup: makes a segment of each record that ends one, and finds the box of tiles around it. A work-item takes sixteen
  * records.
  *
- * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count]. For the n
- * records of a range, rounded up to sixteens, it writes from element `base` on:
+ * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count],
+ * changes[first_change + change_count]. For the n records of a range, rounded up to sixteens, it writes from element
+ * `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
  *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
  *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH; 0 if the records have none
@@ -72,6 +73,21 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
     }
     for (int k = 0; k < CAMBER_RASTER_ROW_WORDS; k++)
         row[k] = CAMBER_LOAD(0, words[k]);
+}
+
+/* The brushes of a vector of segments that end with the records from `first` on, by those of their rows. */
+static inline camber_real take_brushes(global const camber_u32 *changes, camber_u32 first, camber_setup_args r,
+                                       camber_real of_rows) {
+    const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    camber_words brushes = CAMBER_AS_WORDS(of_rows) + r.changes_before;
+    if (r.change_count == 0)
+        return CAMBER_AS_REAL(brushes);
+    global const camber_u32 *own = changes + r.first_change;
+    uint next = camber_changes_until(own, r.change_count, first);
+    brushes += next;
+    for (; next < r.change_count && own[next] - first < CAMBER_LANES; next++)
+        brushes += CAMBER_LOAD(0, numbers) >= own[next] - first ? (camber_words)(1u) : (camber_words)(0u);
+    return CAMBER_AS_REAL(brushes);
 }
 
 #if CAMBER_RASTER_RICH
@@ -182,8 +198,8 @@ static inline void find_segments(global const camber_u32 *records, int first, ca
 }
 
 /* Makes the segments of the records from `first` on, and writes them. */
-static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
-                                 camber_setup_args r, outputs to) {
+static inline void make_segments(global const camber_u32 *records, global const float *rows,
+                                 global const camber_u32 *changes, int first, camber_setup_args r, outputs to) {
     ends e;
     take_ends(records, rows, first, r, &e);
     camber_segment s;
@@ -204,23 +220,36 @@ static inline void make_segments(global const camber_u32 *records, global const 
 #elif CAMBER_RASTER_RICH
     put_arc_lengths(records, first, r, &s, to.arc_lengths);
 #endif
-    camber_real words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
-                             s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
-                             s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
-                             e.row[3]};
+    camber_real words[16] = {s.ax,
+                             s.ay,
+                             s.bx,
+                             s.by,
+                             s.ux,
+                             s.uy,
+                             s.nax,
+                             s.nay,
+                             s.nbx,
+                             s.nby,
+                             s.half_width,
+                             s.reach,
+                             s.slope,
+                             s.curve,
+                             CAMBER_AS_REAL(s.flags),
+                             take_brushes(changes, (camber_u32)first, r, e.row[3])};
     put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
 }
 
 CAMBER_KERNEL(1, setup,
               (global const camber_u32 *restrict records, global const float *restrict rows,
                global float *restrict segments, global camber_u32 *restrict boxes, const camber_setup_args r,
-               global float *restrict arc_lengths, global float *restrict planes),
-              (records, rows, segments, boxes, r, arc_lengths, planes)) {
+               global float *restrict arc_lengths, global float *restrict planes,
+               global const camber_u32 *restrict changes),
+              (records, rows, segments, boxes, r, arc_lengths, planes, changes)) {
     const uint group = (uint)CAMBER_WORK_ITEM;
     for (uint v = 0; v < CAMBER_VECTORS; v++) {
         const size_t at = (size_t)r.base + 16 * group + CAMBER_LANES * v;
         const outputs to = {segments + CAMBER_SEGMENT_WORDS * at, boxes + at,
                             arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * at, planes + CAMBER_PLANE_WORDS * at};
-        make_segments(records, rows, (int)(r.first + 16 * group + CAMBER_LANES * v), r, to);
+        make_segments(records, rows, changes, (int)(r.first + 16 * group + CAMBER_LANES * v), r, to);
     }
 }

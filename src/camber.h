@@ -604,10 +604,9 @@ typedef struct camber_paint {
     float image_px; /* how much of the line one copy of the image takes. 0: as much as keeps the image's shape */
     /* The row's polylines are rings, and what lies inside of them is filled; beside this only the translation counts.
      * Areas of a pass that have one fill and follow each other are one path: where they meet or overlap there is no
-     * seam, and a translucent fill covers each pixel once. Where the fills of a pass change more than 64 times, or its
-     * lines need more than 32 layers, all areas of one fill come together, in the order of the first of each, below the
-     * lines. Close rings, as camber_areas_create does: one that is open fills what lies to the right of it. NULL: lines
-     * are drawn. */
+     * seam, and a translucent fill covers each pixel once. Where the areas and lines of a pass alternate more than 64
+     * times, or its lines need more than 32 layers, the areas lie below the lines. Close rings, as camber_areas_create
+     * does: one that is open fills what lies to the right of it. NULL: lines are drawn. */
     const camber_fill *fill;
 } camber_paint;
 

@@ -1,5 +1,6 @@
 /* Makes the rasterizer's scene of a draw list. A command becomes an input (polylines of a mesh), and a table with a row
  * for each of its mesh's rows. A row names a brush: its colour, its layer and group, and, beside it, its features.
+ * Areas take the next brush wherever their fill changes.
  *
  * Fills that lie below all lines become part of the background, and an opaque fill hides all inputs below it. */
 #include "draw/draw_cl.h"
@@ -11,6 +12,8 @@ enum { BRUSHES_BACK = 16 };
 
 void camber_cl_tables_free(camber_cl_tables *t) {
     camber_free(t->context, t->images.held);
+    camber_free(t->context, t->fill_images);
+    camber_free(t->context, t->changes);
     camber_free(t->context, t->inputs);
     camber_free(t->context, t->brush_ext);
     camber_free(t->context, t->brushes);
@@ -82,24 +85,53 @@ static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_comm
     return brush;
 }
 
-/* Gives the brush of a command of areas: no other command has it, so that its areas come together alone. */
-static camber_status use_area_brush(camber_cl_tables *t, const camber_draw_list *list,
-                                    const camber_draw_command *command, uint32_t *number) {
-    const camber_fill_paint *fill = &command->fill;
-    const camber_color c = fill->color;
-    const bool evenodd = fill->rule == CAMBER_FILL_EVENODD;
-    camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = c.a, .group = command->group};
-    camber_brush_ext brush_ext = {0};
+/* Gives the words of a fill's image in the side table, where each is once. They are never the table's first. */
+static camber_status use_fill_image(camber_cl_tables *t, const camber_draw_list *list, int32_t fill, uint32_t *words) {
     bool is_opaque;
+    camber_status status = CAMBER_OK;
+    if (!t->fill_images)
+        t->fill_images = camber_alloc_zero(t->context, list->fill_count, sizeof *t->fill_images);
+    if (!t->fill_images)
+        return CAMBER_ERROR_MEMORY;
+    if (t->fill_images[fill] == 0)
+        status = camber_cl_images_add_fill(&t->images, list, list->fills + fill, t->fill_images + fill, &is_opaque);
+    *words = t->fill_images[fill];
+    return status;
+}
+
+/* Adds the brush of a span of areas. No other span has it, so that its areas come together alone. */
+static camber_status add_area_brush(camber_cl_tables *t, const camber_draw_list *list,
+                                    const camber_draw_command *command, int32_t fill, uint32_t *number) {
+    const camber_fill_paint *paint = list->fills + fill;
+    const camber_color c = paint->color;
+    const bool evenodd = paint->rule == CAMBER_FILL_EVENODD;
+    camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = c.a * command->layer_opacity, .group = command->group};
+    camber_brush_ext brush_ext = {0};
     camber_status status = CAMBER_OK;
     brush.mode = evenodd ? CAMBER_BRUSH_AREA_EVENODD : CAMBER_BRUSH_AREA;
     if (command->group)
         brush.group_opacity = command->group_opacity;
-    if (fill->has_image) {
+    if (paint->has_image) {
         brush_ext.features = CAMBER_FEATURE_IMAGE;
-        status = camber_cl_images_add_fill(&t->images, list, fill, &brush_ext.image, &is_opaque);
+        status = use_fill_image(t, list, fill, &brush_ext.image);
     }
     return status == CAMBER_OK ? use_brush(t, t->brush_count, &brush, &brush_ext, number) : status;
+}
+
+/* Adds the brushes of a command of areas, which follow each other, and where one takes over from the other. */
+static camber_status add_area_brushes(camber_cl_tables *t, const camber_draw_list *list,
+                                      const camber_draw_command *command, uint32_t *first) {
+    const camber_area_span *spans = list->spans + command->first_span;
+    camber_status status = add_area_brush(t, list, command, spans[0].fill, first);
+    if (!camber_grow(t->context, &t->changes, &t->change_capacity, t->change_count + command->span_count,
+                     sizeof *t->changes))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 1; i < command->span_count && status == CAMBER_OK; i++) {
+        uint32_t next;
+        t->changes[t->change_count++] = spans[i].first;
+        status = add_area_brush(t, list, command, spans[i].fill, &next);
+    }
+    return status;
 }
 
 /* Adds the table of a command of areas. */
@@ -110,7 +142,7 @@ static camber_status add_area_rows(camber_cl_tables *t, const camber_draw_list *
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
                      CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
         return CAMBER_ERROR_MEMORY;
-    const camber_status status = use_area_brush(t, list, command, &number);
+    const camber_status status = add_area_brushes(t, list, command, &number);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
         const camber_row_paint *paint = list->rows + command->first_row + i;
         float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count++;
@@ -158,7 +190,13 @@ static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list,
 
 static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const bool is_area = command->composite == CAMBER_COMPOSITE_AREA;
-    const camber_raster_input input = {command->mesh, command->first, command->end, t->row_count, is_area};
+    const camber_raster_input input = {.mesh = command->mesh,
+                                       .first = command->first,
+                                       .end = command->end,
+                                       .first_row = t->row_count,
+                                       .is_area = is_area,
+                                       .first_change = t->change_count,
+                                       .change_count = is_area ? command->span_count - 1 : 0};
     if (!camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))
         return CAMBER_ERROR_MEMORY;
     t->inputs[t->input_count++] = input;
@@ -263,6 +301,7 @@ camber_status camber_cl_tables_make(camber_draw_list *list, const camber_frame *
         .brush_count = t->brush_count,
         .inputs = t->inputs,
         .input_count = t->input_count,
+        .changes = t->changes,
         .background = {t->background[0], t->background[1], t->background[2], t->background[3]},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
         .brush_ext = t->is_rich || list->view.pitched ? t->brush_ext : NULL,

@@ -60,8 +60,11 @@ typedef struct camber_cl_tables {
     camber_brush *brushes;
     camber_brush_ext *brush_ext; /* as many as brushes */
     camber_raster_input *inputs;
-    size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity;
-    bool is_rich; /* a brush has features */
+    size_t *changes; /* of brushes of areas: polylines */
+    size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity,
+        change_count, change_capacity;
+    uint32_t *fill_images; /* of the list's fills, in the side table. 0: not there. NULL: none is */
+    bool is_rich;          /* a brush has features */
     camber_cl_images images;
     uint32_t layers;     /* so far */
     float background[4]; /* premultiplied: what lies below the first input */

@@ -6,8 +6,9 @@
  * would need more than LAYERS_MAX of them, its lines are taken out of order, one command an alpha; and where it has
  * more than ALPHAS_MAX alphas, one masked layer has all lines, each with its own.
  *
- * Areas of one fill that follow each other make a span, too, which needs no layer: the rasterizer takes all their rings
- * at once. Where a pass would need more than FILLS_MAX spans of areas, those of one fill come together.
+ * Areas that follow each other make a span, too, which needs no layer: the rasterizer takes all rings of one fill at
+ * once. It changes the fill as often as they do, in the order of the areas. Where areas and lines of a pass alternate
+ * more than AREAS_MAX times, the areas lie below.
  *
  * A pass with an opacity is put onto the picture as a whole: by the opacity of its one layer, or as a group. */
 #include "draw/draw_list.h"
@@ -18,7 +19,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16, FILLS_MAX = 64 };
+enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16, AREAS_MAX = 64 };
 
 /* Past all lines' ends, in shares of their length. */
 static const float FAR_BEYOND = 1e9f;
@@ -63,7 +64,6 @@ typedef struct row_maker {
     const camber_pass *pass;
     const camber_ramp *ramp; /* the last one that was looked at, and whether it has translucent colours */
     bool is_translucent;
-    size_t first_fill; /* of the pass */
 } row_maker;
 
 /* *number is that of the use, which may be the last one again. */
@@ -156,30 +156,15 @@ static camber_status make_fill(camber_draw_list *list, const camber_fill *fill, 
     return made->has_image ? set_fill_image(list, fill, made) : CAMBER_OK;
 }
 
-/* Finds the fill of an area's paint among those of the list from `first` on, or adds it. */
-static camber_status find_fill(camber_draw_list *list, size_t first, const camber_fill *fill, int32_t *number) {
-    camber_fill_paint made;
-    const camber_status status = make_fill(list, fill, &made);
-    if (status != CAMBER_OK)
-        return status;
-    size_t i = first;
-    while (i < list->fill_count && memcmp(list->fills + i, &made, sizeof made) != 0)
-        i++;
-    if (i == list->fill_count) {
-        if (!camber_grow(list->context, &list->fills, &list->fill_capacity, list->fill_count + 1, sizeof *list->fills))
-            return CAMBER_ERROR_MEMORY;
-        list->fills[list->fill_count++] = made;
-    }
-    *number = (int32_t)i;
-    return CAMBER_OK;
-}
-
-/* The row of an area. */
-static camber_status make_area_row(row_maker *m, const camber_paint *paint, camber_row_paint *row) {
+/* The row of an area, with a fill of its own. */
+static camber_status make_area_row(camber_draw_list *list, const camber_paint *paint, camber_row_paint *row) {
+    if (!camber_grow(list->context, &list->fills, &list->fill_capacity, list->fill_count + 1, sizeof *list->fills))
+        return CAMBER_ERROR_MEMORY;
     *row = (camber_row_paint){.half_gap_px = -1.0f,
                               .translate_px = {paint->translate_x_px, paint->translate_y_px},
-                              .color = {1.0f, 1.0f, 1.0f, paint->fill->color.a}};
-    return find_fill(m->list, m->first_fill, paint->fill, &row->fill);
+                              .color = {1.0f, 1.0f, 1.0f, paint->fill->color.a},
+                              .fill = (int32_t)list->fill_count};
+    return make_fill(list, paint->fill, list->fills + list->fill_count++);
 }
 
 static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row) {
@@ -188,7 +173,7 @@ static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row
     const camber_paint *paint = pass->paints + number;
     camber_status status = CAMBER_OK;
     if (paint->fill)
-        return make_area_row(m, paint, row);
+        return make_area_row(m->list, paint, row);
     *row = (camber_row_paint){.half_width_px = camber_paint_half_width(paint),
                               .half_gap_px = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f,
                               .blur_px = fmaxf(paint->blur_px, 0.0f),
@@ -240,13 +225,13 @@ typedef struct span {
     bool one_alpha;    /* polylines of other alphas within it are not drawn */
     bool is_layered, is_masked, is_one_color;
     bool is_begun; /* one of its rows is drawn */
-    int32_t fill;  /* of its areas. CAMBER_NO_FILL: it has lines */
+    bool is_area;  /* its areas are drawn, each with its fill; else its lines */
     camber_color color;
     unsigned features;
 } span;
 
 static span begin_span(size_t first, size_t end) {
-    return (span){.first = first, .end = end, .alpha = 1.0f, .is_one_color = true, .fill = CAMBER_NO_FILL};
+    return (span){.first = first, .end = end, .alpha = 1.0f, .is_one_color = true};
 }
 
 static void add_to_span(const pass_lines *lines, const camber_row_paint *row, span *s) {
@@ -255,7 +240,7 @@ static void add_to_span(const pass_lines *lines, const camber_row_paint *row, sp
     if (!s->is_begun) {
         s->alpha = accumulates ? 1.0f : c.a;
         s->color = c;
-        s->fill = row->fill;
+        s->is_area = row->fill != CAMBER_NO_FILL;
     }
     s->is_one_color = s->is_one_color && c.r == s->color.r && c.g == s->color.g && c.b == s->color.b &&
                       !(row->features & CAMBER_FEATURES_COLORS);
@@ -267,7 +252,7 @@ static void add_to_span(const pass_lines *lines, const camber_row_paint *row, sp
 static void end_span(const pass_lines *lines, span *s) {
     if (!s->is_begun)
         s->alpha = 0.0f;
-    if (s->fill != CAMBER_NO_FILL)
+    if (s->is_area)
         return;
     s->is_layered = s->alpha < 1.0f || s->is_masked || (lines->overlap == CAMBER_OVERLAP_UNITE && s->is_one_color);
     s->one_alpha = s->one_alpha || s->is_layered;
@@ -285,8 +270,8 @@ static span find_span(const pass_lines *lines, size_t first) {
         const camber_row_paint *row = row_of(lines, s.end);
         if (row->half_width_px < 0.0f)
             continue;
-        if (s.is_begun &&
-            (row->fill != s.fill || (row->fill == CAMBER_NO_FILL && !accumulates && row->color.a != s.alpha)))
+        const bool is_area = row->fill != CAMBER_NO_FILL;
+        if (s.is_begun && (is_area != s.is_area || (!is_area && !accumulates && row->color.a != s.alpha)))
             break;
         add_to_span(lines, row, &s);
         if (lines->mesh->row_count == 1)
@@ -309,11 +294,10 @@ static span pick_alpha(const pass_lines *lines, float alpha) {
     return s;
 }
 
-/* All areas of one fill. */
-static span pick_fill(const pass_lines *lines, int32_t fill) {
+/* All areas. */
+static span pick_areas(const pass_lines *lines) {
     span s = begin_span(lines->first, lines->end);
-    s.is_begun = true;
-    s.fill = fill;
+    s.is_area = true;
     return s;
 }
 
@@ -345,7 +329,7 @@ static bool fades(const camber_pass *pass) {
 
 /* A fill's opacity is in its colour: it needs no layer. */
 static camber_status add_fill(camber_draw_list *list, const camber_pass *pass) {
-    camber_draw_command command = {.fill_number = CAMBER_NO_FILL};
+    camber_draw_command command = {0};
     const float alpha = pass->fill.color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
     if (!(alpha > 0.0f))
         return CAMBER_OK;
@@ -355,7 +339,7 @@ static camber_status add_fill(camber_draw_list *list, const camber_pass *pass) {
 }
 
 static camber_composite composite_of(const span *s) {
-    if (s->fill != CAMBER_NO_FILL)
+    if (s->is_area)
         return CAMBER_COMPOSITE_AREA;
     if (!s->is_layered)
         return CAMBER_COMPOSITE_STRAIGHT;
@@ -376,15 +360,44 @@ typedef struct command_maker {
     uint32_t group;   /* 0: none yet */
 } command_maker;
 
-/* Adds a span. is_whole: it has all lines of its pass, whose opacity one layer may take then. */
+static bool is_same_fill(const camber_draw_list *list, int32_t a, int32_t b) {
+    return a == b || memcmp(list->fills + a, list->fills + b, sizeof *list->fills) == 0;
+}
+
+/* Lists where the fill of the span's areas changes, its first area among these. */
+static camber_status list_fills(const command_maker *m, const span *s) {
+    camber_draw_list *list = m->list;
+    int32_t fill = CAMBER_NO_FILL;
+    for (size_t i = s->first; i < s->end; i++) {
+        const camber_row_paint *row = row_of(m->lines, i);
+        if (row->half_width_px < 0.0f || row->fill == CAMBER_NO_FILL)
+            continue;
+        if (fill == CAMBER_NO_FILL || !is_same_fill(list, fill, row->fill)) {
+            if (!camber_grow(list->context, &list->spans, &list->span_capacity, list->span_count + 1,
+                             sizeof *list->spans))
+                return CAMBER_ERROR_MEMORY;
+            list->spans[list->span_count++] = (camber_area_span){i, row->fill};
+        }
+        fill = row->fill;
+        if (m->lines->mesh->row_count == 1)
+            break; /* all are alike */
+    }
+    return CAMBER_OK;
+}
+
+/* Adds a span. is_whole: it has all of its pass, whose opacity one layer, or one fill, may take then. */
 static camber_status add_span(command_maker *m, span s, bool is_whole) {
-    const bool is_area = s.fill != CAMBER_NO_FILL;
+    const size_t first_span = m->list->span_count;
     float opacity = 1.0f;
     if (s.alpha <= 0.0f)
         return CAMBER_OK;
-    if (is_area && fades(m->pass) && is_whole) {
+    const camber_status status = s.is_area ? list_fills(m, &s) : CAMBER_OK;
+    const size_t span_count = m->list->span_count - first_span;
+    if (status != CAMBER_OK || (s.is_area && span_count == 0))
+        return status;
+    if (s.is_area && fades(m->pass) && is_whole && span_count == 1) {
         opacity = m->pass->opacity;
-    } else if (fades(m->pass) && is_whole && m->lines->overlap != CAMBER_OVERLAP_ACCUMULATE) {
+    } else if (!s.is_area && fades(m->pass) && is_whole && m->lines->overlap != CAMBER_OVERLAP_ACCUMULATE) {
         opacity = m->pass->opacity;
         s.one_alpha = s.one_alpha || !s.is_layered;
         s.is_layered = true;
@@ -392,7 +405,8 @@ static camber_status add_span(command_maker *m, span s, bool is_whole) {
         m->group = ++m->list->group_count;
     }
     camber_draw_command command = {.mesh = m->pass->mesh,
-                                   .fill_number = s.fill,
+                                   .first_span = first_span,
+                                   .span_count = span_count,
                                    .first = s.first,
                                    .end = s.end,
                                    .first_row = m->first_row,
@@ -401,36 +415,22 @@ static camber_status add_span(command_maker *m, span s, bool is_whole) {
                                    .one_alpha = s.one_alpha,
                                    .alpha = s.alpha,
                                    .color = s.color,
-                                   .layer_opacity = s.alpha * opacity,
+                                   .layer_opacity = s.is_area ? opacity : s.alpha * opacity,
                                    .group = m->group,
                                    .group_opacity = m->pass->opacity};
-    if (is_area) {
-        command.fill = m->list->fills[s.fill];
-        command.fill.color.a *= opacity;
-    }
     return add_command(m->list, &command);
 }
 
-/* Whether the spans from the pass's first one on are more layers than a pass may have. */
-static bool has_many_layers(const pass_lines *lines, const span *first) {
+/* Whether the spans from the pass's first one on are more layers than a pass may have, or more spans of areas. */
+static bool has_many_spans(const pass_lines *lines, const span *first) {
     span s = *first;
-    size_t layers = s.is_layered && s.alpha > 0.0f;
-    while (s.end < lines->end && layers <= LAYERS_MAX) {
+    size_t layers = s.is_layered && s.alpha > 0.0f, areas = s.is_area;
+    while (s.end < lines->end && layers <= LAYERS_MAX && areas <= AREAS_MAX) {
         s = find_span(lines, s.end);
         layers += s.is_layered && s.alpha > 0.0f;
+        areas += s.is_area;
     }
-    return layers > LAYERS_MAX;
-}
-
-/* Whether spans of areas, from the pass's first span on, change their fill more often than a pass may. */
-static bool has_many_fills(const pass_lines *lines, const span *first) {
-    span s = *first;
-    size_t areas = s.fill != CAMBER_NO_FILL;
-    while (s.end < lines->end && areas <= FILLS_MAX) {
-        s = find_span(lines, s.end);
-        areas += s.fill != CAMBER_NO_FILL;
-    }
-    return areas > FILLS_MAX;
+    return layers > LAYERS_MAX || areas > AREAS_MAX;
 }
 
 static camber_status add_in_order(command_maker *m, span s) {
@@ -464,39 +464,22 @@ static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
     return count;
 }
 
-/* The faintest lines come first. */
+/* Areas come first, in their order, and then lines, the faintest first. */
 static camber_status add_by_alpha(command_maker *m) {
     float alphas[ALPHAS_MAX];
     const size_t count = list_alphas(m->lines, alphas);
-    camber_status status = CAMBER_OK;
-    if (count > ALPHAS_MAX)
+    camber_status status = add_span(m, pick_areas(m->lines), false);
+    if (status == CAMBER_OK && count > ALPHAS_MAX)
         return add_span(m, mask_all(m->lines), m->group == 0);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = add_span(m, pick_alpha(m->lines, alphas[i]), false);
     return status;
 }
 
-/* The areas of one fill come together, in the order of the first of each fill. Lines come above them. */
-static camber_status add_by_fill(command_maker *m) {
-    const camber_draw_list *list = m->list;
-    bool *added = camber_alloc_zero(list->context, list->fill_count, sizeof *added);
-    camber_status status = added ? CAMBER_OK : CAMBER_ERROR_MEMORY;
-    for (size_t i = m->lines->first; i < m->lines->end && status == CAMBER_OK; i++) {
-        const camber_row_paint *row = row_of(m->lines, i);
-        if (row->half_width_px < 0.0f || row->fill == CAMBER_NO_FILL || added[row->fill])
-            continue;
-        added[row->fill] = true;
-        status = add_span(m, pick_fill(m->lines, row->fill), false);
-    }
-    camber_free(list->context, added);
-    return status == CAMBER_OK ? add_by_alpha(m) : status;
-}
-
 static camber_status add_lines(row_maker *rows) {
     const camber_pass *pass = rows->pass;
     const camber_mesh *mesh = pass->mesh;
     const size_t first_row = rows->list->row_count;
-    rows->first_fill = rows->list->fill_count;
     if (mesh->empty)
         return CAMBER_OK;
     const size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
@@ -510,8 +493,7 @@ static camber_status add_lines(row_maker *rows) {
     lines.rows = rows->list->rows + first_row;
     command_maker m = {rows->list, pass, &lines, first_row, 0};
     const span first = find_span(&lines, lines.first);
-    return has_many_fills(&lines, &first) || has_many_layers(&lines, &first) ? add_by_fill(&m)
-                                                                             : add_in_order(&m, first);
+    return has_many_spans(&lines, &first) ? add_by_alpha(&m) : add_in_order(&m, first);
 }
 
 /* ---- The list ---- */
@@ -564,7 +546,7 @@ camber_status camber_draw_list_build(camber_draw_list *list, const camber_frame 
     if (status == CAMBER_OK)
         status = find_pitch(list->context, frame, &pitch_deg);
     list->command_count = list->row_count = list->use_count = list->fill_count = 0;
-    list->group_count = 0;
+    list->span_count = list->group_count = 0;
     camber_image_set_clear(&list->images);
     camber_side_table_clear(&list->side_table);
     if (status != CAMBER_OK)
@@ -583,6 +565,7 @@ void camber_draw_list_free(camber_draw_list *list) {
     camber_image_set_free(&list->images);
     camber_side_table_free(&list->side_table);
     camber_free(list->context, list->image_uses);
+    camber_free(list->context, list->spans);
     camber_free(list->context, list->fills);
     camber_free(list->context, list->rows);
     camber_free(list->context, list->commands);

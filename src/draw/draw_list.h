@@ -19,7 +19,7 @@ typedef enum camber_composite {
     CAMBER_COMPOSITE_COVERAGE, /* a layer of one colour: coverage is gathered, one line over the other */
     CAMBER_COMPOSITE_UNION,    /* the same, and where edges meet in a pixel it has the area of all lines together */
     CAMBER_COMPOSITE_MASKED,   /* a layer of translucent colours, in which the last line alone is seen */
-    CAMBER_COMPOSITE_AREA,     /* no layer: what is inside of the polylines is filled, all at once */
+    CAMBER_COMPOSITE_AREA,     /* no layer: what is inside of the polylines is filled, all of a fill at once */
 } camber_composite;
 
 /* A row's paint, with where the side table has what it names. */
@@ -50,18 +50,24 @@ typedef struct camber_fill_paint {
     camber_fill_rule rule;
 } camber_fill_paint;
 
+/* Areas that follow each other and have one fill. */
+typedef struct camber_area_span {
+    size_t first; /* polyline */
+    int32_t fill; /* of the list */
+} camber_area_span;
+
 typedef struct camber_draw_command {
-    camber_mesh *mesh;      /* NULL: a fill of the picture */
-    camber_fill_paint fill; /* of the picture, or of areas */
-    int32_t fill_number;    /* of the rows that are drawn. CAMBER_NO_FILL: lines */
-    size_t first, end;      /* polylines of the mesh */
-    size_t first_row;       /* of the list's rows, of which every row of the mesh has one */
-    unsigned features;      /* CAMBER_FEATURE_* of its rows */
+    camber_mesh *mesh;             /* NULL: a fill of the picture */
+    camber_fill_paint fill;        /* of the picture */
+    size_t first_span, span_count; /* of the list, where composite is AREA: its rows are those that have a fill */
+    size_t first, end;             /* polylines of the mesh */
+    size_t first_row;              /* of the list's rows, of which every row of the mesh has one */
+    unsigned features;             /* CAMBER_FEATURE_* of its rows */
     camber_composite composite;
     bool one_alpha; /* only rows of this alpha are drawn, in a layer as opaque ones; else all, each with its own */
     float alpha;
     camber_color color;  /* of all its lines, where composite is COVERAGE or UNION */
-    float layer_opacity; /* at which its layer is put over what lies below */
+    float layer_opacity; /* at which its layer is put over what lies below; of areas, beside their fills' own */
     uint32_t group;      /* 0: none. Commands of one group follow each other, and are put onto the picture as one */
     float group_opacity;
 } camber_draw_command;
@@ -79,8 +85,10 @@ typedef struct camber_draw_list {
     camber_draw_command *commands;
     camber_row_paint *rows;
     camber_image_use *image_uses;
-    camber_fill_paint *fills; /* of areas, each once */
-    size_t command_count, command_capacity, row_count, row_capacity, use_count, use_capacity, fill_count, fill_capacity;
+    camber_fill_paint *fills; /* of rows of areas */
+    camber_area_span *spans;
+    size_t command_count, command_capacity, row_count, row_capacity, use_count, use_capacity, fill_count, fill_capacity,
+        span_count, span_capacity;
     camber_image_set images; /* of the frame, each once: numbers of image uses are theirs */
     uint32_t group_count;
     camber_side_table side_table;
@@ -95,7 +103,7 @@ void camber_draw_list_free(camber_draw_list *list);
 
 /* The alpha at which a command draws one of its mesh's rows into its layer or the picture. Below 0: it does not. */
 static inline float camber_draw_command_alpha(const camber_draw_command *command, const camber_row_paint *row) {
-    if (row->half_width_px < 0.0f || row->fill != command->fill_number ||
+    if (row->half_width_px < 0.0f || (row->fill == CAMBER_NO_FILL) == (command->composite == CAMBER_COMPOSITE_AREA) ||
         (command->one_alpha && row->color.a != command->alpha))
         return -1.0f;
     return command->one_alpha && command->composite != CAMBER_COMPOSITE_STRAIGHT ? 1.0f : row->color.a;

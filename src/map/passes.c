@@ -53,7 +53,7 @@ static bool layer_draws(const camber_numbering *n, const camber_plan_layer *laye
 }
 
 /* Opaque layers whose polylines follow each other are drawn by one pass. A translucent layer has a pass of its own,
- * since it is flattened by itself; so has one of areas, since a pass may bring all areas of one fill together. A layer
+ * since it is flattened by itself; so has one of areas, since like fills of two layers would become one path. A layer
  * of areas with an opacity takes its outline along. Fills of the picture come between. */
 static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;

@@ -28,77 +28,91 @@ static camber_status first_record(const camber_mesh *mesh, const camber_mesh_par
     return status;
 }
 
-static camber_status find_range(const camber_raster_input *input, size_t which, camber_record_range *range) {
-    camber_mesh_part *part = input->mesh->parts + which;
-    const size_t end = part->first_polyline + part->polyline_count;
-    const size_t from = input->first > part->first_polyline ? input->first : part->first_polyline;
-    const size_t to = input->end < end ? input->end : end;
-    *range = (camber_record_range){
-        .mesh = input->mesh, .part = which, .first_row = input->first_row, .is_area = input->is_area};
-    if (from >= to || part->index_count == 0)
-        return CAMBER_OK;
-    const bool whole = from == part->first_polyline && to == end;
-    camber_status status = whole ? CAMBER_OK : camber_part_ensure_made(input->mesh, part);
-    if (status == CAMBER_OK)
-        status = first_record(input->mesh, part, from, &range->first);
-    if (status == CAMBER_OK)
-        status = first_record(input->mesh, part, to, &range->end);
-    return status;
-}
-
-/* The ranges that are listed so far. */
-typedef struct range_list {
-    camber_context *context;
-    camber_record_range *ranges;
-    size_t count, capacity, segments;
-} range_list;
-
-static camber_status add_range(range_list *list, camber_record_range range) {
+static camber_status add_range(camber_range_list *list, camber_record_range range) {
     if (!camber_grow(list->context, &list->ranges, &list->capacity, list->count + 1, sizeof *list->ranges))
         return CAMBER_ERROR_MEMORY;
-    range.base = list->segments;
-    list->segments += (range.end - range.first + 15) / 16 * 16;
+    range.base = list->segment_count;
+    list->segment_count += (range.end - range.first + 15) / 16 * 16;
     list->ranges[list->count++] = range;
+    if (!range.is_area)
+        return CAMBER_OK;
+    list->first_edge = list->end_edge == 0 ? range.base : list->first_edge;
+    list->end_edge = range.base + range.end - range.first;
     return CAMBER_OK;
 }
 
-static camber_status add_input(range_list *list, const camber_raster_input *input) {
+/* Lists the records at which the brush changes within a range. */
+static camber_status add_changes(camber_range_list *list, const camber_record_range *range, const size_t *polylines) {
+    const camber_mesh *mesh = range->mesh;
+    if (range->change_count == 0)
+        return CAMBER_OK;
+    if (!camber_grow(list->context, &list->changes, &list->change_capacity, list->change_count + range->change_count,
+                     sizeof *list->changes))
+        return CAMBER_ERROR_MEMORY;
+    list->change_count += range->change_count;
+    return camber_part_first_records(mesh, mesh->parts + range->part, polylines, range->change_count,
+                                     list->changes + range->first_change);
+}
+
+/* Adds the polylines [from, to) of a part. range: what is known of it. polylines: where the brush changes within. */
+static camber_status add_polylines(camber_range_list *list, camber_record_range range, size_t from, size_t to,
+                                   const size_t *polylines) {
+    camber_mesh_part *part = range.mesh->parts + range.part;
+    const bool whole = from == part->first_polyline && to == part->first_polyline + part->polyline_count;
+    camber_status status = whole && range.change_count == 0 ? CAMBER_OK : camber_part_ensure_made(range.mesh, part);
+    if (status == CAMBER_OK)
+        status = first_record(range.mesh, part, from, &range.first);
+    if (status == CAMBER_OK)
+        status = first_record(range.mesh, part, to, &range.end);
+    if (status != CAMBER_OK || range.first >= range.end)
+        return status;
+    status = add_changes(list, &range, polylines);
+    return status == CAMBER_OK ? add_range(list, range) : status;
+}
+
+static camber_status add_input(camber_range_list *list, const camber_raster_scene *scene,
+                               const camber_raster_input *input) {
+    const size_t *changes = input->change_count ? scene->changes + input->first_change : NULL;
+    size_t change = 0;
     camber_status status = CAMBER_OK;
     if (!input->mesh)
         return add_range(list, (camber_record_range){.end = CAMBER_FILL_RECORDS, .first_row = input->first_row});
     for (size_t i = 0; i < input->mesh->part_count && status == CAMBER_OK; i++) {
-        camber_record_range range;
-        status = find_range(input, i, &range);
-        if (status == CAMBER_OK && range.first < range.end)
-            status = add_range(list, range);
+        const camber_mesh_part *part = input->mesh->parts + i;
+        const size_t end = part->first_polyline + part->polyline_count;
+        const size_t from = input->first > part->first_polyline ? input->first : part->first_polyline;
+        const size_t to = input->end < end ? input->end : end;
+        if (from >= to || part->index_count == 0)
+            continue;
+        while (change < input->change_count && changes[change] <= from)
+            change++;
+        const size_t before = change;
+        while (change < input->change_count && changes[change] < to)
+            change++;
+        const camber_record_range range = {.mesh = input->mesh,
+                                           .part = i,
+                                           .first_row = input->first_row,
+                                           .is_area = input->is_area,
+                                           .first_change = list->change_count,
+                                           .change_count = change - before,
+                                           .changes_before = before};
+        status = add_polylines(list, range, from, to, range.change_count ? changes + before : NULL);
     }
     return status;
 }
 
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
-                                        camber_record_range **ranges, size_t *range_count, size_t *segment_count) {
-    range_list list = {.context = context};
+                                        camber_range_list *list) {
     camber_status status = CAMBER_OK;
+    *list = (camber_range_list){.context = context};
     for (size_t r = 0; r < scene->input_count && status == CAMBER_OK; r++)
-        status = add_input(&list, scene->inputs + r);
-    if (status != CAMBER_OK) {
-        camber_free(context, list.ranges);
-        return status;
-    }
-    *ranges = list.ranges;
-    *range_count = list.count;
-    *segment_count = list.segments;
-    return CAMBER_OK;
+        status = add_input(list, scene, scene->inputs + r);
+    return status;
 }
 
-void camber_raster_find_edges(const camber_record_range *ranges, size_t range_count, size_t *first, size_t *end) {
-    *first = *end = 0;
-    for (size_t i = 0; i < range_count; i++) {
-        if (!ranges[i].is_area)
-            continue;
-        *first = *end == 0 ? ranges[i].base : *first;
-        *end = ranges[i].base + ranges[i].end - ranges[i].first;
-    }
+void camber_raster_free_ranges(camber_range_list *list) {
+    camber_free(list->context, list->changes);
+    camber_free(list->context, list->ranges);
 }
 
 unsigned camber_raster_variant(const camber_raster_scene *scene) {
@@ -127,6 +141,9 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
         .rows = camber_raster_tiles(area->height),
         .horizon = (float)scene->horizon,
         .eye = scene->eye,
+        .first_change = (uint32_t)range->first_change,
+        .change_count = (uint32_t)range->change_count,
+        .changes_before = (uint32_t)range->changes_before,
     };
 }
 

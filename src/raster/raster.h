@@ -20,13 +20,15 @@
 #include "camber_proof.h"
 #include "kernels/edge.h"
 
-/* Polylines [first, end) of a mesh, drawn by a table of rows. */
+/* Polylines [first, end) of a mesh, drawn by a table of rows. From each change on, their brush is one further than the
+ * row's for that change and for each before it. So areas of many fills are drawn in their order. */
 typedef struct camber_raster_input {
     camber_mesh
         *mesh; /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
     size_t first, end;
     size_t first_row; /* where the table begins among all rows */
     bool is_area;     /* the polylines are rings: half widths of rows that are drawn are CAMBER_EDGE_PX */
+    size_t first_change, change_count; /* of the scene */
 } camber_raster_input;
 
 /* All that is drawn, in drawing order. Brushes of one layer follow each other, and so do those of a group. */
@@ -46,6 +48,7 @@ typedef struct camber_raster_scene {
     const camber_brush_ext *brush_ext; /* brush_count of them. NULL: the frame is plain */
     const float *side_table;           /* side_table_count times 4 floats */
     size_t side_table_count;
+    const size_t *changes; /* of brushes: polylines, those of an input ascending */
 } camber_raster_scene;
 
 /* The variant of the program that draws a scene. */
@@ -118,13 +121,22 @@ typedef struct camber_record_range {
     size_t base;       /* where its segments begin, a multiple of 16 */
     size_t first_row;
     bool is_area;
+    size_t first_change, change_count; /* of the list; those of the same part */
+    size_t changes_before;             /* of the same input */
 } camber_record_range;
 
-/* Lists the ranges of a scene, and how many segments they take. The caller frees *ranges with camber_free. */
+/* The ranges of a scene, and how many segments they take. */
+typedef struct camber_range_list {
+    camber_context *context;
+    camber_record_range *ranges;
+    uint32_t *changes; /* of brushes: records of a part, those of a range ascending */
+    size_t count, capacity, segment_count, change_count, change_capacity;
+    size_t first_edge, end_edge; /* no edge of a ring lies outside these segments; 0 and 0: there are no areas */
+} camber_range_list;
+
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
-                                        camber_record_range **ranges, size_t *range_count, size_t *segment_count);
-/* Finds the segments [*first, *end) outside which no edge of a ring lies: from 0 to 0 where there are no areas. */
-void camber_raster_find_edges(const camber_record_range *ranges, size_t range_count, size_t *first, size_t *end);
+                                        camber_range_list *list);
+void camber_raster_free_ranges(camber_range_list *list);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
                                            const camber_raster_area *area);
 enum { CAMBER_FILL_RECORDS = 2 };

@@ -21,8 +21,7 @@ enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 /* The scene and the ranges that an area is drawn from. */
 typedef struct listed_scene {
     const camber_raster_scene *scene;
-    const camber_record_range *ranges;
-    size_t range_count, segment_count;
+    camber_range_list list;
 } listed_scene;
 
 /* ---- Stages ---- */
@@ -85,7 +84,7 @@ static camber_status set_up(camber_raster *raster, const camber_raster_scene *sc
     const camber_setup_args args = camber_raster_setup_args(scene, range, &raster->band);
     const camber_kernel_arg arguments[] = {
         CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
-        CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};
+        CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES),   BUFFER(BUFFER_CHANGES)};
     return run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments,
                (range->end - range->first + 15) / 16);
 }
@@ -103,11 +102,11 @@ static camber_status set_up_shared(camber_raster *raster, const camber_raster_sc
     return camber_part_finish(mesh, part, false, status == CAMBER_OK ? settled : status);
 }
 
-static camber_status make_segments(camber_raster *raster, const camber_raster_scene *scene,
-                                   const camber_record_range *ranges, size_t range_count) {
+static camber_status make_segments(camber_raster *raster, const listed_scene *p) {
+    const camber_raster_scene *scene = p->scene;
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < range_count && status == CAMBER_OK; i++) {
-        camber_record_range range = ranges[i];
+    for (size_t i = 0; i < p->list.count && status == CAMBER_OK; i++) {
+        camber_record_range range = p->list.ranges[i];
         if (!cut_range(raster, &range))
             continue;
         camber_mesh *mesh = range.mesh;
@@ -320,7 +319,9 @@ static size_t segments_at_once(const camber_raster *raster) {
     return count ? count : 16;
 }
 
-static camber_status prepare(camber_raster *raster, const camber_raster_scene *scene) {
+static camber_status prepare(camber_raster *raster, const listed_scene *p) {
+    const camber_raster_scene *scene = p->scene;
+    const camber_range_list *list = &p->list;
     const size_t most = segments_at_once(raster), wanted = raster->segment_count ? raster->segment_count : 16;
     const size_t segments = wanted < most ? wanted : most;
     camber_status status = camber_raster_put(raster, BUFFER_ROWS, scene->rows,
@@ -329,6 +330,8 @@ static camber_status prepare(camber_raster *raster, const camber_raster_scene *s
         status = camber_raster_put(raster, BUFFER_FILL, camber_fill_records, sizeof camber_fill_records);
     if (status == CAMBER_OK)
         status = camber_raster_put(raster, BUFFER_BRUSHES, scene->brushes, scene->brush_count * sizeof *scene->brushes);
+    if (status == CAMBER_OK && list->change_count)
+        status = camber_raster_put(raster, BUFFER_CHANGES, list->changes, list->change_count * sizeof *list->changes);
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_SEGMENTS, 4 * CAMBER_SEGMENT_WORDS * segments);
     if (status == CAMBER_OK)
@@ -344,7 +347,7 @@ static camber_status prepare(camber_raster *raster, const camber_raster_scene *s
 static camber_status draw_slice(camber_raster *raster, const listed_scene *p, camber_spill_args k, bool *fits) {
     uint32_t chunk_count;
     const camber_bin_args c = cut_chunks(raster, &chunk_count);
-    camber_status status = make_segments(raster, p->scene, p->ranges, p->range_count);
+    camber_status status = make_segments(raster, p);
     if (status == CAMBER_OK)
         status = count_segments(raster, c, chunk_count);
     if (status == CAMBER_OK)
@@ -364,7 +367,7 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
 /* Draws the band's slices, from the last to the first. If the lists of one do not fit, it stops so that the caller
  * halves the band, or halves the slice. */
 static camber_status draw_band(camber_raster *raster, const listed_scene *p, bool *fits) {
-    size_t most = segments_at_once(raster), left = p->segment_count;
+    size_t most = segments_at_once(raster), left = p->list.segment_count;
     camber_spill_args k = plan_spill(p->scene);
     camber_status status = CAMBER_OK;
     raster->tile_count = (size_t)raster->columns * camber_raster_tiles(raster->band.height);
@@ -372,7 +375,7 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
     do {
         raster->segment_count = left < most ? left : most;
         raster->first_segment = left - raster->segment_count;
-        k.is_first = left == p->segment_count;
+        k.is_first = left == p->list.segment_count;
         k.is_last = raster->first_segment == 0;
         *fits = true;
         status = draw_slice(raster, p, k, fits);
@@ -391,7 +394,7 @@ static uint32_t rows_at_once(const camber_raster *raster, const listed_scene *p)
     const uint32_t rows = camber_raster_tiles(raster->area.height);
     const uint64_t row_bytes = 4 * (uint64_t)plan_spill(p->scene).tile_words * raster->columns;
     const uint64_t most = camber_raster_most_bytes(raster) / row_bytes;
-    if (p->segment_count <= segments_at_once(raster) || most >= rows)
+    if (p->list.segment_count <= segments_at_once(raster) || most >= rows)
         return rows;
     return most > 0 ? (uint32_t)most : 1;
 }
@@ -419,8 +422,7 @@ static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, cl_mem pixels) {
     camber_context *context = raster->device->context;
-    camber_record_range *ranges = NULL;
-    listed_scene p = {.scene = scene};
+    listed_scene p = {.scene = scene, .list = {.context = context}};
     memset(raster->ms, 0, sizeof raster->ms);
     raster->slice_count = 0;
     raster->area = *area;
@@ -429,19 +431,19 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
     raster->variant = camber_raster_variant(scene);
     camber_status status = camber_device_raster_program(raster->device, raster->variant, &raster->program);
     if (status == CAMBER_OK)
-        status = camber_raster_list_ranges(context, scene, &ranges, &p.range_count, &p.segment_count);
-    p.ranges = ranges;
-    raster->segment_count = p.segment_count;
-    camber_raster_find_edges(ranges, p.range_count, &raster->first_edge, &raster->end_edge);
+        status = camber_raster_list_ranges(context, scene, &p.list);
+    raster->segment_count = p.list.segment_count;
+    raster->first_edge = p.list.first_edge;
+    raster->end_edge = p.list.end_edge;
     if (status == CAMBER_OK)
-        status = prepare(raster, scene);
+        status = prepare(raster, &p);
     if (status == CAMBER_OK)
         status = draw_bands(raster, &p);
     const camber_status settled = settle(raster);
     if (status != CAMBER_OK)
         clFinish(raster->device->queue); /* the scene may be freed: what was put must have been copied */
     status = status == CAMBER_OK ? settled : status;
-    camber_free(context, ranges);
+    camber_raster_free_ranges(&p.list);
     return status;
 }
 

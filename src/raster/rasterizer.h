@@ -10,6 +10,7 @@ enum {
     BUFFER_BRUSHES,
     BUFFER_BRUSH_EXT,
     BUFFER_SIDE_TABLE,
+    BUFFER_CHANGES, /* of brushes, as records */
     BUFFER_SEGMENTS,
     BUFFER_BOXES,
     BUFFER_ARC_LENGTHS,
@@ -48,7 +49,7 @@ struct camber_raster {
     cl_mem given;                        /* the caller's buffer for the pixels; NULL: a buffer of our own */
     uint32_t columns;                    /* tiles */
     size_t first_segment, segment_count; /* of the slice */
-    size_t first_edge, end_edge;         /* no edge of a ring lies outside these segments; none: there are no areas */
+    size_t first_edge, end_edge;         /* those of camber_range_list */
     size_t tile_count;
     size_t list_count; /* of tiles, and behind them of rows of tiles where there are areas */
     uint32_t slice_count;

@@ -59,6 +59,13 @@ static void put_plane(const camber_segment *s, const camber_plane *p, float *mad
     memcpy(made, words, sizeof words);
 }
 
+/* The brush of the segment that ends with a record, by that of its row. */
+static float brush_of(const camber_twin *t, const camber_setup_args *r, int64_t i, float of_row) {
+    const uint32_t *changes = r->change_count ? t->changes + r->first_change : NULL;
+    const uint32_t passed = r->changes_before + camber_changes_until(changes, r->change_count, (uint32_t)i);
+    return camber_float_of(camber_bits_of(of_row) + passed);
+}
+
 /* Writes the words of the segment that ends with a record. Its box says whether there is one. */
 static void put_segment(const camber_twin *t, const part_records *part, const camber_setup_args *r, int64_t i,
                         size_t segment) {
@@ -88,7 +95,7 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
             s = footprint;
         }
     }
-    put_words(&s, row[3], t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
+    put_words(&s, brush_of(t, r, i, row[3]), t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
     t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
 }
 
@@ -119,9 +126,10 @@ static camber_status read_part(camber_mesh *mesh, size_t which, part_records *pa
     return made.records && (made.arc_lengths || !has_arc_length) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-static camber_status make_segments(const camber_twin *t, const camber_record_range *ranges, size_t range_count) {
+static camber_status make_segments(const camber_twin *t, const camber_range_list *list) {
+    const camber_record_range *ranges = list->ranges;
     camber_status status = CAMBER_OK;
-    for (size_t p = 0; p < range_count && status == CAMBER_OK; p++) {
+    for (size_t p = 0; p < list->count && status == CAMBER_OK; p++) {
         const camber_setup_args r = camber_raster_setup_args(t->scene, ranges + p, t->area);
         part_records part = {0};
         status = ranges[p].mesh ? read_part(ranges[p].mesh, ranges[p].part, &part) : CAMBER_OK;
@@ -185,14 +193,18 @@ static camber_status make_lists(const camber_twin *t) {
 camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,
                                     const camber_raster_area *area, camber_raster_stages *stages) {
     camber_raster_stages made = {0};
-    camber_record_range *ranges = NULL;
-    size_t range_count = 0;
-    camber_twin t = {context, scene, area, &made, camber_raster_tiles(area->width), camber_raster_tiles(area->height),
-                     0,       0};
-    camber_status status = camber_raster_list_ranges(context, scene, &ranges, &range_count, &made.segment_count);
-    if (status != CAMBER_OK)
-        return status;
-    camber_raster_find_edges(ranges, range_count, &t.first_edge, &t.end_edge);
+    camber_range_list list;
+    camber_status status = camber_raster_list_ranges(context, scene, &list);
+    const camber_twin t = {.context = context,
+                           .scene = scene,
+                           .area = area,
+                           .stages = &made,
+                           .changes = list.changes,
+                           .columns = camber_raster_tiles(area->width),
+                           .rows = camber_raster_tiles(area->height),
+                           .first_edge = list.first_edge,
+                           .end_edge = list.end_edge};
+    made.segment_count = list.segment_count;
     made.tile_count = (size_t)t.columns * t.rows;
     made.list_count = made.tile_count + (t.end_edge ? t.rows : 0);
     made.segments = camber_alloc(context, made.segment_count, CAMBER_SEGMENT_WORDS * sizeof *made.segments);
@@ -204,16 +216,16 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
         made.planes = camber_alloc(context, made.segment_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
     made.starts = camber_alloc(context, made.list_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
-    if (!made.segments || !made.boxes || (scene->brush_ext && !made.arc_lengths) || (scene->pitched && !made.planes) ||
-        !made.starts || !made.rgba)
+    if (status == CAMBER_OK && (!made.segments || !made.boxes || (scene->brush_ext && !made.arc_lengths) ||
+                                (scene->pitched && !made.planes) || !made.starts || !made.rgba))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
-        status = make_segments(&t, ranges, range_count);
+        status = make_segments(&t, &list);
     if (status == CAMBER_OK)
         status = make_lists(&t);
     if (status == CAMBER_OK)
         status = scene->pitched ? camber_twin_draw_pitched(&t) : camber_twin_draw(&t);
-    camber_free(context, ranges);
+    camber_raster_free_ranges(&list);
     if (status != CAMBER_OK) {
         camber_raster_stages_free(context, &made);
         return status;

@@ -135,6 +135,37 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     return status;
 }
 
+/* The same for records. starts: of all slots, where the mesh is strips. */
+static uint32_t first_record(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
+                             size_t slot) {
+    if (!mesh->mesh_info.strips)
+        return (uint32_t)slot;
+    const uint64_t *base = part->host_bases + 2 * (slot / mesh->device->block);
+    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
+    return (uint32_t)((base[1] + (packed >> 16)) / 2); /* a strip has two indices for each */
+}
+
+camber_status camber_part_first_records(const camber_mesh *mesh, const camber_mesh_part *part, const size_t *polylines,
+                                        size_t count, uint32_t *records) {
+    cl_command_queue queue = mesh->device->queue;
+    cl_mem mem = part->source_line.places;
+    cl_uint *places = NULL;
+    cl_int code = CL_SUCCESS;
+    camber_slot_starts starts;
+    if (mesh->has_offsets && part->given_count > 0)
+        places = clEnqueueMapBuffer(queue, mem, CL_TRUE, CL_MAP_READ, 0, 4 * part->given_count, 0, NULL, NULL, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
+    const camber_status status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &starts);
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
+        records[i] = first_record(mesh, part, &starts, camber_part_slot_from(mesh, part, places, polylines[i]));
+    if (status == CAMBER_OK)
+        camber_slot_starts_unmap(&starts);
+    if (places)
+        clEnqueueUnmapMemObject(queue, mem, places, 0, NULL, NULL);
+    return status;
+}
+
 /* ---- Reading back ---- */
 
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status) {

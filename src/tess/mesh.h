@@ -107,6 +107,9 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
 /* Finds the first slot of a polyline in its part, whose slots must be in its buffers: the device may have to be asked.
  * A polyline just behind the part's last gives the end of its slots. */
 camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot);
+/* The same, from the places of slots of offset lines, which are mapped; NULL where the mesh has no offsets. */
+size_t camber_part_slot_from(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places,
+                             size_t polyline);
 /* The same among the given slots, before the offset stages. */
 size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* How many output buffers each part has. */
@@ -125,6 +128,9 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
 /* The same among the indices of the whole mesh, as camber_mesh_read gives them. Makes the polyline's part if it is
  * gone. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
+/* Finds the first records of polylines of a part, which is made and has them in this ascending order. */
+camber_status camber_part_first_records(const camber_mesh *mesh, const camber_mesh_part *part, const size_t *polylines,
+                                        size_t count, uint32_t *records);
 
 /* slot_starts.c: where the output of slots begins within their blocks, from what classify and scan left. */
 typedef struct camber_slot_starts {

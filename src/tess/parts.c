@@ -207,6 +207,15 @@ size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *p
     return mesh->held ? camber_part_network_slot(mesh, part, polyline) : mesh->first_slots[polyline] - part->first_slot;
 }
 
+size_t camber_part_slot_from(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places,
+                             size_t polyline) {
+    const size_t given = camber_part_given_slot(mesh, part, polyline);
+    if (!places)
+        return given;
+    const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
+    return is_behind ? part->source_line.made_count : places[given];
+}
+
 camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot) {
     const size_t given = camber_part_given_slot(mesh, part, polyline);
     const camber_device *device = mesh->device;

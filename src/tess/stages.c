@@ -30,15 +30,6 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
 }
 
-/* The same as camber_part_slot, but from mapped arrays: that function asks the device at each call. */
-static size_t slot_of(const camber_mesh *mesh, const camber_mesh_part *part, const arrays *a, size_t polyline) {
-    const size_t given = camber_part_given_slot(mesh, part, polyline);
-    if (!a->places)
-        return given;
-    const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
-    return is_behind ? part->source_line.made_count : a->places[given];
-}
-
 /* Appends the points of a part to stages. Where a device has counted wrongly, a polyline's slots may lie past the
  * part's end or overlap another's: slots only ever go forward, so that none is read twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
@@ -52,7 +43,8 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0, slot = 0; i < part->polyline_count; i++) {
         const size_t polyline = part->first_polyline + i;
-        const size_t begin = slot_of(mesh, part, a, polyline), wanted = slot_of(mesh, part, a, polyline + 1);
+        const size_t begin = camber_part_slot_from(mesh, part, a->places, polyline);
+        const size_t wanted = camber_part_slot_from(mesh, part, a->places, polyline + 1);
         const size_t end = wanted < part->slot_count ? wanted : part->slot_count;
         uint32_t point = 0;
         for (slot = begin > slot ? begin : slot; slot < end; slot++) {

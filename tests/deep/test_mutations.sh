@@ -295,6 +295,9 @@ mutant strip kernels/setup.cl "a direction that is not that of the segment befor
 mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
 mutant kite kernels/setup.cl "lines that go on to the next" 'r.strips ? STARTS : CAMBER_POINT_FIRST' \
     'r.strips ? STARTS : 0u'
+mutant strip kernels/setup.cl "areas: all by the first fill" 'brushes += next;' 'brushes += 0u * next;'
+mutant strip kernels/setup.cl "areas: fills that change too early" 'numbers) >= own[next] - first' \
+    'numbers) < own[next] - first'
 mutant strip kernels/bin_count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \

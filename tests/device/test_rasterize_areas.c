@@ -1,6 +1,6 @@
 /* Areas: the device beside the twin to the last bit; pictures beside 16 x 16 samples of each pixel, which share no
  * formula with what they judge; no seam between neighbours; the same bytes in areas and slices of any size; a camera
- * that cuts rings beside rings that are not cut. */
+ * that cuts rings beside rings that are not cut; many fills, in their order and in time. */
 #include "raster_twin.h"
 
 #include "camber_network.h"
@@ -71,21 +71,26 @@ static rings made_rings(uint64_t seed, size_t count, double largest, uint32_t ro
     return r;
 }
 
-static camber_mesh *mesh_of(const fixture *f, camber_renderer *renderer, const rings *r, uint32_t row_count) {
+static camber_mesh *stroked_mesh_of(const fixture *f, camber_renderer *renderer, const rings *r,
+                                    const camber_tessellation_desc *how) {
     const camber_areas_desc desc = {.points = r->points,
                                     .point_count = r->point_count,
                                     .offsets = r->offsets,
                                     .ring_count = r->ring_count,
                                     .rows = r->rows};
-    const camber_stroke strokes[4] = {{.width_px = 0}, {.width_px = 3}, {.width_px = 0}, {.width_px = 9}};
-    const camber_tessellation_desc how = {strokes, row_count, CAMBER_METHOD_STRIP, 0, false};
     camber_polylines *areas = NULL;
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_areas_create(f->context, &desc, &areas), CAMBER_OK);
     assert_int_equal(camber_mesh_create(f->on.device, renderer, &mesh), CAMBER_OK);
-    assert_int_equal(camber_mesh_tessellate(mesh, areas, &how), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, areas, how), CAMBER_OK);
     camber_polylines_destroy(areas);
     return mesh;
+}
+
+static camber_mesh *mesh_of(const fixture *f, camber_renderer *renderer, const rings *r, uint32_t row_count) {
+    const camber_stroke strokes[4] = {{.width_px = 0}, {.width_px = 3}, {.width_px = 0}, {.width_px = 9}};
+    const camber_tessellation_desc how = {strokes, row_count, CAMBER_METHOD_STRIP, 0, false};
+    return stroked_mesh_of(f, renderer, r, &how);
 }
 
 static camber_renderer *drawer(const fixture *f) {
@@ -300,6 +305,246 @@ static void test_cut_pictures(void **state) {
     rings_free(&r);
 }
 
+/* ---- Many fills ---- */
+
+enum { FILLS = 1200 };
+
+/* Squares whose sides lie between pixels, of `count` fills: no two that follow each other have the same. */
+static rings made_squares(size_t count, int largest, uint32_t fill_count) {
+    rings r = rings_begin(4 * count);
+    uint64_t seed = 77;
+    for (size_t i = 0; i < count; i++) {
+        const int side = 1 + (int)(largest * pow(next_number(&seed), 3.0));
+        const int x = (int)(1.2 * SIDE_PX * next_number(&seed)) - 50,
+                  y = (int)(1.2 * SIDE_PX * next_number(&seed)) - 50;
+        for (int corner = 0; corner < 4; corner++)
+            add_point(&r, x + side * (corner == 1 || corner == 2), y + side * (corner >= 2));
+        end_ring(&r, (uint32_t)(7 * i % fill_count));
+    }
+    return r;
+}
+
+/* A mesh with a row for each fill. offset: of one more row, which no ring has; the rings then come from source lines.
+ */
+static camber_mesh *many_rows(const fixture *f, camber_renderer *renderer, const rings *r, camber_method method,
+                              float offset) {
+    camber_stroke strokes[FILLS + 1] = {{0}};
+    strokes[FILLS].width_px = 2;
+    strokes[FILLS].offset_px = offset;
+    const camber_tessellation_desc how = {strokes, FILLS + 1, method, 0, false};
+    return stroked_mesh_of(f, renderer, r, &how);
+}
+
+/* The fills, and paints of them. Every third is translucent. */
+static void make_paints(camber_fill *fills, camber_paint *paints) {
+    uint64_t seed = 5;
+    for (int i = 0; i < FILLS; i++) {
+        const float r = (float)next_number(&seed), g = (float)next_number(&seed), b = (float)next_number(&seed);
+        fills[i] = (camber_fill){.color = {r, g, b, i % 3 ? 1.0f : 0.4f}};
+        paints[i] = (camber_paint){.fill = fills + i};
+    }
+}
+
+/* Draws the mesh by passes of so many polylines. 0: all in one. */
+static picture draw_passes(camber_renderer *renderer, camber_mesh *mesh, const camber_paint *paints, size_t at_once,
+                           uint32_t side) {
+    const size_t count = at_once ? (mesh->polyline_count + at_once - 1) / at_once : 1;
+    camber_pass *passes = calloc(count, sizeof *passes);
+    assert_non_null(passes);
+    for (size_t i = 0; i < count; i++)
+        passes[i] = (camber_pass){.mesh = mesh,
+                                  .paints = paints,
+                                  .paint_count = mesh->row_count,
+                                  .first_polyline = i * at_once,
+                                  .polyline_count = at_once};
+    const camber_frame frame = {.width = SIDE_PX,
+                                .height = SIDE_PX,
+                                .background = {1, 1, 1, 1},
+                                .passes = passes,
+                                .pass_count = count,
+                                .largest_area_px = side};
+    picture p = picture_draw(renderer, &frame);
+    free(passes);
+    return p;
+}
+
+/* Paints squares one after the other. */
+static void assert_painted(const picture *p, const rings *r, const camber_fill *fills) {
+    double *truth = malloc(SIDE_PX * SIDE_PX * 3 * sizeof *truth);
+    assert_non_null(truth);
+    for (size_t i = 0; i < SIDE_PX * SIDE_PX * 3; i++)
+        truth[i] = 1;
+    for (size_t k = 0; k < r->ring_count; k++) {
+        const float *corner = r->points + 8 * k;
+        const camber_color c = fills[r->rows[k]].color;
+        const double color[3] = {(double)c.r, (double)c.g, (double)c.b}, alpha = (double)c.a;
+        for (int y = (int)fmaxf(corner[1], 0); y < SIDE_PX && y < (int)corner[5]; y++)
+            for (int x = (int)fmaxf(corner[0], 0); x < SIDE_PX && x < (int)corner[4]; x++)
+                for (int i = 0; i < 3; i++) {
+                    double *at = truth + 3 * (SIDE_PX * y + x) + i;
+                    *at += alpha * (color[i] - *at);
+                }
+    }
+    for (uint32_t y = 0; y < SIDE_PX; y++)
+        for (uint32_t x = 0; x < SIDE_PX; x++)
+            for (int i = 0; i < 3; i++)
+                assert_true(fabs(255 * (picture_value(p, x, y, i) - truth[3 * (SIDE_PX * y + x) + (uint32_t)i])) < 1.1);
+    free(truth);
+}
+
+/* Whatever changes its fill with each area is drawn in order: beside a painter's work, and beside passes that have few
+ * fills each, to the byte, by every method, of offset lines, in areas and in slices. */
+static void test_order(void **state) {
+    const fixture *f = *state;
+    static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
+    camber_fill fills[FILLS];
+    camber_paint paints[FILLS];
+    rings r = made_squares(5000, 150, FILLS);
+    make_paints(fills, paints);
+    camber_mesh *mesh = many_rows(f, drawer(f), &r, CAMBER_METHOD_STRIP, 0);
+    picture all = draw_passes(drawer(f), mesh, paints, 0, 0), few = draw_passes(drawer(f), mesh, paints, 40, 0);
+    picture areas = draw_passes(drawer(f), mesh, paints, 0, 97);
+    assert_painted(&all, &r, fills);
+    picture_assert_same(&few, &all);
+    picture_assert_same(&areas, &all);
+    picture_free(&few);
+    picture_free(&areas);
+    camber_mesh_destroy(mesh);
+    for (int i = 0; i < 6; i++) {
+        mesh = many_rows(f, drawer(f), &r, methods[i % 3], i < 3 ? 0.0f : 3.0f);
+        picture p = draw_passes(drawer(f), mesh, paints, 0, 0);
+        picture_assert_same(&all, &p);
+        picture_free(&p);
+        camber_mesh_destroy(mesh);
+    }
+    const camber_device_desc desc = {.largest_buffer_bytes = 300 * 1024};
+    fixture small = {.context = f->context};
+    assert_int_equal(camber_device_create(f->context, &desc, &small.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    mesh = many_rows(&small, drawer(&small), &r, CAMBER_METHOD_STRIP, 0);
+    picture p = draw_passes(drawer(&small), mesh, paints, 0, 0);
+    assert_true(mesh->part_count > 1 && camber_raster_slice_count(drawer(&small)->raster) > 1);
+    picture_assert_same(&all, &p);
+    picture_free(&p);
+    camber_mesh_destroy(mesh);
+    camber_renderer_destroy(drawer(&small));
+    camber_device_destroy(small.on.device);
+    picture_free(&all);
+    rings_free(&r);
+}
+
+/* Fills that are alike are one, whatever their rows: a translucent one covers each pixel once. */
+static void test_like_fills(void **state) {
+    const fixture *f = *state;
+    const camber_fill fill = {.color = {0.1f, 0.2f, 0.3f, 0.5f}}, same = fill;
+    const camber_paint paints[2][4] = {{{.fill = &fill}, {.fill = &fill}}, {{.fill = &fill}, {.fill = &same}}};
+    rings r = made_rings(11, 300, 200, 2);
+    camber_mesh *mesh = mesh_of(f, drawer(f), &r, 2);
+    picture p[2];
+    for (int i = 0; i < 2; i++)
+        p[i] = draw_passes(drawer(f), mesh, paints[i], 0, 0);
+    picture_assert_same(p, p + 1);
+    picture_free(p);
+    picture_free(p + 1);
+    camber_mesh_destroy(mesh);
+    rings_free(&r);
+}
+
+/* Where areas and lines alternate too often, areas come first. */
+static void test_lines_between(void **state) {
+    const fixture *f = *state;
+    const camber_fill fill = {.color = {0.1f, 0.2f, 0.9f, 0.5f}};
+    const camber_paint line = {.width_px = 3, .color = {1, 0, 0, 1}}, none = {.width_px = 0}, area = {.fill = &fill};
+    const camber_paint both[2] = {area, line}, areas[2] = {area, none}, lines[2] = {none, line};
+    for (int i = 0; i < 2; i++) {
+        rings r = made_rings(51, i ? 200 : 80, 200, 2);
+        camber_mesh *mesh = mesh_of(f, drawer(f), &r, 2);
+        const camber_pass apart[2] = {{.mesh = mesh, .paints = areas, .paint_count = 2},
+                                      {.mesh = mesh, .paints = lines, .paint_count = 2}};
+        const camber_frame frame = {
+            .width = SIDE_PX, .height = SIDE_PX, .background = {1, 1, 1, 1}, .passes = apart, .pass_count = 2};
+        picture together = draw_passes(drawer(f), mesh, both, 0, 0), p = picture_draw(drawer(f), &frame),
+                few = draw_passes(drawer(f), mesh, both, 10, 0);
+        picture_assert_same(i ? &p : &few, &together);
+        assert_true(picture_compare(i ? &few : &p, &together).most > 100);
+        picture_free(&together);
+        picture_free(&p);
+        picture_free(&few);
+        camber_mesh_destroy(mesh);
+        rings_free(&r);
+    }
+}
+
+/* The twin takes the same brushes, also where lines of the same rows lie above. */
+static void test_changes(void **state) {
+    const fixture *f = *state;
+    static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE};
+    for (int i = 0; i < 2; i++) {
+        enum { COUNT = 900 };
+        rings r = made_rings(31, COUNT, 300, 2);
+        const camber_stroke strokes[2] = {{.width_px = 0}, {.width_px = 3}};
+        const camber_tessellation_desc how = {strokes, 2, methods[i], 0, false};
+        camber_mesh *mesh = stroked_mesh_of(f, drawer(f), &r, &how);
+        float rows[4][CAMBER_RASTER_ROW_WORDS] = {{0, 1, 2, 0}, {0, 3, 4, 0}, {1, 5, 6, 0}, {-1, 0, 0, 0}};
+        const uint32_t of_rows[4] = {1, 2, COUNT + 5, 0};
+        camber_brush brushes[COUNT + 6] = {{0}};
+        size_t changes[COUNT];
+        for (int k = 0; k < 4; k++)
+            memcpy(rows[k] + 3, of_rows + k, sizeof *of_rows);
+        for (int k = 1; k < COUNT + 6; k++)
+            brushes[k] = (camber_brush){.r = (float)(k % 7) / 7,
+                                        .g = (float)(k % 11) / 11,
+                                        .b = (float)(k % 13) / 13,
+                                        .a = k % 2 ? 1.0f : 0.6f,
+                                        .mode = k == COUNT + 5 ? CAMBER_BRUSH_OVER
+                                                : k % 5        ? CAMBER_BRUSH_AREA
+                                                               : CAMBER_BRUSH_AREA_EVENODD};
+        for (size_t k = 0; k + 20 < COUNT; k++)
+            changes[k] = 10 + k + (k > 400);
+        const camber_raster_input inputs[] = {
+            {.mesh = mesh, .first = 5, .end = COUNT, .is_area = true, .change_count = COUNT - 20},
+            {.mesh = mesh, .end = COUNT, .first_row = 2}};
+        const camber_raster_scene drawn = {.rows = rows[0],
+                                           .row_count = 4,
+                                           .brushes = brushes,
+                                           .brush_count = COUNT + 6,
+                                           .inputs = inputs,
+                                           .input_count = 2,
+                                           .changes = changes};
+        camber_free(f->context, raster_draw_twice(f, &drawn, (camber_raster_area){32, 64, 300, 333}));
+        camber_mesh_destroy(mesh);
+        rings_free(&r);
+    }
+}
+
+/* A hundred thousand squares of a thousand colours, or of two in turn, take little more than those of one. By fill,
+ * each colour would take as long as one alone. */
+static void test_many_fills(void **state) {
+    const fixture *f = *state;
+    enum { SQUARES = 100000, TIMES = 20 };
+    static const uint32_t counts[] = {1, 1, 2, 1000, FILLS};
+    camber_fill fills[FILLS];
+    camber_paint paints[FILLS];
+    double one_ms = 0;
+    make_paints(fills, paints);
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        rings r = made_squares(SQUARES, 20, counts[i]);
+        camber_mesh *mesh = many_rows(f, drawer(f), &r, CAMBER_METHOD_STRIP, 0);
+        const double begin = camber_now_ms();
+        picture p = draw_passes(drawer(f), mesh, paints, 0, 0);
+        const double ms = camber_now_ms() - begin;
+        printf("# %d squares of %u fills: %.1f ms\n", SQUARES, counts[i], ms);
+        one_ms = i < 2 ? ms : one_ms; /* the kernels are loaded the first time */
+        assert_true(ms < TIMES * one_ms + 1000);
+        if (counts[i] > 1)
+            assert_painted(&p, &r, fills);
+        picture_free(&p);
+        camber_mesh_destroy(mesh);
+        rings_free(&r);
+    }
+}
+
 /* ---- GL ---- */
 
 /* Kernels fill areas there, too: what differs is the rounding of their layer, and of a group. */
@@ -338,10 +583,36 @@ static void test_gl(void **state) {
     }
 }
 
+/* Many fills are one layer there. */
+static void test_gl_fills(void **state) {
+    const fixture *f = *state;
+    camber_fill fills[FILLS];
+    camber_paint paints[FILLS];
+    if (!fixture_gl(f))
+        skip();
+    make_paints(fills, paints);
+    for (uint32_t i = 0; i < 2; i++) {
+        rings r = made_squares(5000, 150, FILLS);
+        picture p[2];
+        for (int gl = 0; gl < 2; gl++) {
+            camber_renderer *renderer = gl ? fixture_gl(f) : drawer(f);
+            camber_mesh *mesh = many_rows(f, renderer, &r, CAMBER_METHOD_STRIP, 0);
+            p[gl] = draw_passes(renderer, mesh, paints, 0, 211 * i);
+            camber_mesh_destroy(mesh);
+        }
+        assert_painted(p + 1, &r, fills);
+        const difference apart = picture_compare(p, p + 1);
+        assert_true(apart.drawn > 1000 && apart.most <= 2);
+        picture_free(p);
+        picture_free(p + 1);
+        rings_free(&r);
+    }
+}
+
 /* ---- Cameras ---- */
 
-/* A network of the rings, seen from where a px is a unit and the picture's corner lies at 0, 0. */
-static picture draw_network(const fixture *f, const rings *r, double pitch_deg) {
+/* A mesh of a network of the rings, seen from where a px is a unit and the picture's corner lies at 0, 0. */
+static camber_mesh *network_mesh(const fixture *f, const rings *r, double pitch_deg, uint32_t row_count) {
     double *points = malloc(2 * (r->point_count + r->ring_count) * sizeof *points);
     size_t *offsets = malloc((r->ring_count + 1) * sizeof *offsets), count = 0;
     camber_network_entry *entries = calloc(r->ring_count, sizeof *entries);
@@ -354,7 +625,7 @@ static picture draw_network(const fixture *f, const rings *r, double pitch_deg) 
             area += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
         }
         offsets[k] = count;
-        entries[k] = (camber_network_entry){.polyline = (uint32_t)k, .is_area = true};
+        entries[k] = (camber_network_entry){.polyline = (uint32_t)k, .row = r->rows[k], .is_area = true};
         for (size_t i = 0; i <= size; i++) {
             const float *p = r->points + 2 * (first + (area < 0 ? size - i : i) % size);
             points[2 * count] = (double)p[0];
@@ -373,20 +644,43 @@ static picture draw_network(const fixture *f, const rings *r, double pitch_deg) 
                                   .width = SIDE_PX,
                                   .height = SIDE_PX,
                                   .pitch_deg = pitch_deg};
-    const camber_stroke stroke = {.width_px = 0};
-    const camber_tessellation_desc how = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
+    const camber_stroke strokes[FILLS] = {{.width_px = 0}};
+    const camber_tessellation_desc how = {strokes, row_count, CAMBER_METHOD_STRIP, 0, false};
     camber_network *network = NULL;
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_network_create(f->context, &desc, &network), CAMBER_OK);
     assert_int_equal(camber_mesh_create(f->on.device, drawer(f), &mesh), CAMBER_OK);
     assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &how), CAMBER_OK);
-    picture p = draw_mesh(drawer(f), mesh, &BLACK, 0);
-    camber_mesh_destroy(mesh);
     camber_network_destroy(network);
     free(entries);
     free(offsets);
     free(points);
+    return mesh;
+}
+
+static picture draw_network(const fixture *f, const rings *r, double pitch_deg) {
+    camber_mesh *mesh = network_mesh(f, r, pitch_deg, 1);
+    picture p = draw_mesh(drawer(f), mesh, &BLACK, 0);
+    camber_mesh_destroy(mesh);
     return p;
+}
+
+/* A network's areas keep their fills, whatever the camera cuts off between them. */
+static void test_network_fills(void **state) {
+    const fixture *f = *state;
+    camber_fill fills[FILLS];
+    camber_paint paints[FILLS];
+    rings r = made_rings(61, 3000, 200, FILLS);
+    make_paints(fills, paints);
+    for (int i = 0; i < 2; i++) {
+        camber_mesh *mesh = network_mesh(f, &r, 40.0 * i, FILLS);
+        picture all = draw_passes(drawer(f), mesh, paints, 0, 0), few = draw_passes(drawer(f), mesh, paints, 40, 0);
+        picture_assert_same(&few, &all);
+        picture_free(&all);
+        picture_free(&few);
+        camber_mesh_destroy(mesh);
+    }
+    rings_free(&r);
 }
 
 /* The camera cuts off what must not show: the picture is that of the whole rings, to what rounding to steps does. */
@@ -446,9 +740,11 @@ static void test_input(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),         cmocka_unit_test(test_truth),   cmocka_unit_test(test_seams),
-        cmocka_unit_test(test_cut_pictures), cmocka_unit_test(test_cameras), cmocka_unit_test(test_pitched_field),
-        cmocka_unit_test(test_input),        cmocka_unit_test(test_gl),
+        cmocka_unit_test(test_twin),          cmocka_unit_test(test_truth),    cmocka_unit_test(test_seams),
+        cmocka_unit_test(test_cut_pictures),  cmocka_unit_test(test_cameras),  cmocka_unit_test(test_pitched_field),
+        cmocka_unit_test(test_input),         cmocka_unit_test(test_gl),       cmocka_unit_test(test_order),
+        cmocka_unit_test(test_like_fills),    cmocka_unit_test(test_changes),  cmocka_unit_test(test_many_fills),
+        cmocka_unit_test(test_lines_between), cmocka_unit_test(test_gl_fills), cmocka_unit_test(test_network_fills),
     };
     return FIXTURE_CL_RUN(tests);
 }

@@ -327,17 +327,19 @@ CAMBER_FN void camber_area_add_row(camber_tile_state *c, const camber_tile_edge 
     }
 }
 
-/* Adds an edge to the tops of rows [above, below] of cells that it crosses, from the row where.first on. */
-CAMBER_FN void camber_area_cross_rows(camber_tile_state *c, const camber_tile_edge *e, int above, int below,
-                                      camber_tile_rows where) {
-    for (int row = above; row <= below; row++) {
-        const int column = camber_edge_column(e, (float)(CAMBER_CELL_PX * row));
+/* Adds edge k of a vector to the tops of rows of cells that it crosses. */
+CAMBER_FN void camber_area_cross_rows(camber_tile_state *c, const camber_tile_edges *t, int k, camber_tile_rows where) {
+    const int below = camber_integer_of(&t->below, k);
+    camber_tile_edge e;
+    camber_tile_edge_of(t, k, &e);
+    for (int row = camber_integer_of(&t->above, k); row <= below; row++) {
+        const int column = camber_edge_column(&e, (float)(CAMBER_CELL_PX * row));
         if (column == CAMBER_TILE_CELLS)
             continue;
         if (row <= where.last)
-            camber_area_corners(c, row, column)[CAMBER_CORNERS_HERE] += e->down;
+            camber_area_corners(c, row, column)[CAMBER_CORNERS_HERE] += e.down;
         if (row > where.first)
-            camber_area_corners(c, row - 1, column)[CAMBER_CORNERS_HERE + 1] += e->down;
+            camber_area_corners(c, row - 1, column)[CAMBER_CORNERS_HERE + 1] += e.down;
     }
 }
 
@@ -346,8 +348,9 @@ CAMBER_FN void camber_area_add_edge(camber_tile_state *c, const camber_tile_edge
     const float turn = camber_lane_of(&t->turn, k);
     const int first = camber_integer_of(&t->first, k), last = camber_integer_of(&t->last, k);
     const int left = camber_integer_of(&t->left, k), right = camber_integer_of(&t->right, k);
-    camber_tile_edge e;
-    camber_tile_edge_of(t, k, &e);
+    const camber_tile_edge e = {camber_lane_of(&t->in.x0, k), camber_lane_of(&t->in.y0, k),
+                                camber_lane_of(&t->in.y1, k), camber_lane_of(&t->in.down, k),
+                                camber_lane_of(&t->slope, k), camber_lane_of(&t->rise, k)};
     if (turn != 0.0f)
         camber_area_turn(c, camber_lane_of(&t->turn_at, k), turn, where);
     for (int row = first; row <= last; row++) {
@@ -359,7 +362,6 @@ CAMBER_FN void camber_area_add_edge(camber_tile_state *c, const camber_tile_edge
         const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, top + CAMBER_CELL_PX);
         camber_area_add_row(c, &e, row, CAMBER_LESS(upper, lower), CAMBER_MORE(upper, lower));
     }
-    camber_area_cross_rows(c, &e, camber_integer_of(&t->above, k), camber_integer_of(&t->below, k), where);
 }
 
 #endif

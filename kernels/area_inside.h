@@ -53,30 +53,81 @@ CAMBER_FN int camber_edge_matters(CAMBER_GLOBAL const float *ends, camber_tile_r
            (ay < side || by < side);
 }
 
-/* The edges that matter, side by side: ax, ay, bx, by. */
-typedef struct camber_edge_ends {
-    float ends[CAMBER_KEPT_WORDS][CAMBER_KEPT_MOST];
-    camber_u32 count; /* more than CAMBER_KEPT_MOST: not all are here */
-} camber_edge_ends;
+/* An edge, and the cells that it passes. */
+typedef struct camber_placed_edge {
+    camber_tile_edge edge;
+    float turn, turn_at;          /* camber_tile_edges */
+    int first, last, left, right; /* rows and columns of cells */
+} camber_placed_edge;
 
-CAMBER_FN void camber_edge_ends_add(camber_edge_ends *all, CAMBER_GLOBAL const float *ends) {
-    for (int i = 0; i < CAMBER_KEPT_WORDS && all->count < CAMBER_KEPT_MOST; i++)
-        all->ends[i][all->count] = ends[i];
-    all->count++;
+typedef struct camber_placed_edges {
+    camber_placed_edge edges[CAMBER_KEPT_MOST];
+    int count;
+    int in_row[CAMBER_KEPT_MOST], row_count;     /* those that change a row of cells */
+    float ends[CAMBER_KEPT_WORDS][CAMBER_LANES]; /* of those that wait: ax, ay, bx, by */
+    int waiting;
+} camber_placed_edges;
+
+/* Places the edges that wait. */
+CAMBER_FN void camber_place_waiting(camber_placed_edges *all, camber_tile_rows where) {
+    const camber_tile_rows tile = {where.left, where.top, 0, CAMBER_TILE_CELLS - 1};
+    camber_ring_edges e;
+    camber_tile_edges t;
+    for (int k = all->waiting; k < CAMBER_LANES && all->waiting > 0; k++)
+        for (int i = 0; i < CAMBER_KEPT_WORDS; i++)
+            all->ends[i][k] = all->ends[i][0];
+    if (all->waiting == 0)
+        return;
+    camber_ring_edges_of(CAMBER_LOAD(0, all->ends[0]), CAMBER_LOAD(0, all->ends[1]), CAMBER_LOAD(0, all->ends[2]),
+                         CAMBER_LOAD(0, all->ends[3]), &e);
+    camber_tile_edges_of(&e, CAMBER_ALL_LANES(1), tile, &t);
+    for (int k = 0; k < all->waiting; k++) {
+        camber_placed_edge *to = all->edges + all->count++;
+        camber_tile_edge_of(&t, k, &to->edge);
+        to->turn = camber_lane_of(&t.turn, k);
+        to->turn_at = camber_lane_of(&t.turn_at, k);
+        to->first = camber_integer_of(&t.first, k);
+        to->last = camber_integer_of(&t.last, k);
+        to->left = camber_integer_of(&t.left, k);
+        to->right = camber_integer_of(&t.right, k);
+    }
+    all->waiting = 0;
 }
 
-CAMBER_FN void camber_edge_ends_of(const camber_area_edges *from, camber_tile_rows where, camber_edge_ends *all) {
-    all->count = from->kept_count > CAMBER_KEPT_MOST ? from->kept_count : 0u;
-    for (camber_u32 k = 0; k < from->kept_count && all->count <= CAMBER_KEPT_MOST; k++)
-        camber_edge_ends_add(all, from->kept + CAMBER_KEPT_WORDS * (size_t)k);
-    for (camber_u32 k = 0; k < from->count && all->count <= CAMBER_KEPT_MOST; k++) {
+/* Returns whether there was room. */
+CAMBER_FN int camber_place_edge(camber_placed_edges *all, CAMBER_GLOBAL const float *ends, camber_tile_rows where) {
+    if (all->count + all->waiting == CAMBER_KEPT_MOST)
+        return 0;
+    for (int i = 0; i < CAMBER_KEPT_WORDS; i++)
+        all->ends[i][all->waiting] = ends[i];
+    if (++all->waiting == CAMBER_LANES)
+        camber_place_waiting(all, where);
+    return 1;
+}
+
+/* Places all edges that matter. Returns whether there are not too many. */
+CAMBER_FN int camber_place_edges(const camber_area_edges *from, camber_tile_rows where, camber_placed_edges *all) {
+    int has_room = from->kept_count <= CAMBER_KEPT_MOST;
+    all->count = all->waiting = 0;
+    for (camber_u32 k = 0; k < from->kept_count && has_room; k++)
+        has_room = camber_place_edge(all, from->kept + CAMBER_KEPT_WORDS * (size_t)k, where);
+    for (camber_u32 k = 0; k < from->count && has_room; k++) {
         CAMBER_GLOBAL const float *segment = from->segments + CAMBER_SEGMENT_WORDS * (size_t)from->list[k];
         if (camber_edge_matters(segment, where))
-            camber_edge_ends_add(all, segment);
+            has_room = camber_place_edge(all, segment, where);
     }
-    for (camber_u32 k = all->count; k % 16u != 0u && k < CAMBER_KEPT_MOST; k++)
-        for (int i = 0; i < CAMBER_KEPT_WORDS; i++)
-            all->ends[i][k] = 0.0f;
+    camber_place_waiting(all, where);
+    return has_room;
+}
+
+/* Lists those that change a row of cells. */
+CAMBER_FN void camber_placed_in_row(camber_placed_edges *all, int row) {
+    all->row_count = 0;
+    for (int k = 0; k < all->count; k++) {
+        const camber_placed_edge *e = all->edges + k;
+        all->in_row[all->row_count] = k;
+        all->row_count += (e->first <= row && e->last >= row) || e->turn != 0.0f;
+    }
 }
 
 /* A cell in which rings may overlap: how often the rings wind around where its rows of samples begin, and the edges
@@ -98,43 +149,41 @@ CAMBER_FN camber_real camber_edge_turns(const camber_tile_edge *e, camber_real y
     return (e->y0 < y) & (e->y1 >= y) ? CAMBER_REAL(e->down) : CAMBER_REAL(0.0f);
 }
 
-/* Takes edge k of a vector: it reaches into the cell, or lies left or right of it. */
-CAMBER_FN void camber_piled_cell_take(camber_piled_cell *o, const camber_tile_edges *t, int k) {
-    const float turn = camber_lane_of(&t->turn, k), turn_at = camber_lane_of(&t->turn_at, k);
-    camber_tile_edge e;
-    camber_tile_edge_of(t, k, &e);
+/* Adds how often an edge turns rows of samples to where these begin: on its whole height, or below where it enters or
+ * leaves the tile through its left side. */
+CAMBER_FN void camber_piled_cell_begin(camber_piled_cell *o, const camber_placed_edge *e, int is_left) {
     const float top = (float)(CAMBER_CELL_PX * o->row);
-    const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, top + CAMBER_CELL_PX);
-    const int meets = camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k);
-    const int is_left = meets && CAMBER_MORE(upper, lower) < o->column;
-    for (int strip = 0; strip < CAMBER_CELL_PX * CAMBER_OVERLAP_STRIPS && (is_left || turn != 0.0f); strip++)
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
+    for (int strip = 0; strip < CAMBER_CELL_PX * CAMBER_OVERLAP_STRIPS; strip++) {
+        const float above = top + (float)(strip / CAMBER_OVERLAP_STRIPS);
+        const int turns = is_left && e->edge.y0 < above + 1.0f && e->edge.y1 >= above;
+        for (int v = 0; v < CAMBER_VECTORS && (turns || e->turn != 0.0f); v++) {
             const camber_real y = camber_piled_cell_rows(o, strip, v), none = CAMBER_REAL(0.0f);
-            o->begin[strip][v] += y > turn_at ? CAMBER_REAL(turn) : none;
-            o->begin[strip][v] += is_left ? camber_edge_turns(&e, y) : none;
+            o->begin[strip][v] += y > e->turn_at ? CAMBER_REAL(e->turn) : none;
+            o->begin[strip][v] += turns ? camber_edge_turns(&e->edge, y) : none;
         }
-    if (!meets || is_left || CAMBER_LESS(upper, lower) > o->column)
-        return;
-    if (o->edge_count < CAMBER_OVERLAP_EDGES)
-        o->edges[o->edge_count] = e;
-    o->edge_count++;
+    }
 }
 
-CAMBER_FN void camber_piled_cell_of(const camber_edge_ends *from, camber_tile_rows where, int winding,
-                                    camber_piled_cell *o) {
-    const camber_tile_rows own = {where.left, where.top, o->row, o->row};
+CAMBER_FN void camber_piled_cell_of(const camber_placed_edges *from, int winding, camber_piled_cell *o) {
+    const float top = (float)(CAMBER_CELL_PX * o->row);
     o->edge_count = 0;
     for (int strip = 0; strip < CAMBER_CELL_PX * CAMBER_OVERLAP_STRIPS; strip++)
         for (int v = 0; v < CAMBER_VECTORS; v++)
             o->begin[strip][v] = CAMBER_REAL((float)winding);
-    for (camber_u32 first = 0; first < from->count; first += CAMBER_LANES) {
-        camber_ring_edges e;
-        camber_tile_edges t;
-        camber_ring_edges_of(CAMBER_LOAD(0, from->ends[0] + first), CAMBER_LOAD(0, from->ends[1] + first),
-                             CAMBER_LOAD(0, from->ends[2] + first), CAMBER_LOAD(0, from->ends[3] + first), &e);
-        camber_tile_edges_of(&e, CAMBER_ALL_LANES(1), own, &t);
-        for (int k = 0; k < CAMBER_LANES && first + (camber_u32)k < from->count; k++)
-            camber_piled_cell_take(o, &t, k);
+    for (int k = 0; k < from->row_count; k++) {
+        const camber_placed_edge *e = from->edges + from->in_row[k];
+        const int meets = e->first <= o->row && e->last >= o->row && e->left <= o->column;
+        if (!meets && e->turn == 0.0f)
+            continue;
+        const int upper = camber_edge_column(&e->edge, top), lower = camber_edge_column(&e->edge, top + CAMBER_CELL_PX);
+        const int is_left = meets && CAMBER_MORE(upper, lower) < o->column;
+        if (is_left || e->turn != 0.0f)
+            camber_piled_cell_begin(o, e, is_left);
+        if (!meets || is_left || CAMBER_LESS(upper, lower) > o->column)
+            continue;
+        if (o->edge_count < CAMBER_OVERLAP_EDGES)
+            o->edges[o->edge_count] = e->edge;
+        o->edge_count++;
     }
 }
 
@@ -214,9 +263,13 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
             camber_add_too_much(&s, o->begin[strip][v], sign, c->now.mode, much[v]);
         }
         for (int x = 0; x < CAMBER_CELL_PX; x++) {
-            for (int v = 0; v < CAMBER_VECTORS; v++)
+            int has_any = 0;
+            for (int v = 0; v < CAMBER_VECTORS; v++) {
                 of_column[v] = much[v][x];
-            left[x] += camber_sum_of_rows(of_column) * (1.0f / (16 * CAMBER_OVERLAP_STRIPS));
+                has_any |= CAMBER_ANY(much[v][x] != 0.0f);
+            }
+            if (has_any)
+                left[x] += camber_sum_of_rows(of_column) * (1.0f / (16 * CAMBER_OVERLAP_STRIPS));
         }
     }
     for (int x = 0; x < CAMBER_CELL_PX; x++) {
@@ -229,20 +282,22 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
  * leaves. */
 CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, camber_tile_rows where, const camber_area_edges *from,
                                          int winding, camber_u64 cells) {
-    camber_edge_ends edges;
+    camber_placed_edges edges;
     camber_piled_cell o;
-    camber_edge_ends_of(from, where, &edges);
-    if (edges.count > CAMBER_KEPT_MOST)
+    if (!camber_place_edges(from, where, &edges))
         return;
+    o.row = -1;
     for (; cells; cells &= cells - 1) {
         const int i = camber_lowest(cells);
         const float *sums = (const float *)c->sums[i][CAMBER_AREA_ON];
         float all = 0.0f;
         for (int k = 0; k < CAMBER_CELL_PX * CAMBER_CELL_PX; k++)
             all += sums[k];
+        if (o.row != i / CAMBER_TILE_CELLS)
+            camber_placed_in_row(&edges, i / CAMBER_TILE_CELLS);
         o.row = i / CAMBER_TILE_CELLS;
         o.column = i % CAMBER_TILE_CELLS;
-        camber_piled_cell_of(&edges, where, winding, &o);
+        camber_piled_cell_of(&edges, winding, &o);
         for (int row = 0; row < CAMBER_CELL_PX && o.edge_count <= CAMBER_OVERLAP_EDGES; row++)
             camber_piled_cell_end(c, &o, row, all < 0.0f ? -1.0f : 1.0f);
     }

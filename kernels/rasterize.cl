@@ -122,6 +122,8 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
         camber_tile_edges_of(&e, CAMBER_LOAD(v, numbers) < (int)b->count, where, &t);
         for (int k = 0; k < count; k++)
             camber_area_add_edge(c, &t, k, where);
+        for (int k = 0; k < count && CAMBER_ANY(t.above <= t.below); k++)
+            camber_area_cross_rows(c, &t, k, where);
     }
     b->count = 0;
 }

@@ -270,6 +270,7 @@ static void add_edge(camber_tile_state *c, const float *segment, camber_tile_row
                          segment[CAMBER_SEGMENT_BY], &e);
     camber_tile_edges_of(&e, 1, where, &t);
     camber_area_add_edge(c, &t, 0, where);
+    camber_area_cross_rows(c, &t, 0, where);
 }
 
 /* Draws the area whose edges have been added. */

@@ -174,7 +174,7 @@ CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
                 c->sums[i][k][v] = CAMBER_REAL(0.0f);
 }
 
-/* What edges change along the upper and the lower side of a cell, CAMBER_CORNERS_*. */
+/* Finds the numbers that edges change along the upper and the lower side of a cell, CAMBER_CORNERS_*. */
 CAMBER_FN float *camber_area_corners(camber_tile_state *c, int row, int column) {
     return (float *)c->sums[CAMBER_TILE_CELLS * row + column][CAMBER_AREA_CORNERS];
 }

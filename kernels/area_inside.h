@@ -305,7 +305,7 @@ CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, camber_tile_rows 
 
 /* ---- The inside ---- */
 
-/* What a row of cells has, a bit each cell. */
+/* The cells of a row, a bit each. */
 typedef struct camber_area_row {
     camber_u32 found;    /* any of it lies inside */
     camber_u32 overlaps; /* rings may overlap there */

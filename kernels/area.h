@@ -169,8 +169,14 @@ CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
         return;
     c->edged |= cells;
     for (int i = CAMBER_TILE_CELLS * row; i < CAMBER_TILE_CELLS * (row + 1); i++)
-        for (int v = 0; v < CAMBER_VECTORS; v++)
-            c->sums[i][CAMBER_AREA_HERE][v] = c->sums[i][CAMBER_AREA_ON][v] = CAMBER_REAL(0.0f);
+        for (int k = 0; k < 3; k++)
+            for (int v = 0; v < CAMBER_VECTORS; v++)
+                c->sums[i][k][v] = CAMBER_REAL(0.0f);
+}
+
+/* Finds the numbers that edges change along the upper and the lower side of a cell, CAMBER_CORNERS_*. */
+CAMBER_FN float *camber_area_corners(camber_tile_state *c, int row, int column) {
+    return (float *)c->sums[CAMBER_TILE_CELLS * row + column][CAMBER_AREA_CORNERS];
 }
 
 /* The tops of the pixels of a vector of a cell, px from the tile's top. */
@@ -191,6 +197,9 @@ CAMBER_FN void camber_area_turn(camber_tile_state *c, float y, float times, camb
         for (int v = 0; v < CAMBER_VECTORS; v++)
             c->sums[CAMBER_TILE_CELLS * row][CAMBER_AREA_ON][v] +=
                 times * camber_between(camber_area_tops(row, v) + (1.0f - y), 0.0f, 1.0f);
+        float *corners = camber_area_corners(c, row, 0);
+        corners[CAMBER_CORNERS_LEFT] += row > begin ? times : 0.0f;
+        corners[CAMBER_CORNERS_LEFT + 1] += times;
     }
 }
 
@@ -202,6 +211,8 @@ typedef struct camber_tile_edges {
     camber_real turn, turn_at; /* the left side is wound around so many times more from there on */
     camber_mask first, last;   /* rows of cells; the last lies before the first where an edge covers nothing */
     camber_mask left, right;   /* columns of cells; CAMBER_TILE_CELLS: right of the tile */
+    camber_mask above, below;  /* the first and the last row of cells whose tops they cross; CAMBER_TILE_CELLS: the end
+                                  of the tile */
 } camber_tile_edges;
 
 /* A position as a row or column of cells, of which there are `most`. */
@@ -236,6 +247,7 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     e->x1 = e->x1 - where.left;
     e->y0 = (crosses ? CAMBER_REAL(where.top) : e->y0) - where.top;
     e->y1 = e->y1 - where.top;
+    const camber_mask enters_top = crosses & (e->x0 >= 0.0f);
     const camber_mask meets = wanted & (e->y1 >= 0.0f) & (e->y0 < side) & ((e->x0 >= 0.0f) | (e->x1 >= 0.0f));
     camber_cut_at_left(t, meets & (e->x0 < 0.0f), meets & (e->x1 < 0.0f));
     const camber_mask covers = meets & (e->y1 - e->y0 > CAMBER_AREA_FLAT_PX) & ((e->x0 < side) | (e->x1 < side));
@@ -246,6 +258,9 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     const camber_mask top = camber_cell_at(e->y0, covers, cells), bottom = camber_cell_at(e->y1, covers, cells);
     t->first = top > where.first ? top : where.first;
     t->last = covers ? (bottom < where.last ? bottom : where.last) : where.first - 1;
+    const camber_mask above = enters_top ? (camber_mask)(0) : top + 1, end = (camber_mask)(where.last + 1);
+    t->above = above > where.first ? above : where.first;
+    t->below = covers ? (bottom < end ? bottom : end) : where.first - 1;
     t->left = camber_cell_at(CAMBER_LESS(e->x0, e->x1), covers, cells);
     t->right = camber_cell_at(CAMBER_MORE(e->x0, e->x1), covers, cells);
 }
@@ -254,6 +269,16 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
 typedef struct camber_tile_edge {
     float x0, y0, y1, down, slope, rise;
 } camber_tile_edge;
+
+/* Edge k of a vector. */
+CAMBER_FN void camber_tile_edge_of(const camber_tile_edges *t, int k, camber_tile_edge *e) {
+    e->x0 = camber_lane_of(&t->in.x0, k);
+    e->y0 = camber_lane_of(&t->in.y0, k);
+    e->y1 = camber_lane_of(&t->in.y1, k);
+    e->down = camber_lane_of(&t->in.down, k);
+    e->slope = camber_lane_of(&t->slope, k);
+    e->rise = camber_lane_of(&t->rise, k);
+}
 
 /* Where an edge is at y, as a column of cells. */
 CAMBER_FN int camber_edge_column(const camber_tile_edge *e, float y) {
@@ -302,6 +327,22 @@ CAMBER_FN void camber_area_add_row(camber_tile_state *c, const camber_tile_edge 
     }
 }
 
+/* Adds edge k of a vector to the tops of rows of cells that it crosses. */
+CAMBER_FN void camber_area_cross_rows(camber_tile_state *c, const camber_tile_edges *t, int k, camber_tile_rows where) {
+    const int below = camber_integer_of(&t->below, k);
+    camber_tile_edge e;
+    camber_tile_edge_of(t, k, &e);
+    for (int row = camber_integer_of(&t->above, k); row <= below; row++) {
+        const int column = camber_edge_column(&e, (float)(CAMBER_CELL_PX * row));
+        if (column == CAMBER_TILE_CELLS)
+            continue;
+        if (row <= where.last)
+            camber_area_corners(c, row, column)[CAMBER_CORNERS_HERE] += e.down;
+        if (row > where.first)
+            camber_area_corners(c, row - 1, column)[CAMBER_CORNERS_HERE + 1] += e.down;
+    }
+}
+
 /* Adds edge k of a vector to the rows of cells of a tile that are drawn. */
 CAMBER_FN void camber_area_add_edge(camber_tile_state *c, const camber_tile_edges *t, int k, camber_tile_rows where) {
     const float turn = camber_lane_of(&t->turn, k);
@@ -321,70 +362,6 @@ CAMBER_FN void camber_area_add_edge(camber_tile_state *c, const camber_tile_edge
         const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, top + CAMBER_CELL_PX);
         camber_area_add_row(c, &e, row, CAMBER_LESS(upper, lower), CAMBER_MORE(upper, lower));
     }
-}
-
-/* ---- The inside ---- */
-
-/* How much of a pixel is inside, by the sum of its windings. */
-CAMBER_FN camber_real camber_area_inside(camber_real sum, camber_u32 mode) {
-    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
-    camber_real inside = CAMBER_FABS(sum);
-    if (mode == CAMBER_BRUSH_AREA_EVENODD) {
-        inside -= 2.0f * CAMBER_TRUNCATE(0.5f * inside);
-        inside = inside > 1.0f ? 2.0f - inside : inside;
-    }
-    inside = inside > 1.0f - CAMBER_AREA_LEAST ? one : inside;
-    return inside < CAMBER_AREA_LEAST ? none : inside;
-}
-
-/* Adds up what the edges of a row of cells change, from left to right: the sums become what is inside of the pixels.
- * Returns the cells that have any of it, a bit each. */
-CAMBER_FN camber_u32 camber_area_find_row(camber_tile_state *c, int row) {
-    camber_u32 found = 0;
-    for (int v = 0; v < CAMBER_VECTORS; v++) {
-        camber_real sum = CAMBER_REAL((float)c->winding);
-        for (int x = 0; x < CAMBER_TILE_CELLS; x++) {
-            const int i = CAMBER_TILE_CELLS * row + x;
-            sum += c->sums[i][CAMBER_AREA_ON][v];
-            const camber_real inside = camber_area_inside(sum + c->sums[i][CAMBER_AREA_HERE][v], c->now.mode);
-            c->sums[i][CAMBER_AREA_HERE][v] = inside;
-            found |= CAMBER_ANY(inside > 0.0f) ? 1u << x : 0u;
-        }
-    }
-    return found;
-}
-
-/* Finds the cells that have something inside of the brush's rings, and ends the rings. The sums of those that it
- * returns are the areas of their pixels then; those of *whole lie inside as a whole. */
-CAMBER_FN camber_u64 camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_u64 *whole) {
-    const int is_inside = camber_most_of(camber_area_inside(CAMBER_REAL((float)c->winding), c->now.mode)) > 0.0f;
-    camber_u64 found = 0;
-    *whole = 0;
-    for (int row = where.first; row <= where.last; row++) {
-        const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row);
-        if (c->edged & cells)
-            found |= (camber_u64)camber_area_find_row(c, row) << (CAMBER_TILE_CELLS * row);
-        else if (is_inside)
-            *whole |= cells;
-    }
-    *whole &= ~(c->done | c->filled);
-    c->edged = 0;
-    c->winding = 0;
-    return found & ~(c->done | c->filled);
-}
-
-/* Draws what the brush's rings have inside, before the brush is closed. */
-CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
-    camber_u64 whole;
-    const camber_u64 cells = camber_area_find(c, where, &whole);
-    camber_tile_take_cells(c, cells | whole);
-    for (camber_u64 left = cells; left; left &= left - 1) {
-        const int i = camber_lowest(left);
-        for (int v = 0; v < CAMBER_VECTORS; v++)
-            camber_tile_put_over(c, i, v, c->sums[i][CAMBER_AREA_HERE][v]);
-    }
-    for (; whole; whole &= whole - 1)
-        camber_tile_put_whole(c, camber_lowest(whole));
 }
 
 #endif

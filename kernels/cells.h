@@ -22,6 +22,7 @@ typedef struct camber_tile_rows {
 #ifdef CAMBER_DEVICE
 constant float COLUMNS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 constant float ROWS[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+constant float NUMBERS[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 #endif
 
 CAMBER_FN camber_real camber_columns_of_cell(int v) {
@@ -37,6 +38,15 @@ CAMBER_FN camber_real camber_rows_of_cell(int v) {
     return CAMBER_LOAD((size_t)v, ROWS);
 #else
     return (float)(v / CAMBER_CELL_PX);
+#endif
+}
+
+/* The numbers from 0 to 15 of a vector. */
+CAMBER_FN camber_real camber_numbers(int v) {
+#ifdef CAMBER_DEVICE
+    return CAMBER_LOAD((size_t)v, NUMBERS);
+#else
+    return (float)v;
 #endif
 }
 

@@ -46,22 +46,27 @@ typedef struct camber_target_args {
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state. That is seven sets of cells and a count of each cell, two words for each row of cells, and planes
+ * spills its state. That is seven sets of cells and a count of each cell, three words for each row of cells, and planes
  * from word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture.
- */
+ * Behind them lie the edges of a brush of areas so far, a plane of which keeps 256. */
 typedef struct camber_spill_args {
     camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
     camber_u32 tile_words;
-    camber_u32 sums, group, layer; /* the first plane of a union's sums, of a group and of a layer */
+    camber_u32 sums, group, layer, kept; /* the first plane of sums, of a group, of a layer and of kept edges */
 } camber_spill_args;
 
-#define CAMBER_SPILL_WORDS 48
+#define CAMBER_SPILL_WORDS 56
 #define CAMBER_SPILL_SETS 7
 #define CAMBER_SPILL_BLEND_COUNTS 56 /* the byte at which they begin, behind the sets of cells with a bit a cell */
 #define CAMBER_SPILL_ROWS 30         /* the word at which the rows' words begin */
 #define CAMBER_SPILL_WINDINGS 38     /* the same: the winding of an area's rings */
+#define CAMBER_SPILL_KEPT 46         /* the same: how many of its edges are kept */
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
 #define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
+
+/* An edge that is kept: where it begins and ends. More edges of one brush in a tile are not. */
+#define CAMBER_KEPT_WORDS 4
+#define CAMBER_KEPT_MOST 1024
 
 /* rasterize: a job is two words, the tile, and the first and the last row of its cells to draw. */
 #define CAMBER_JOB_WORDS 2
@@ -71,12 +76,12 @@ typedef struct camber_spill_args {
 typedef char camber_setup_args_has_80_bytes[sizeof(camber_setup_args) == 80 ? 1 : -1];
 typedef char camber_bin_args_has_36_bytes[sizeof(camber_bin_args) == 36 ? 1 : -1];
 typedef char camber_target_args_has_80_bytes[sizeof(camber_target_args) == 80 ? 1 : -1];
-typedef char camber_spill_args_has_24_bytes[sizeof(camber_spill_args) == 24 ? 1 : -1];
+typedef char camber_spill_args_has_28_bytes[sizeof(camber_spill_args) == 28 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_setup_args) == 80, "setup reads 80 bytes");
 _Static_assert(sizeof(camber_bin_args) == 36, "bin_count and bin_scatter read 36 bytes");
 _Static_assert(sizeof(camber_target_args) == 80, "rasterize reads 80 bytes");
-_Static_assert(sizeof(camber_spill_args) == 24, "rasterize reads 24 bytes");
+_Static_assert(sizeof(camber_spill_args) == 28, "rasterize reads 28 bytes");
 #endif
 
 #endif

@@ -8,7 +8,7 @@
  *
  * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
  * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */
-#include "area.h"
+#include "area_inside.h"
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
 #include "spill.cl"
@@ -89,6 +89,7 @@ static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, 
 /* All that brushes need beside a tile's state. */
 typedef struct tile_brushes {
     global const camber_brush *brushes;
+    camber_area_edges edges; /* of an area that is drawn now */
 #if CAMBER_RASTER_RICH
     global const camber_brush_ext *brush_ext;
     global const float *side_table;
@@ -121,6 +122,8 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
         camber_tile_edges_of(&e, CAMBER_LOAD(v, numbers) < (int)b->count, where, &t);
         for (int k = 0; k < count; k++)
             camber_area_add_edge(c, &t, k, where);
+        for (int k = 0; k < count && CAMBER_ANY(t.above <= t.below); k++)
+            camber_area_cross_rows(c, &t, k, where);
     }
     b->count = 0;
 }
@@ -151,17 +154,18 @@ static inline void end_area(camber_tile_state *c, const positions *at, const til
 #endif
         };
         camber_u64 whole;
-        const camber_u64 cells = camber_area_find(c, where, &whole);
+        const camber_u64 cells = camber_area_find(c, where, &from->edges, &whole);
         fill_with_images(c, at, source, cells, whole);
         return;
     }
 #endif
-    camber_area_draw(c, where);
+    camber_area_draw(c, where, &from->edges);
 }
 
-static inline void change_brush(camber_tile_state *c, const positions *at, const tile_brushes *from,
-                                camber_tile_rows where, camber_u32 brush) {
+static inline void change_brush(camber_tile_state *c, const positions *at, tile_brushes *from, camber_tile_rows where,
+                                camber_u32 brush) {
     end_area(c, at, from, where);
+    from->edges.count = from->edges.kept_count = 0;
     camber_tile_change_brush(c, from->brushes[brush]);
 #if CAMBER_RASTER_RICH
     camber_tile_use_ext(c, from->brush_ext[brush]);
@@ -171,7 +175,7 @@ static inline void change_brush(camber_tile_state *c, const positions *at, const
 /* Draws the areas above a brush that cover the tile as a whole: it has none of their edges. Returns the brush that was
  * drawn last. */
 static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
-                                                             const tile_brushes *from, camber_tile_rows where,
+                                                             tile_brushes *from, camber_tile_rows where,
                                                              camber_crossings_left *left, camber_u32 brush,
                                                              camber_u32 current) {
     for (camber_u32 next = camber_next_area(left); next > brush && !camber_tile_is_full(c);
@@ -219,8 +223,10 @@ CAMBER_KERNEL(1, rasterize,
             c.done |= 255ul << (CAMBER_TILE_CELLS * j);
 #endif
     global float *own_spill = spill + tile * slice.tile_words;
-    const tile_brushes from_brushes = {
+    global float *own_kept = own_spill + CAMBER_SPILL_WORDS + CAMBER_CELLS * 16 * slice.kept;
+    tile_brushes from_brushes = {
         brushes,
+        {segments, lists, own_kept, 0, 0},
 #if CAMBER_RASTER_RICH
         brush_ext,
         side_table,
@@ -237,7 +243,7 @@ CAMBER_KERNEL(1, rasterize,
     if (!slice.is_first) {
         if (!slice.is_last && starts[tile] == starts[tile + 1] && left_of.first == left_of.end)
             return;
-        current = restore_cells(&c, own_spill, brushes, slice, first, last);
+        current = restore_cells(&c, own_spill, brushes, slice, first, last, &from_brushes.edges.kept_count);
         if (current != ~0u && current != CAMBER_SPILL_FULL) {
 #if CAMBER_RASTER_RICH
             camber_tile_use_ext(&c, brush_ext[current]);
@@ -245,12 +251,16 @@ CAMBER_KERNEL(1, rasterize,
             c.winding += camber_take_winding(&left_of, current);
         }
     }
+    camber_u32 brush_end = starts[tile + 1]; /* where the list of the brush that is drawn now ends */
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
         global const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k];
         ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 brush = as_uint(segment[CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
             draw_waiting(&c, &at, segments, where, &b);
+            from_brushes.edges.list = lists + k + 1;
+            from_brushes.edges.count = brush_end - k - 1;
+            brush_end = k + 1;
             draw_areas_above(&c, &at, &from_brushes, where, &left_of, brush, current);
             if (camber_tile_is_full(&c))
                 break;
@@ -293,11 +303,14 @@ CAMBER_KERNEL(1, rasterize,
             break;
     }
     draw_waiting(&c, &at, segments, where, &b);
+    from_brushes.edges.list = lists + starts[tile];
+    from_brushes.edges.count = brush_end - starts[tile];
     current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;
-        spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open);
+        const camber_u32 kept = camber_brush_is_area(&c.now) ? keep_edges(&from_brushes.edges, where, own_kept) : 0u;
+        spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open, kept);
         return;
     }
     end_area(&c, &at, &from_brushes, where);
@@ -305,7 +318,7 @@ CAMBER_KERNEL(1, rasterize,
     if (!slice.is_last) {
         camber_tile_close_brush(&c);
         c.done = ~0ul;
-        spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL);
+        spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL, 0u);
         return;
     }
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,

@@ -31,14 +31,18 @@ typedef uint8_t camber_u8;
 #endif
 
 /* A brush of areas has two sums a pixel: what the edges in its cell change there, and what all in its row change from
- * its cell on. */
+ * its cell on. And a cell has four: how much more often its upper and its lower side's right ends are wound around than
+ * their left ends, and their left ends than the right ends of the cell before. */
 #define CAMBER_AREA_HERE 0
 #define CAMBER_AREA_ON 1
+#define CAMBER_AREA_CORNERS 2
+#define CAMBER_CORNERS_HERE 0
+#define CAMBER_CORNERS_LEFT 2
 
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
     camber_real brush[CAMBER_CELLS][CAMBER_VECTORS]; /* let through */
-    /* A union's, of areas and of normals; of rings two, what their edges change: area.h. */
+    /* A union's, of areas and of normals; of rings what their edges change: area.h. */
     camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
     camber_real level[CAMBER_LEVELS][CAMBER_CELLS][4][CAMBER_VECTORS];

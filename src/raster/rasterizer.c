@@ -244,19 +244,21 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
 }
 
 /* Lays out the planes of a spill: five for the brush and the picture, three for unions and areas, four for the group
- * and for the layer, one for masks. */
+ * and for the layer, one for masks, and four for the edges of areas. */
 static camber_spill_args plan_spill(const camber_raster_scene *scene) {
-    bool unions = false, groups = false, layers = false, masks = false;
+    bool unions = false, areas = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
-        unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION || camber_brush_is_area(scene->brushes + i);
+        unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION;
+        areas = areas || camber_brush_is_area(scene->brushes + i);
         groups = groups || scene->brushes[i].group;
         layers = layers || scene->brushes[i].layer;
         masks = masks || scene->brushes[i].mode == CAMBER_BRUSH_MASKED;
     }
     camber_spill_args k = {.sums = 5};
-    k.group = k.sums + (unions ? 3 : 0);
+    k.group = k.sums + (unions || areas ? 3 : 0);
     k.layer = k.group + (groups ? 4 : 0);
-    k.tile_words = CAMBER_SPILL_WORDS + (k.layer + (layers ? 4 : 0) + (masks ? 1 : 0)) * PLANE_WORDS;
+    k.kept = k.layer + (layers ? 4 : 0) + (masks ? 1 : 0);
+    k.tile_words = CAMBER_SPILL_WORDS + k.kept * PLANE_WORDS + (areas ? CAMBER_KEPT_MOST * CAMBER_KEPT_WORDS : 0);
     return k;
 }
 

@@ -5,7 +5,7 @@
  * kernels/tile_state.h, which it compiles for one lane, and so do the kernels for more. */
 #include "raster/twin.h"
 
-#include "kernels/area.h"
+#include "kernels/area_inside.h"
 
 #include <math.h>
 
@@ -258,6 +258,7 @@ typedef struct drawn_tile {
     const camber_twin *twin;
     camber_tile_state *state;
     camber_crossings_left crossings; /* those of its row that are left */
+    camber_area_edges edges;         /* of an area that is drawn now */
     camber_tile_rows where;
     uint32_t column;
 } drawn_tile;
@@ -269,6 +270,7 @@ static void add_edge(camber_tile_state *c, const float *segment, camber_tile_row
                          segment[CAMBER_SEGMENT_BY], &e);
     camber_tile_edges_of(&e, 1, where, &t);
     camber_area_add_edge(c, &t, 0, where);
+    camber_area_cross_rows(c, &t, 0, where);
 }
 
 /* Draws the area whose edges have been added. */
@@ -279,11 +281,11 @@ static void end_area(const drawn_tile *d) {
     if (!camber_brush_is_area(&c->now))
         return;
     if (!(c->brush_ext.features & CAMBER_FEATURE_IMAGE)) {
-        camber_area_draw(c, d->where);
+        camber_area_draw(c, d->where, &d->edges);
         return;
     }
     camber_u64 whole;
-    const camber_u64 cells = camber_area_find(c, d->where, &whole);
+    const camber_u64 cells = camber_area_find(c, d->where, &d->edges, &whole);
 #if CAMBER_STROKE_PITCHED
     by.eye = scene->eye;
 #endif
@@ -301,6 +303,7 @@ static void change_brush(drawn_tile *d, camber_u32 brush) {
     static const camber_brush_ext none = {0};
     const camber_raster_scene *scene = d->twin->scene;
     end_area(d);
+    d->edges.count = 0;
     camber_tile_change_brush(d->state, scene->brushes[brush]);
     camber_tile_use_ext(d->state, scene->brush_ext ? scene->brush_ext[brush] : none);
 }
@@ -326,6 +329,7 @@ static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
                                   (float)t->area->y + (float)(row * CAMBER_TILE_PX), 0, CAMBER_TILE_CELLS - 1};
     d->crossings.end = crossing_count;
     d->crossings.column = d->column;
+    d->edges = (camber_area_edges){.segments = stages->segments};
     camber_tile_begin(c, ~(camber_u64)0, t->scene->brushes);
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
         const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * stages->lists[k];
@@ -336,6 +340,8 @@ static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
             c->winding = camber_take_winding(&d->crossings, brush);
         }
         current = brush;
+        d->edges.list = stages->lists + k;
+        d->edges.count++;
         if (camber_brush_is_area(&c->now))
             add_edge(c, segment, d->where);
         else

@@ -219,29 +219,38 @@ static void judge(const char *what, const picture *p, const double *truth, doubl
 
 static const camber_fill BLACK = {.color = {0, 0, 0, 1}};
 
-/* Apart from each other, overlapping each other and themselves, and tiny ones. */
+/* Stars apart from each other, each drawn some times, the later ones moved by a step, px. */
+static rings made_stars(int times, double step) {
+    rings r = rings_begin(20000);
+    for (int i = 0; i < 400 * times; i++) {
+        const int k = i % 400;
+        add_star(&r, 12.3 + 25 * (k % 20) + step * (i / 400), 12.7 + 25 * (k / 20), 11, 3 + k % 8, 1, 0.1 * k, 0);
+    }
+    return r;
+}
+
+/* Apart from each other, twice over each other, three times with borders less than a pixel apart, overlapping each
+ * other and themselves, and tiny ones. */
 static void test_truth(void **state) {
     const fixture *f = *state;
     camber_fill evenodd = BLACK;
     evenodd.rule = CAMBER_FILL_EVENODD;
-    rings apart = rings_begin(20000);
-    for (int i = 0; i < 400; i++)
-        add_star(&apart, 12.3 + 25 * (i % 20), 12.7 + 25 * (i / 20), 11, 3 + i % 8, 1, 0.1 * i, 0);
-    rings many = made_rings(5, 60, 200, 1);
-    const rings *all[] = {&apart, &many};
-    static const char *const names[] = {"apart", "overlapping"};
-    for (int i = 0; i < 2; i++)
-        for (int rule = 0; rule < 2; rule++) {
-            picture p = draw_rings(f, all[i], rule ? &evenodd : &BLACK, 0);
-            double *truth = sample_rings(all[i], rule);
+    rings all[] = {made_stars(1, 0), made_stars(2, 0), made_stars(3, 0.3), made_rings(5, 60, 200, 1),
+                   made_rings(6, 600, 60, 1)};
+    static const char *const names[] = {"apart", "twice", "moved", "overlapping", "many"};
+    static const double bounds[] = {0.15, 0.25, 0.4, 0.04, 0.15};
+    for (int i = 0; i < 5; i++) {
+        for (int rule = 0; rule < (i == 1 ? 1 : 2); rule++) { /* by even-odd nothing is twice inside */
+            picture p = draw_rings(f, all + i, rule ? &evenodd : &BLACK, 0);
+            double *truth = sample_rings(all + i, rule);
             char what[64];
             snprintf(what, sizeof what, "%s, by %s", names[i], rule ? "even-odd" : "non-zero");
-            judge(what, &p, truth, i ? 0.5 : 0.15);
+            judge(what, &p, truth, bounds[i]);
             free(truth);
             picture_free(&p);
         }
-    rings_free(&apart);
-    rings_free(&many);
+        rings_free(all + i);
+    }
 }
 
 /* Ten thousand squares that meet, turned by any angle: a field of one colour, translucent too. */

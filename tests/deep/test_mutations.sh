@@ -261,7 +261,6 @@ mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area
 mutant strip kernels/area.h "areas: edges through a tile's left side" 't->turn = enters ? -e->down' 't->turn = enters ? 0.0f * e->down'
 mutant strip kernels/area.h "areas: pixels that an edge enters" 'e->rise * (to - from) * (to + from)' '0.0f * e->rise * (to - from)'
 mutant strip kernels/area_inside.h "areas: holes that fill" 'CAMBER_FABS(sum)' 'CAMBER_FABS(sum) + 1.0f'
-mutant strip kernels/area_inside.h "areas: too little that is too much" 'sign * winding - CAMBER_LESS' 'winding - CAMBER_LESS'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
 mutant strip kernels/union.h "united lines: every two edges face alike" 'weight = CAMBER_FABS(cosine)' 'weight = one'

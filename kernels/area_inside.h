@@ -146,7 +146,8 @@ CAMBER_FN camber_real camber_piled_cell_rows(const camber_piled_cell *o, int str
 
 /* How often an edge turns rows of samples. */
 CAMBER_FN camber_real camber_edge_turns(const camber_tile_edge *e, camber_real y) {
-    return (e->y0 < y) & (e->y1 >= y) ? CAMBER_REAL(e->down) : CAMBER_REAL(0.0f);
+    const camber_mask turns = (e->y0 < y) & (e->y1 >= y);
+    return turns ? CAMBER_REAL(e->down) : CAMBER_REAL(0.0f);
 }
 
 /* Adds how often an edge turns rows of samples to where these begin: on its whole height, or below where it enters or

@@ -247,7 +247,11 @@ static bool draw(camber_device *device, camber_context *context, const camber_ma
     const camber_pass rich_passes[] = {
         {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 0, 0, 1}, .image = &small_image, .bearing_deg = 30}},
         {.mesh = mesh, .paints = paints[2], .paint_count = ROWS}};
-    const camber_pass areas = {.mesh = mesh, .paints = paints[3], .paint_count = ROWS, .opacity = 0.7f};
+    const camber_pass areas = {.mesh = mesh,
+                               .polyline_count = s->polyline_count / 8, /* where rings overlap takes it long */
+                               .paints = paints[3],
+                               .paint_count = ROWS,
+                               .opacity = 0.7f};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
     good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;

@@ -19,8 +19,6 @@
 #define CAMBER_AREA_SLACK 1e-3f
 /* A cell that more edges reach into keeps its sums, and so does a tile with more edges of one brush. */
 #define CAMBER_OVERLAP_EDGES 64
-/* The rows of samples of a pixel are so many times sixteen. */
-#define CAMBER_OVERLAP_STRIPS 1
 
 /* How much of a pixel is inside, by the sum of its windings. */
 CAMBER_FN camber_real camber_area_inside(camber_real sum, camber_u32 mode) {
@@ -133,15 +131,14 @@ CAMBER_FN void camber_placed_in_row(camber_placed_edges *all, int row) {
 /* A cell in which rings may overlap: how often the rings wind around where its rows of samples begin, and the edges
  * that reach into it. */
 typedef struct camber_piled_cell {
-    int row, column, edge_count; /* more than CAMBER_OVERLAP_EDGES: not all are here */
-    camber_real begin[CAMBER_CELL_PX * CAMBER_OVERLAP_STRIPS][CAMBER_VECTORS];
+    int row, column, edge_count;                       /* more than CAMBER_OVERLAP_EDGES: not all are here */
+    camber_real begin[CAMBER_CELL_PX][CAMBER_VECTORS]; /* of each row of pixels */
     camber_tile_edge edges[CAMBER_OVERLAP_EDGES];
 } camber_piled_cell;
 
-/* Where the rows of samples of a strip lie, px from the tile's top. */
-CAMBER_FN camber_real camber_piled_cell_rows(const camber_piled_cell *o, int strip, int v) {
-    return (float)(CAMBER_CELL_PX * o->row) +
-           (camber_numbers(v) + ((float)(16 * strip) + 0.5f)) * (1.0f / (16 * CAMBER_OVERLAP_STRIPS));
+/* Where the sixteen rows of samples of a row of pixels lie, px from the tile's top. */
+CAMBER_FN camber_real camber_piled_cell_rows(const camber_piled_cell *o, int row, int v) {
+    return (float)(CAMBER_CELL_PX * o->row) + (camber_numbers(v) + ((float)(16 * row) + 0.5f)) * (1.0f / 16);
 }
 
 /* How often an edge turns rows of samples. */
@@ -154,13 +151,13 @@ CAMBER_FN camber_real camber_edge_turns(const camber_tile_edge *e, camber_real y
  * leaves the tile through its left side. */
 CAMBER_FN void camber_piled_cell_begin(camber_piled_cell *o, const camber_placed_edge *e, int is_left) {
     const float top = (float)(CAMBER_CELL_PX * o->row);
-    for (int strip = 0; strip < CAMBER_CELL_PX * CAMBER_OVERLAP_STRIPS; strip++) {
-        const float above = top + (float)(strip / CAMBER_OVERLAP_STRIPS);
+    for (int row = 0; row < CAMBER_CELL_PX; row++) {
+        const float above = top + (float)row;
         const int turns = is_left && e->edge.y0 < above + 1.0f && e->edge.y1 >= above;
         for (int v = 0; v < CAMBER_VECTORS && (turns || e->turn != 0.0f); v++) {
-            const camber_real y = camber_piled_cell_rows(o, strip, v), none = CAMBER_REAL(0.0f);
-            o->begin[strip][v] += y > e->turn_at ? CAMBER_REAL(e->turn) : none;
-            o->begin[strip][v] += turns ? camber_edge_turns(&e->edge, y) : none;
+            const camber_real y = camber_piled_cell_rows(o, row, v), none = CAMBER_REAL(0.0f);
+            o->begin[row][v] += y > e->turn_at ? CAMBER_REAL(e->turn) : none;
+            o->begin[row][v] += turns ? camber_edge_turns(&e->edge, y) : none;
         }
     }
 }
@@ -168,9 +165,9 @@ CAMBER_FN void camber_piled_cell_begin(camber_piled_cell *o, const camber_placed
 CAMBER_FN void camber_piled_cell_of(const camber_placed_edges *from, int winding, camber_piled_cell *o) {
     const float top = (float)(CAMBER_CELL_PX * o->row);
     o->edge_count = 0;
-    for (int strip = 0; strip < CAMBER_CELL_PX * CAMBER_OVERLAP_STRIPS; strip++)
+    for (int row = 0; row < CAMBER_CELL_PX; row++)
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            o->begin[strip][v] = CAMBER_REAL((float)winding);
+            o->begin[row][v] = CAMBER_REAL((float)winding);
     for (int k = 0; k < from->row_count; k++) {
         const camber_placed_edge *e = from->edges + from->in_row[k];
         const int meets = e->first <= o->row && e->last >= o->row && e->left <= o->column;
@@ -197,17 +194,17 @@ CAMBER_FN camber_real camber_too_much(camber_real winding, float sign, camber_u3
     return sign * winding - CAMBER_LESS(inside, one);
 }
 
-/* The edges that turn a strip of rows of samples: where, px from the cell's left side, and how often. */
-typedef struct camber_strip_edges {
+/* The edges that turn the rows of samples of a row of pixels: where, px from the cell's left side, and how often. */
+typedef struct camber_row_edges {
     camber_real at[CAMBER_OVERLAP_EDGES], turns[CAMBER_OVERLAP_EDGES];
     int count;
-} camber_strip_edges;
+} camber_row_edges;
 
-/* The same in vector v of a strip. */
-CAMBER_FN void camber_strip_edges_of(const camber_piled_cell *o, int strip, int v, camber_strip_edges *s) {
-    const camber_real y = camber_piled_cell_rows(o, strip, v);
+/* The same in vector v of a row. */
+CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, camber_row_edges *s) {
+    const camber_real y = camber_piled_cell_rows(o, row, v);
     const float left = (float)(CAMBER_CELL_PX * o->column);
-    const float top = (float)(CAMBER_CELL_PX * o->row) + (float)(strip / CAMBER_OVERLAP_STRIPS);
+    const float top = (float)(CAMBER_CELL_PX * o->row + row);
     s->count = 0;
     for (int k = 0; k < o->edge_count; k++) {
         const camber_tile_edge *e = o->edges + k;
@@ -219,7 +216,7 @@ CAMBER_FN void camber_strip_edges_of(const camber_piled_cell *o, int strip, int 
 }
 
 /* Adds to each pixel what its sum has too much in a vector of rows of samples. much: of the rows, for each column. */
-CAMBER_FN void camber_add_too_much(const camber_strip_edges *s, camber_real begin, float sign, camber_u32 mode,
+CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin, float sign, camber_u32 mode,
                                    camber_real much[CAMBER_CELL_PX]) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), from = camber_too_much(begin, sign, mode);
     for (int x = 0; x < CAMBER_CELL_PX; x++)
@@ -255,26 +252,20 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
     const int i = CAMBER_TILE_CELLS * o->row + o->column, first = CAMBER_CELL_PX * row;
     const float *sums = (const float *)c->sums[i][CAMBER_AREA_ON];
     float *inside = (float *)c->sums[i][CAMBER_AREA_HERE];
-    float left[CAMBER_CELL_PX] = {0.0f};
-    for (int strip = CAMBER_OVERLAP_STRIPS * row; strip < CAMBER_OVERLAP_STRIPS * (row + 1); strip++) {
-        camber_real much[CAMBER_VECTORS][CAMBER_CELL_PX], of_column[CAMBER_VECTORS];
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
-            camber_strip_edges s;
-            camber_strip_edges_of(o, strip, v, &s);
-            camber_add_too_much(&s, o->begin[strip][v], sign, c->now.mode, much[v]);
-        }
-        for (int x = 0; x < CAMBER_CELL_PX; x++) {
-            int has_any = 0;
-            for (int v = 0; v < CAMBER_VECTORS; v++) {
-                of_column[v] = much[v][x];
-                has_any |= CAMBER_ANY(much[v][x] != 0.0f);
-            }
-            if (has_any)
-                left[x] += camber_sum_of_rows(of_column) * (1.0f / (16 * CAMBER_OVERLAP_STRIPS));
-        }
+    camber_real much[CAMBER_VECTORS][CAMBER_CELL_PX], of_column[CAMBER_VECTORS];
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        camber_row_edges s;
+        camber_row_edges_of(o, row, v, &s);
+        camber_add_too_much(&s, o->begin[row][v], sign, c->now.mode, much[v]);
     }
     for (int x = 0; x < CAMBER_CELL_PX; x++) {
-        const float area = sign * sums[first + x] - left[x];
+        int has_any = 0;
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            of_column[v] = much[v][x];
+            has_any |= CAMBER_ANY(much[v][x] != 0.0f);
+        }
+        const float left = has_any ? camber_sum_of_rows(of_column) * (1.0f / 16) : 0.0f;
+        const float area = sign * sums[first + x] - left;
         inside[first + x] = area < CAMBER_AREA_LEAST ? 0.0f : area > 1.0f - CAMBER_AREA_LEAST ? 1.0f : area;
     }
 }

@@ -220,22 +220,11 @@ static inline void make_segments(global const camber_u32 *records, global const 
 #elif CAMBER_RASTER_RICH
     put_arc_lengths(records, first, r, &s, to.arc_lengths);
 #endif
-    camber_real words[16] = {s.ax,
-                             s.ay,
-                             s.bx,
-                             s.by,
-                             s.ux,
-                             s.uy,
-                             s.nax,
-                             s.nay,
-                             s.nbx,
-                             s.nby,
-                             s.half_width,
-                             s.reach,
-                             s.slope,
-                             s.curve,
-                             CAMBER_AS_REAL(s.flags),
-                             take_brushes(changes, (camber_u32)first, r, e.row[3])};
+    const camber_real brushes = take_brushes(changes, (camber_u32)first, r, e.row[3]);
+    camber_real words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
+                             s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
+                             s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
+                             brushes};
     put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
 }
 

@@ -14,14 +14,12 @@
  *     e2 ---|\-/       |           so that what wind counts and what a tile counts always fit together.
  *          +-----------+
  *
- * Lanes are the pixels of a cell. An edge goes through few cells: in each it changes all pixels together. */
+ * Lanes are edges while they are added, and rows of pixels while they are summed up. All sums are whole numbers. */
 #ifndef CAMBER_KERNELS_AREA_H
 #define CAMBER_KERNELS_AREA_H
 
 #include "tile_state.h"
 
-/* Nearer to nothing or to a whole pixel than this, an area is that: what sums of floats lose. */
-#define CAMBER_AREA_LEAST 1e-5f
 /* Edges that are less high cover nothing. Those that go less to the side, px a px down, are upright. */
 #define CAMBER_AREA_FLAT_PX 1e-12f
 #define CAMBER_AREA_UPRIGHT 1e-12f
@@ -97,6 +95,30 @@ CAMBER_FN camber_u32 camber_put_crossings(int *turns, int first, int last, cambe
     return count;
 }
 
+/* Segments of a list that may be edges, one a lane. */
+typedef struct camber_listed_edges {
+    camber_ring_edges edges;
+    camber_mask are_edges;
+    camber_u32 brushes[CAMBER_LANES];
+} camber_listed_edges;
+
+/* Takes them from number `first` of a list on. Lanes behind its end are no edges. */
+CAMBER_FN void camber_take_listed(CAMBER_GLOBAL const float *segments, CAMBER_GLOBAL const camber_u32 *list,
+                                  camber_u32 first, camber_u32 count, camber_listed_edges *l) {
+    float words[5][CAMBER_LANES];
+    for (camber_u32 k = 0; k < CAMBER_LANES; k++) {
+        const camber_u32 which = list[first + k < count ? first + k : first];
+        CAMBER_GLOBAL const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * which;
+        for (int i = 0; i < 4; i++)
+            words[i][k] = segment[i];
+        words[4][k] = first + k < count ? segment[CAMBER_SEGMENT_HALF_WIDTH] : CAMBER_EDGE_PX + 1.0f;
+        l->brushes[k] = CAMBER_BITS(segment[CAMBER_SEGMENT_BRUSH]);
+    }
+    camber_ring_edges_of(CAMBER_LOAD(0, words[0]), CAMBER_LOAD(0, words[1]), CAMBER_LOAD(0, words[2]),
+                         CAMBER_LOAD(0, words[3]), &l->edges);
+    l->are_edges = CAMBER_LOAD(0, words[4]) == CAMBER_EDGE_PX;
+}
+
 /* Makes the crossings of a row of tiles of the list of segments that may be edges and cross its top. Of edges that
  * cross it in one column, only the sum is left: mostly nothing. Returns how many crossings there are, at most one a
  * segment. */
@@ -108,27 +130,27 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER
     const int columns = (int)of.columns;
     for (int i = 0; i < columns; i++)
         turns[i] = 0;
-    for (camber_u32 k = 0; k < edge_count; k++) {
-        CAMBER_GLOBAL const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * list[k];
-        const camber_u32 own = CAMBER_BITS(segment[CAMBER_SEGMENT_BRUSH]);
-        if (own != brush) {
-            count = camber_put_crossings(turns, first, last, brush, crossings, count);
-            first = CAMBER_TILES_MAX;
-            last = -1;
-            brush = own;
+    for (camber_u32 at = 0; at < edge_count; at += CAMBER_LANES) {
+        camber_listed_edges l;
+        camber_take_listed(segments, list, at, edge_count, &l);
+        const camber_mask cross = l.are_edges & camber_edges_cross(&l.edges, top);
+        const camber_real x = camber_edges_crossing(&l.edges, top);
+        for (int k = 0; k < CAMBER_LANES; k++) {
+            if (!camber_integer_of(&cross, k))
+                continue;
+            if (l.brushes[k] != brush) {
+                count = camber_put_crossings(turns, first, last, brush, crossings, count);
+                first = CAMBER_TILES_MAX;
+                last = -1;
+                brush = l.brushes[k];
+            }
+            const int column = camber_column_after(camber_lane_of(&x, k), of.left, columns);
+            if (column >= columns)
+                continue;
+            turns[column] += (int)camber_lane_of(&l.edges.down, k);
+            first = column < first ? column : first;
+            last = column > last ? column : last;
         }
-        camber_ring_edges e; /* all lanes are this one */
-        camber_ring_edges_of(CAMBER_REAL(segment[CAMBER_SEGMENT_AX]), CAMBER_REAL(segment[CAMBER_SEGMENT_AY]),
-                             CAMBER_REAL(segment[CAMBER_SEGMENT_BX]), CAMBER_REAL(segment[CAMBER_SEGMENT_BY]), &e);
-        if (segment[CAMBER_SEGMENT_HALF_WIDTH] != CAMBER_EDGE_PX || !CAMBER_ANY(camber_edges_cross(&e, top)))
-            continue;
-        const camber_real x = camber_edges_crossing(&e, top);
-        const int column = camber_column_after(camber_lane_of(&x, 0), of.left, columns);
-        if (column >= columns)
-            continue;
-        turns[column] += (int)camber_lane_of(&e.down, 0);
-        first = column < first ? column : first;
-        last = column > last ? column : last;
     }
     return camber_put_crossings(turns, first, last, brush, crossings, count);
 }
@@ -162,57 +184,20 @@ CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {
     return brush->mode >= CAMBER_BRUSH_AREA;
 }
 
-/* A row of cells is about to be changed: without edges so far, it changes nothing. */
-CAMBER_FN void camber_area_take_row(camber_tile_state *c, int row) {
-    const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row);
-    if (c->edged & cells)
-        return;
-    c->edged |= cells;
-    for (int i = CAMBER_TILE_CELLS * row; i < CAMBER_TILE_CELLS * (row + 1); i++)
-        for (int k = 0; k < 3; k++)
-            for (int v = 0; v < CAMBER_VECTORS; v++)
-                c->sums[i][k][v] = CAMBER_REAL(0.0f);
-}
-
-/* Finds the numbers that edges change along the upper and the lower side of a cell, CAMBER_CORNERS_*. */
-CAMBER_FN float *camber_area_corners(camber_tile_state *c, int row, int column) {
-    return (float *)c->sums[CAMBER_TILE_CELLS * row + column][CAMBER_AREA_CORNERS];
-}
-
-/* The tops of the pixels of a vector of a cell, px from the tile's top. */
-CAMBER_FN camber_real camber_area_tops(int row, int v) {
-    return (float)(CAMBER_CELL_PX * row) + camber_rows_of_cell(v);
-}
-
-CAMBER_FN camber_real camber_between(camber_real x, float least, float most) {
-    const camber_real above = x > least ? x : CAMBER_REAL(least);
-    return above < most ? above : CAMBER_REAL(most);
-}
-
-/* From y on, px from the tile's top, the left side of the tile is wound around so many times more. */
-CAMBER_FN void camber_area_turn(camber_tile_state *c, float y, float times, camber_tile_rows where) {
-    const int begin = (int)y / CAMBER_CELL_PX;
-    for (int row = begin > where.first ? begin : where.first; row <= where.last; row++) {
-        camber_area_take_row(c, row);
-        for (int v = 0; v < CAMBER_VECTORS; v++)
-            c->sums[CAMBER_TILE_CELLS * row][CAMBER_AREA_ON][v] +=
-                times * camber_between(camber_area_tops(row, v) + (1.0f - y), 0.0f, 1.0f);
-        float *corners = camber_area_corners(c, row, 0);
-        corners[CAMBER_CORNERS_LEFT] += row > begin ? times : 0.0f;
-        corners[CAMBER_CORNERS_LEFT + 1] += times;
-    }
-}
-
 /* How edges lie in a tile, one a lane, positions px from its corner. */
 typedef struct camber_tile_edges {
     camber_ring_edges in;      /* from where they enter it at the top or through its left side */
-    camber_real slope;         /* px to the side a px down */
-    camber_real rise;          /* half of how high an edge is a px to the side, with its sign; 0 where it is upright */
+    camber_real slope, aside;  /* px to the side a px down, and without its sign */
+    camber_real down;          /* a px down, in parts of a pixel, with the edge's sign */
+    camber_real rise;          /* half of how far down an edge goes a px to the side; 0 where it is upright */
     camber_real turn, turn_at; /* the left side is wound around so many times more from there on */
+    camber_mask matters;       /* they change anything in the tile, or in any row of its cells */
+    camber_mask flat;          /* they lie level in the tile, and change nothing */
     camber_mask first, last;   /* rows of cells; the last lies before the first where an edge covers nothing */
-    camber_mask left, right;   /* columns of cells; CAMBER_TILE_CELLS: right of the tile */
-    camber_mask above, below;  /* the first and the last row of cells whose tops they cross; CAMBER_TILE_CELLS: the end
-                                  of the tile */
+    camber_mask above, below;  /* the first and the last row of cells along whose tops, just below, they are;
+                                  CAMBER_TILE_CELLS: the end of the tile */
+    camber_mask columns[CAMBER_TILE_CELLS + 1]; /* of cells, where they are at those tops; CAMBER_TILE_CELLS: right of
+                                                   the tile */
 } camber_tile_edges;
 
 /* A position as a row or column of cells, of which there are `most`. */
@@ -247,121 +232,231 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     e->x1 = e->x1 - where.left;
     e->y0 = (crosses ? CAMBER_REAL(where.top) : e->y0) - where.top;
     e->y1 = e->y1 - where.top;
-    const camber_mask enters_top = crosses & (e->x0 >= 0.0f);
     const camber_mask meets = wanted & (e->y1 >= 0.0f) & (e->y0 < side) & ((e->x0 >= 0.0f) | (e->x1 >= 0.0f));
     camber_cut_at_left(t, meets & (e->x0 < 0.0f), meets & (e->x1 < 0.0f));
-    const camber_mask covers = meets & (e->y1 - e->y0 > CAMBER_AREA_FLAT_PX) & ((e->x0 < side) | (e->x1 < side));
+    const camber_mask passes = meets & ((e->x0 < side) | (e->x1 < side));
+    const camber_mask covers = passes & (e->y1 - e->y0 > CAMBER_AREA_FLAT_PX);
     const camber_real high = covers ? e->y1 - e->y0 : CAMBER_REAL(1.0f);
     t->slope = (e->x1 - e->x0) / high;
-    const camber_real to_side = CAMBER_FABS(t->slope);
-    t->rise = to_side > CAMBER_AREA_UPRIGHT ? 0.5f * e->down / to_side : CAMBER_REAL(0.0f);
+    t->aside = CAMBER_FABS(t->slope);
+    t->down = (float)CAMBER_AREA_ONE * e->down;
+    t->rise = t->aside > CAMBER_AREA_UPRIGHT ? 0.5f * t->down / t->aside : CAMBER_REAL(0.0f);
+    t->matters = covers | (t->turn != 0.0f);
+    t->flat = passes & ~covers;
     const camber_mask top = camber_cell_at(e->y0, covers, cells), bottom = camber_cell_at(e->y1, covers, cells);
+    const camber_mask above = e->y0 > (float)CAMBER_CELL_PX * CAMBER_TO_REAL(top) ? top + 1 : top;
+    const camber_mask below = e->y1 > (float)CAMBER_CELL_PX * CAMBER_TO_REAL(bottom) ? bottom : bottom - 1;
+    const camber_mask end = (camber_mask)(where.last + 1), none = (camber_mask)(where.first - 1);
     t->first = top > where.first ? top : where.first;
-    t->last = covers ? (bottom < where.last ? bottom : where.last) : where.first - 1;
-    const camber_mask above = enters_top ? (camber_mask)(0) : top + 1, end = (camber_mask)(where.last + 1);
+    t->last = covers ? (below < where.last ? below : where.last) : none;
     t->above = above > where.first ? above : where.first;
-    t->below = covers ? (bottom < end ? bottom : end) : where.first - 1;
-    t->left = camber_cell_at(CAMBER_LESS(e->x0, e->x1), covers, cells);
-    t->right = camber_cell_at(CAMBER_MORE(e->x0, e->x1), covers, cells);
+    t->below = covers ? (below < end ? below : end) : none;
+    for (int row = where.first; row <= where.last + 1; row++) {
+        const camber_real at = CAMBER_REAL((float)(CAMBER_CELL_PX * row));
+        const camber_real y = at < e->y0 ? e->y0 : at > e->y1 ? e->y1 : at;
+        t->columns[row] = camber_cell_at(e->x0 + (y - e->y0) * t->slope, covers, cells);
+    }
 }
 
 /* One of them. */
 typedef struct camber_tile_edge {
-    float x0, y0, y1, down, slope, rise;
+    float x0, y0, y1, slope;
+    int down;
 } camber_tile_edge;
 
-/* Edge k of a vector. */
-CAMBER_FN void camber_tile_edge_of(const camber_tile_edges *t, int k, camber_tile_edge *e) {
-    e->x0 = camber_lane_of(&t->in.x0, k);
-    e->y0 = camber_lane_of(&t->in.y0, k);
-    e->y1 = camber_lane_of(&t->in.y1, k);
-    e->down = camber_lane_of(&t->in.down, k);
-    e->slope = camber_lane_of(&t->slope, k);
-    e->rise = camber_lane_of(&t->rise, k);
+/* Where an edge is at y, px from the tile's left side, and as a column of cells. */
+CAMBER_FN float camber_edge_at(const camber_tile_edge *e, float y) {
+    const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y;
+    return e->x0 + (at - e->y0) * e->slope;
 }
 
-/* Where an edge is at y, as a column of cells. */
 CAMBER_FN int camber_edge_column(const camber_tile_edge *e, float y) {
-    const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y, x = e->x0 + (at - e->y0) * e->slope;
+    const float x = camber_edge_at(e, y);
     return x > 0.0f ? (x < (float)CAMBER_TILE_PX ? (int)(x * (1.0f / CAMBER_CELL_PX)) : CAMBER_TILE_CELLS) : 0;
 }
 
-/* The piece of an edge in each row of pixels of a vector. height: with the edge's sign. */
+/* A row of cells is about to be changed: without edges so far, it has no changes. */
+CAMBER_FN void camber_area_take_row(camber_area_state *s, int row) {
+    if (s->edged >> (CAMBER_TILE_CELLS * row) & 255u)
+        return;
+    for (int x = 0; x <= CAMBER_TILE_CELLS; x++)
+        for (int k = 0; k < 2; k++)
+            for (int v = 0; v < CAMBER_VECTORS; v++)
+                s->changes[row][x][k][v] = CAMBER_WORD(0u);
+}
+
+/* A brush has no edges yet. */
+CAMBER_FN void camber_area_begin(camber_area_state *s) {
+    for (int row = 0; row <= CAMBER_TILE_CELLS; row++)
+        for (int x = 0; x <= CAMBER_TILE_CELLS; x++)
+            s->turns[row][x] = 0;
+    s->has_edges = 1;
+    s->edged = 0;
+    s->placed_count = 0;
+}
+
+/* The tops of the pixels of a vector of a cell, px from the tile's top. */
+CAMBER_FN camber_real camber_area_tops(int row, int v) {
+    return (float)(CAMBER_CELL_PX * row) + camber_rows_of_cell(v);
+}
+
+CAMBER_FN camber_real camber_between(camber_real x, float least, float most) {
+    const camber_real above = x > least ? x : CAMBER_REAL(least);
+    return above < most ? above : CAMBER_REAL(most);
+}
+
+/* From y on, px from the tile's top, the left side of the tile is wound around so many times more. */
+CAMBER_FN void camber_area_turn(camber_area_state *s, float y, float times, camber_tile_rows where) {
+    int row = (int)y / CAMBER_CELL_PX;
+    if (y > (float)(CAMBER_CELL_PX * row)) {
+        if (row >= where.first && row <= where.last) {
+            camber_area_take_row(s, row);
+            s->edged |= (camber_u64)1 << (CAMBER_TILE_CELLS * row);
+            for (int v = 0; v < CAMBER_VECTORS; v++) {
+                const camber_real rows = camber_between(camber_area_tops(row, v) + (1.0f - y), 0.0f, 1.0f);
+                s->changes[row][0][CAMBER_AREA_ON][v] += CAMBER_ROUNDED_WORDS(times * (float)CAMBER_AREA_ONE * rows);
+            }
+        }
+        row++;
+    }
+    for (; row <= CAMBER_TILE_CELLS; row++)
+        s->turns[row][0] += (int)times;
+}
+
+/* The piece of an edge in each row of pixels of a vector. height: in parts of a pixel, with the edge's sign. */
 typedef struct camber_edge_pieces {
     camber_real left, right, wide, height;
 } camber_edge_pieces;
 
-CAMBER_FN void camber_edge_pieces_of(const camber_tile_edge *e, camber_real tops, camber_edge_pieces *p) {
-    const camber_real from = camber_between(tops, e->y0, e->y1), to = camber_between(tops + 1.0f, e->y0, e->y1);
-    p->wide = (to - from) * CAMBER_FABS(e->slope);
-    p->left = e->x0 + (0.5f * (from + to) - e->y0) * e->slope - 0.5f * p->wide;
+CAMBER_FN void camber_edge_pieces_of(const camber_tile_edges *t, int k, camber_real tops, camber_edge_pieces *p) {
+    const float x0 = camber_lane_of(&t->in.x0, k), y0 = camber_lane_of(&t->in.y0, k), y1 = camber_lane_of(&t->in.y1, k);
+    const camber_real from = camber_between(tops, y0, y1), to = camber_between(tops + 1.0f, y0, y1), height = to - from;
+    p->wide = height * camber_lane_of(&t->aside, k);
+    p->left = x0 + (0.5f * (from + to) - y0) * camber_lane_of(&t->slope, k) - 0.5f * p->wide;
     p->right = p->left + p->wide;
-    p->height = (to - from) * e->down;
+    p->height = height * camber_lane_of(&t->down, k);
 }
 
-/* How much the pieces change their pixels, whose left sides are at x: the area that is right of them. */
-CAMBER_FN camber_real camber_edge_pieces_area(const camber_tile_edge *e, const camber_edge_pieces *p, camber_real x) {
-    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
-    camber_real from = x - p->left, to = from + 1.0f, past = x + 1.0f - p->right;
-    from = CAMBER_MORE(from, none);
-    from = CAMBER_LESS(from, p->wide);
-    to = CAMBER_MORE(to, none);
-    to = CAMBER_LESS(to, p->wide);
+/* How much of the pieces' rows lies right of them and left of x, in parts of a pixel. */
+CAMBER_FN camber_real camber_edge_pieces_left_of(const camber_edge_pieces *p, float rise, camber_real x) {
+    const camber_real none = CAMBER_REAL(0.0f);
+    camber_real inner = x - p->left, past = x - p->right;
+    inner = CAMBER_MORE(inner, none);
+    inner = CAMBER_LESS(inner, p->wide);
     past = CAMBER_MORE(past, none);
-    past = CAMBER_LESS(past, one);
-    return e->rise * (to - from) * (to + from) + p->height * past;
+    return rise * inner * inner + p->height * past;
 }
 
-/* Adds an edge to the columns [from, to] of a row of cells, and to all that is right of them. */
-CAMBER_FN void camber_area_add_row(camber_tile_state *c, const camber_tile_edge *e, int row, int from, int to) {
-    const int end = to < CAMBER_TILE_CELLS ? to + 1 : CAMBER_TILE_CELLS, i = CAMBER_TILE_CELLS * row;
-    camber_area_take_row(c, row);
+/* Each pixel has what lies left of its right side, less what lies left of the pixel before. before: the same of the
+ * cell before. */
+CAMBER_FN camber_real camber_of_pixels(const camber_real *all, const camber_real *before, int v) {
+#if CAMBER_LANES == 1
+    return all[v] - (v % CAMBER_CELL_PX ? all[v - 1] : before[v + CAMBER_CELL_PX - 1]);
+#elif CAMBER_LANES == 16
+    const float16 a = all[v], b = before[v];
+    return a -
+           (float16)(b.s3, a.s0, a.s1, a.s2, b.s7, a.s4, a.s5, a.s6, b.sb, a.s8, a.s9, a.sa, b.sf, a.sc, a.sd, a.se);
+#elif CAMBER_LANES == 8
+    const float8 a = all[v], b = before[v];
+    return a - (float8)(b.s3, a.s0, a.s1, a.s2, b.s7, a.s4, a.s5, a.s6);
+#else
+    return all[v] - (float4)(before[v].s3, all[v].s012);
+#endif
+}
+
+/* Adds edge k of a vector to the columns [from, to] of a row of cells, and to all that is right of them. */
+CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row, int from, int to) {
+    const int end = to < CAMBER_TILE_CELLS ? to + 1 : CAMBER_TILE_CELLS;
+    const float rise = camber_lane_of(&t->rise, k);
+    camber_edge_pieces p[CAMBER_VECTORS];
+    camber_real before[CAMBER_VECTORS], all[CAMBER_VECTORS];
     for (int v = 0; v < CAMBER_VECTORS; v++) {
-        camber_edge_pieces p;
-        camber_edge_pieces_of(e, camber_area_tops(row, v), &p);
-        for (int x = from; x < end; x++)
-            c->sums[i + x][CAMBER_AREA_HERE][v] +=
-                camber_edge_pieces_area(e, &p, (float)(CAMBER_CELL_PX * x) + camber_columns_of_cell(v));
-        if (end < CAMBER_TILE_CELLS)
-            c->sums[i + end][CAMBER_AREA_ON][v] += p.height;
+        camber_edge_pieces_of(t, k, camber_area_tops(row, v), p + v);
+        s->changes[row][end][CAMBER_AREA_ON][v] += CAMBER_ROUNDED_WORDS(p[v].height);
+        before[v] = CAMBER_REAL(0.0f);
+    }
+    for (int x = from; x < end; x++) {
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            all[v] =
+                camber_edge_pieces_left_of(p + v, rise, (float)(CAMBER_CELL_PX * x + 1) + camber_columns_of_cell(v));
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            s->changes[row][x][CAMBER_AREA_HERE][v] += CAMBER_ROUNDED_WORDS(camber_of_pixels(all, before, v));
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            before[v] = all[v];
     }
 }
 
-/* Adds edge k of a vector to the tops of rows of cells that it crosses. */
-CAMBER_FN void camber_area_cross_rows(camber_tile_state *c, const camber_tile_edges *t, int k, camber_tile_rows where) {
-    const int below = camber_integer_of(&t->below, k);
-    camber_tile_edge e;
-    camber_tile_edge_of(t, k, &e);
-    for (int row = camber_integer_of(&t->above, k); row <= below; row++) {
-        const int column = camber_edge_column(&e, (float)(CAMBER_CELL_PX * row));
-        if (column == CAMBER_TILE_CELLS)
-            continue;
-        if (row <= where.last)
-            camber_area_corners(c, row, column)[CAMBER_CORNERS_HERE] += e.down;
-        if (row > where.first)
-            camber_area_corners(c, row - 1, column)[CAMBER_CORNERS_HERE + 1] += e.down;
-    }
+/* Marks the cells that edge k of a vector passes, which is flat: above and below it they are wound around otherwise. */
+CAMBER_FN void camber_area_mark_flat(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
+    const float x0 = camber_lane_of(&t->in.x0, k), x1 = camber_lane_of(&t->in.x1, k), y = camber_lane_of(&t->in.y0, k);
+    const float least = CAMBER_LESS(x0, x1), most = CAMBER_MORE(x0, x1), side = (float)CAMBER_TILE_PX - 1.0f;
+    const int row = (int)y / CAMBER_CELL_PX, from = (int)CAMBER_LESS(least, side) / CAMBER_CELL_PX,
+              to = (int)CAMBER_LESS(most, side) / CAMBER_CELL_PX;
+    if (row < where.first || row > where.last)
+        return;
+    camber_area_take_row(s, row);
+    s->edged |= (((camber_u64)2 << to) - ((camber_u64)1 << from)) << (CAMBER_TILE_CELLS * row);
 }
 
-/* Adds edge k of a vector to the rows of cells of a tile that are drawn. */
-CAMBER_FN void camber_area_add_edge(camber_tile_state *c, const camber_tile_edges *t, int k, camber_tile_rows where) {
-    const float turn = camber_lane_of(&t->turn, k);
+/* Adds edge k of a vector to the cells that it passes, and turns the corners right of where it crosses tops of cells.
+ */
+CAMBER_FN void camber_area_add_edge(camber_area_state *s, const camber_tile_edges *t, int k) {
     const int first = camber_integer_of(&t->first, k), last = camber_integer_of(&t->last, k);
-    const int left = camber_integer_of(&t->left, k), right = camber_integer_of(&t->right, k);
-    const camber_tile_edge e = {camber_lane_of(&t->in.x0, k), camber_lane_of(&t->in.y0, k),
-                                camber_lane_of(&t->in.y1, k), camber_lane_of(&t->in.down, k),
-                                camber_lane_of(&t->slope, k), camber_lane_of(&t->rise, k)};
-    if (turn != 0.0f)
-        camber_area_turn(c, camber_lane_of(&t->turn_at, k), turn, where);
+    const int above = camber_integer_of(&t->above, k), below = camber_integer_of(&t->below, k);
+    const int down = (int)camber_lane_of(&t->in.down, k);
+    int upper = camber_integer_of(t->columns + first, k);
+    if (above <= first && above <= below && upper < CAMBER_TILE_CELLS)
+        s->turns[first][upper + 1] += down;
     for (int row = first; row <= last; row++) {
-        if (left == right) {
-            camber_area_add_row(c, &e, row, left, right);
+        const int lower = camber_integer_of(t->columns + row + 1, k);
+        const int from = CAMBER_LESS(upper, lower), to = CAMBER_MORE(upper, lower);
+        if (row < below && lower < CAMBER_TILE_CELLS)
+            s->turns[row + 1][lower + 1] += down;
+        upper = lower;
+        if (from == CAMBER_TILE_CELLS)
             continue;
-        }
-        const float top = (float)(CAMBER_CELL_PX * row);
-        const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, top + CAMBER_CELL_PX);
-        camber_area_add_row(c, &e, row, CAMBER_LESS(upper, lower), CAMBER_MORE(upper, lower));
+        camber_area_take_row(s, row);
+        s->edged |= ((((camber_u64)2 << to) - ((camber_u64)1 << from)) & 255u) << (CAMBER_TILE_CELLS * row);
+        camber_area_add_row(s, t, k, row, from, to);
     }
+}
+
+/* Keeps the first `count` edges of a vector, in case that areas overlap. */
+CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *t, int count) {
+    const camber_real one = CAMBER_REAL(1.0f), way = t->turn == 0.0f         ? one
+                                                     : t->turn == t->in.down ? CAMBER_REAL(CAMBER_PLACED_LEAVES)
+                                                                             : CAMBER_REAL(CAMBER_PLACED_ENTERS);
+    const camber_real words[CAMBER_PLACED_WORDS] = {t->in.x0, t->in.y0, t->in.y1, t->slope, way * t->in.down};
+    const int all_matter = CAMBER_ALL(t->matters | (camber_numbers(0) >= (float)count));
+    if (all_matter && s->placed_count + count <= CAMBER_PLACED_MOST) {
+        for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
+            CAMBER_STORE(words[i], 0, s->placed[i] + s->placed_count);
+        s->placed_count += count;
+        return;
+    }
+    for (int k = 0; k < count && s->placed_count <= CAMBER_PLACED_MOST; k++) {
+        if (!camber_integer_of(&t->matters, k))
+            continue;
+        for (int i = 0; i < CAMBER_PLACED_WORDS && s->placed_count < CAMBER_PLACED_MOST; i++)
+            s->placed[i][s->placed_count] = camber_lane_of(words + i, k);
+        s->placed_count++;
+    }
+}
+
+/* Adds the first `count` edges of a vector. */
+CAMBER_FN void camber_area_add(camber_area_state *s, const camber_tile_edges *t, int count, camber_tile_rows where) {
+    if (!s->has_edges)
+        camber_area_begin(s);
+    for (int k = 0; k < count; k++) {
+        const float turn = camber_lane_of(&t->turn, k);
+        if (turn != 0.0f)
+            camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
+        if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k))
+            camber_area_add_edge(s, t, k);
+        else if (camber_integer_of(&t->flat, k))
+            camber_area_mark_flat(s, t, k, where);
+    }
+    camber_area_place(s, t, count);
 }
 
 #endif

@@ -16,172 +16,121 @@
 #include "area.h"
 
 /* Sums that are off by less are those of areas that do not overlap. */
-#define CAMBER_AREA_SLACK 1e-3f
-/* A cell that more edges reach into keeps its sums, and so does a tile with more edges of one brush. */
+#define CAMBER_AREA_SLACK (CAMBER_AREA_ONE / 1024)
+/* An area that is less than this is nothing, and one that is less than this short of a pixel is all of it. */
+#define CAMBER_AREA_LEAST 1e-5f
+/* A cell that more edges pass keeps its sums, and so does a tile with more than CAMBER_PLACED_MOST of one brush. */
 #define CAMBER_OVERLAP_EDGES 64
 
-/* How much of a pixel is inside, by the sum of its windings. */
-CAMBER_FN camber_real camber_area_inside(camber_real sum, camber_u32 mode) {
-    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
-    camber_real inside = CAMBER_FABS(sum);
-    if (mode == CAMBER_BRUSH_AREA_EVENODD) {
-        inside -= 2.0f * CAMBER_TRUNCATE(0.5f * inside);
-        inside = inside > 1.0f ? 2.0f - inside : inside;
-    }
-    inside = inside > 1.0f - CAMBER_AREA_LEAST ? one : inside;
-    return inside < CAMBER_AREA_LEAST ? none : inside;
+/* How much of pixels is inside, by the sums of their windings. */
+CAMBER_FN camber_mask camber_area_inside(camber_mask sum, camber_u32 mode) {
+    const camber_mask one = (camber_mask)(CAMBER_AREA_ONE);
+    const camber_mask inside = sum < 0 ? -sum : sum, rest = inside & (2 * CAMBER_AREA_ONE - 1);
+    if (mode == CAMBER_BRUSH_AREA_EVENODD)
+        return rest > one ? 2 * one - rest : rest;
+    return CAMBER_LESS(inside, one);
+}
+
+/* Whether all is inside where the rings wind so many times. */
+CAMBER_FN int camber_winding_is_inside(int winding, camber_u32 mode) {
+    return mode == CAMBER_BRUSH_AREA_EVENODD ? winding & 1 : winding != 0;
 }
 
 /* ---- Overlaps ---- */
 
-/* The edges of a brush in a tile: those of the tile's list, and those that were kept from slices before. */
-typedef struct camber_area_edges {
-    CAMBER_GLOBAL const float *segments;
-    CAMBER_GLOBAL const camber_u32 *list;
-    CAMBER_GLOBAL const float *kept; /* CAMBER_KEPT_WORDS each */
-    camber_u32 count, kept_count;    /* kept_count: more than CAMBER_KEPT_MOST where not all could be kept */
-} camber_area_edges;
+/* An edge in a cell: the line on which it lies, and the heights between which it turns rows of samples. */
+typedef struct camber_cell_edge {
+    float x, y, slope, from, to, down;
+} camber_cell_edge;
 
-/* Whether the edge of a segment or of a kept one matters in a tile. Lists have more where the area ends. */
-CAMBER_FN int camber_edge_matters(CAMBER_GLOBAL const float *ends, camber_tile_rows where) {
-    const float ax = ends[0] - where.left, ay = ends[1] - where.top;
-    const float bx = ends[2] - where.left, by = ends[3] - where.top;
-    const float side = (float)CAMBER_TILE_PX;
-    return (ax >= 0.0f || bx >= 0.0f) && (ay >= 0.0f || by >= 0.0f) && (ax < side || bx < side) &&
-           (ay < side || by < side);
-}
-
-/* An edge, and the cells that it passes. */
-typedef struct camber_placed_edge {
-    camber_tile_edge edge;
-    float turn, turn_at;          /* camber_tile_edges */
-    int first, last, left, right; /* rows and columns of cells */
-} camber_placed_edge;
-
-typedef struct camber_placed_edges {
-    camber_placed_edge edges[CAMBER_KEPT_MOST];
-    int count;
-    int in_row[CAMBER_KEPT_MOST], row_count;     /* those that change a row of cells */
-    float ends[CAMBER_KEPT_WORDS][CAMBER_LANES]; /* of those that wait: ax, ay, bx, by */
-    int waiting;
-} camber_placed_edges;
-
-/* Places the edges that wait. */
-CAMBER_FN void camber_place_waiting(camber_placed_edges *all, camber_tile_rows where) {
-    const camber_tile_rows tile = {where.left, where.top, 0, CAMBER_TILE_CELLS - 1};
-    camber_ring_edges e;
-    camber_tile_edges t;
-    for (int k = all->waiting; k < CAMBER_LANES && all->waiting > 0; k++)
-        for (int i = 0; i < CAMBER_KEPT_WORDS; i++)
-            all->ends[i][k] = all->ends[i][0];
-    if (all->waiting == 0)
-        return;
-    camber_ring_edges_of(CAMBER_LOAD(0, all->ends[0]), CAMBER_LOAD(0, all->ends[1]), CAMBER_LOAD(0, all->ends[2]),
-                         CAMBER_LOAD(0, all->ends[3]), &e);
-    camber_tile_edges_of(&e, CAMBER_ALL_LANES(1), tile, &t);
-    for (int k = 0; k < all->waiting; k++) {
-        camber_placed_edge *to = all->edges + all->count++;
-        camber_tile_edge_of(&t, k, &to->edge);
-        to->turn = camber_lane_of(&t.turn, k);
-        to->turn_at = camber_lane_of(&t.turn_at, k);
-        to->first = camber_integer_of(&t.first, k);
-        to->last = camber_integer_of(&t.last, k);
-        to->left = camber_integer_of(&t.left, k);
-        to->right = camber_integer_of(&t.right, k);
-    }
-    all->waiting = 0;
-}
-
-/* Returns whether there was room. */
-CAMBER_FN int camber_place_edge(camber_placed_edges *all, CAMBER_GLOBAL const float *ends, camber_tile_rows where) {
-    if (all->count + all->waiting == CAMBER_KEPT_MOST)
-        return 0;
-    for (int i = 0; i < CAMBER_KEPT_WORDS; i++)
-        all->ends[i][all->waiting] = ends[i];
-    if (++all->waiting == CAMBER_LANES)
-        camber_place_waiting(all, where);
-    return 1;
-}
-
-/* Places all edges that matter. Returns whether there are not too many. */
-CAMBER_FN int camber_place_edges(const camber_area_edges *from, camber_tile_rows where, camber_placed_edges *all) {
-    int has_room = from->kept_count <= CAMBER_KEPT_MOST;
-    all->count = all->waiting = 0;
-    for (camber_u32 k = 0; k < from->kept_count && has_room; k++)
-        has_room = camber_place_edge(all, from->kept + CAMBER_KEPT_WORDS * (size_t)k, where);
-    for (camber_u32 k = 0; k < from->count && has_room; k++) {
-        CAMBER_GLOBAL const float *segment = from->segments + CAMBER_SEGMENT_WORDS * (size_t)from->list[k];
-        if (camber_edge_matters(segment, where))
-            has_room = camber_place_edge(all, segment, where);
-    }
-    camber_place_waiting(all, where);
-    return has_room;
-}
-
-/* Lists those that change a row of cells. */
-CAMBER_FN void camber_placed_in_row(camber_placed_edges *all, int row) {
-    all->row_count = 0;
-    for (int k = 0; k < all->count; k++) {
-        const camber_placed_edge *e = all->edges + k;
-        all->in_row[all->row_count] = k;
-        all->row_count += (e->first <= row && e->last >= row) || e->turn != 0.0f;
-    }
-}
-
-/* A cell in which rings may overlap: how often the rings wind around where its rows of samples begin, and the edges
- * that reach into it. */
+/* A cell in which rings may overlap: how often they wind around where its rows of samples begin, and its edges. */
 typedef struct camber_piled_cell {
-    int row, column, edge_count;                       /* more than CAMBER_OVERLAP_EDGES: not all are here */
+    int row, column, edge_count;
     camber_real begin[CAMBER_CELL_PX][CAMBER_VECTORS]; /* of each row of pixels */
-    camber_tile_edge edges[CAMBER_OVERLAP_EDGES];
+    camber_cell_edge edges[CAMBER_OVERLAP_EDGES];
 } camber_piled_cell;
+
+/* The edges that pass the cells of a row of them. counts: more than CAMBER_OVERLAP_EDGES where not all are here. */
+typedef struct camber_row_lists {
+    int counts[CAMBER_TILE_CELLS];
+    camber_u16 edges[CAMBER_TILE_CELLS][CAMBER_OVERLAP_EDGES];
+} camber_row_lists;
+
+CAMBER_FN void camber_placed_edge_of(const camber_area_state *s, int k, camber_tile_edge *e) {
+    e->x0 = s->placed[0][k];
+    e->y0 = s->placed[1][k];
+    e->y1 = s->placed[2][k];
+    e->slope = s->placed[3][k];
+    e->down = s->placed[4][k] > 0.0f ? 1 : -1;
+}
+
+/* Lists the edges of those cells of a row, a bit each. */
+CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 cells, camber_row_lists *lists) {
+    const float top = (float)(CAMBER_CELL_PX * row), bottom = top + CAMBER_CELL_PX;
+    for (int x = 0; x < CAMBER_TILE_CELLS; x++)
+        lists->counts[x] = 0;
+    for (int k = 0; k < s->placed_count; k++) {
+        camber_tile_edge e;
+        if (s->placed[2][k] <= top || s->placed[1][k] >= bottom)
+            continue;
+        camber_placed_edge_of(s, k, &e);
+        const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, bottom);
+        for (int x = CAMBER_LESS(upper, lower); x <= CAMBER_MORE(upper, lower) && x < CAMBER_TILE_CELLS; x++) {
+            if (!(cells >> x & 1u))
+                continue;
+            if (lists->counts[x] < CAMBER_OVERLAP_EDGES)
+                lists->edges[x][lists->counts[x]] = (camber_u16)k;
+            lists->counts[x]++;
+        }
+    }
+}
 
 /* Where the sixteen rows of samples of a row of pixels lie, px from the tile's top. */
 CAMBER_FN camber_real camber_piled_cell_rows(const camber_piled_cell *o, int row, int v) {
     return (float)(CAMBER_CELL_PX * o->row) + (camber_numbers(v) + ((float)(16 * row) + 0.5f)) * (1.0f / 16);
 }
 
-/* How often an edge turns rows of samples. */
-CAMBER_FN camber_real camber_edge_turns(const camber_tile_edge *e, camber_real y) {
-    const camber_mask turns = (e->y0 < y) & (e->y1 >= y);
-    return turns ? CAMBER_REAL(e->down) : CAMBER_REAL(0.0f);
+/* From y on, rows of samples are wound around so many times more where they begin. */
+CAMBER_FN void camber_piled_cell_turn(camber_piled_cell *o, float y, float times) {
+    for (int row = 0; row < CAMBER_CELL_PX; row++)
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            o->begin[row][v] += camber_piled_cell_rows(o, row, v) > y ? CAMBER_REAL(times) : CAMBER_REAL(0.0f);
 }
 
-/* Adds how often an edge turns rows of samples to where these begin: on its whole height, or below where it enters or
- * leaves the tile through its left side. */
-CAMBER_FN void camber_piled_cell_begin(camber_piled_cell *o, const camber_placed_edge *e, int is_left) {
-    const float top = (float)(CAMBER_CELL_PX * o->row);
-    for (int row = 0; row < CAMBER_CELL_PX; row++) {
-        const float above = top + (float)row;
-        const int turns = is_left && e->edge.y0 < above + 1.0f && e->edge.y1 >= above;
-        for (int v = 0; v < CAMBER_VECTORS && (turns || e->turn != 0.0f); v++) {
-            const camber_real y = camber_piled_cell_rows(o, row, v), none = CAMBER_REAL(0.0f);
-            o->begin[row][v] += y > e->turn_at ? CAMBER_REAL(e->turn) : none;
-            o->begin[row][v] += turns ? camber_edge_turns(&e->edge, y) : none;
-        }
-    }
+/* Adds an edge to a cell. What of it lies left of the cell is cut off, as at the tile's own left side. */
+CAMBER_FN void camber_piled_cell_add(camber_piled_cell *o, const camber_tile_edge *e) {
+    const float top = (float)(CAMBER_CELL_PX * o->row), left = (float)(CAMBER_CELL_PX * o->column);
+    const float down = (float)e->down, y0 = CAMBER_MORE(e->y0, top), y1 = CAMBER_LESS(e->y1, top + CAMBER_CELL_PX);
+    camber_cell_edge *to = o->edges + o->edge_count++;
+    *to = (camber_cell_edge){e->x0 - left, e->y0, e->slope, e->y0, e->y1, down};
+    if (o->column == 0)
+        return;
+    const float x0 = camber_edge_at(e, y0), x1 = camber_edge_at(e, y1);
+    if ((x0 < left) == (x1 < left))
+        return;
+    const float at = e->y0 + (left - e->x0) / e->slope, y = at < y0 ? y0 : at > y1 ? y1 : at;
+    camber_piled_cell_turn(o, y, x0 < left ? -down : down);
+    to->from = x0 < left ? y : to->from;
+    to->to = x0 < left ? to->to : y;
 }
 
-CAMBER_FN void camber_piled_cell_of(const camber_placed_edges *from, int winding, camber_piled_cell *o) {
-    const float top = (float)(CAMBER_CELL_PX * o->row);
+/* Finds the edges of a cell. winding: of its upper left corner. */
+CAMBER_FN void camber_piled_cell_of(const camber_area_state *s, const camber_row_lists *lists, int winding,
+                                    camber_piled_cell *o) {
+    const camber_u16 *edges = lists->edges[o->column];
     o->edge_count = 0;
     for (int row = 0; row < CAMBER_CELL_PX; row++)
         for (int v = 0; v < CAMBER_VECTORS; v++)
             o->begin[row][v] = CAMBER_REAL((float)winding);
-    for (int k = 0; k < from->row_count; k++) {
-        const camber_placed_edge *e = from->edges + from->in_row[k];
-        const int meets = e->first <= o->row && e->last >= o->row && e->left <= o->column;
-        if (!meets && e->turn == 0.0f)
-            continue;
-        const int upper = camber_edge_column(&e->edge, top), lower = camber_edge_column(&e->edge, top + CAMBER_CELL_PX);
-        const int is_left = meets && CAMBER_MORE(upper, lower) < o->column;
-        if (is_left || e->turn != 0.0f)
-            camber_piled_cell_begin(o, e, is_left);
-        if (!meets || is_left || CAMBER_LESS(upper, lower) > o->column)
-            continue;
-        if (o->edge_count < CAMBER_OVERLAP_EDGES)
-            o->edges[o->edge_count] = e->edge;
-        o->edge_count++;
+    for (int k = 0; k < lists->counts[o->column]; k++) {
+        const float way = s->placed[4][edges[k]], enters = CAMBER_PLACED_ENTERS, leaves = CAMBER_PLACED_LEAVES;
+        camber_tile_edge e;
+        camber_placed_edge_of(s, edges[k], &e);
+        camber_piled_cell_add(o, &e);
+        if (o->column == 0 && CAMBER_FABS(way) == enters && e.y0 > (float)(CAMBER_CELL_PX * o->row))
+            camber_piled_cell_turn(o, e.y0, (float)-e.down);
+        if (o->column == 0 && CAMBER_FABS(way) == leaves && e.y1 > (float)(CAMBER_CELL_PX * o->row))
+            camber_piled_cell_turn(o, e.y1, (float)e.down);
     }
 }
 
@@ -202,16 +151,15 @@ typedef struct camber_row_edges {
 
 /* The same in vector v of a row. */
 CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, camber_row_edges *s) {
-    const camber_real y = camber_piled_cell_rows(o, row, v);
-    const float left = (float)(CAMBER_CELL_PX * o->column);
+    const camber_real y = camber_piled_cell_rows(o, row, v), none = CAMBER_REAL(0.0f);
     const float top = (float)(CAMBER_CELL_PX * o->row + row);
     s->count = 0;
     for (int k = 0; k < o->edge_count; k++) {
-        const camber_tile_edge *e = o->edges + k;
-        if (e->y1 < top || e->y0 > top + 1.0f)
+        const camber_cell_edge *e = o->edges + k;
+        if (e->to < top || e->from > top + 1.0f)
             continue;
-        s->at[s->count] = e->x0 + (y - e->y0) * e->slope - left;
-        s->turns[s->count++] = camber_edge_turns(e, y);
+        s->at[s->count] = e->x + (y - e->y) * e->slope;
+        s->turns[s->count++] = ((y > e->from) & (y <= e->to)) ? CAMBER_REAL(e->down) : none;
     }
 }
 
@@ -235,23 +183,11 @@ CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin,
     }
 }
 
-/* Sums of sixteen rows of samples, in one order whatever the lanes. */
-CAMBER_FN float camber_sum_of_rows(const camber_real *vectors) {
-    const float *rows = (const float *)vectors;
-    float sums[8];
-    for (int i = 0; i < 8; i++)
-        sums[i] = rows[i] + rows[i + 8];
-    for (int left = 4; left > 0; left /= 2)
-        for (int i = 0; i < left; i++)
-            sums[i] += sums[i + left];
-    return sums[0];
-}
-
 /* Takes what is too much from the sums of a row of a cell's pixels, which become what is inside. */
 CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_cell *o, int row, float sign) {
     const int i = CAMBER_TILE_CELLS * o->row + o->column, first = CAMBER_CELL_PX * row;
-    const float *sums = (const float *)c->sums[i][CAMBER_AREA_ON];
-    float *inside = (float *)c->sums[i][CAMBER_AREA_HERE];
+    const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
+    float *inside = (float *)c->sums[i][CAMBER_AREA_INSIDE];
     camber_real much[CAMBER_VECTORS][CAMBER_CELL_PX], of_column[CAMBER_VECTORS];
     for (int v = 0; v < CAMBER_VECTORS; v++) {
         camber_row_edges s;
@@ -259,149 +195,149 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
         camber_add_too_much(&s, o->begin[row][v], sign, c->now.mode, much[v]);
     }
     for (int x = 0; x < CAMBER_CELL_PX; x++) {
-        int has_any = 0;
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
+        for (int v = 0; v < CAMBER_VECTORS; v++)
             of_column[v] = much[v][x];
-            has_any |= CAMBER_ANY(much[v][x] != 0.0f);
-        }
-        const float left = has_any ? camber_sum_of_rows(of_column) * (1.0f / 16) : 0.0f;
-        const float area = sign * sums[first + x] - left;
+        const float area = sign * sums[first + x] - camber_sum_of_sixteen(of_column) * (1.0f / 16);
         inside[first + x] = area < CAMBER_AREA_LEAST ? 0.0f : area > 1.0f - CAMBER_AREA_LEAST ? 1.0f : area;
     }
 }
 
-/* Finds what is inside of the pixels of cells in which rings may overlap. Their sums are what camber_area_find_row
- * leaves. */
-CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, camber_tile_rows where, const camber_area_edges *from,
-                                         int winding, camber_u64 cells) {
-    camber_placed_edges edges;
+/* Finds what is inside of the pixels of cells of a row in which rings may overlap. Their sums have been found. */
+CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells) {
+    const camber_area_state *s = &c->area;
+    camber_row_lists lists;
     camber_piled_cell o;
-    if (!camber_place_edges(from, where, &edges))
+    int winding = c->winding;
+    if (s->placed_count > CAMBER_PLACED_MOST)
         return;
-    o.row = -1;
-    for (; cells; cells &= cells - 1) {
-        const int i = camber_lowest(cells);
-        const float *sums = (const float *)c->sums[i][CAMBER_AREA_ON];
+    camber_list_row(s, row, cells, &lists);
+    o.row = row;
+    for (o.column = 0; o.column < CAMBER_TILE_CELLS; o.column++) {
+        const float *sums = (const float *)c->sums[CAMBER_TILE_CELLS * row + o.column][CAMBER_AREA_SUM];
         float all = 0.0f;
+        winding += s->turns[row][o.column];
+        if (!(cells >> o.column & 1u) || lists.counts[o.column] > CAMBER_OVERLAP_EDGES)
+            continue;
         for (int k = 0; k < CAMBER_CELL_PX * CAMBER_CELL_PX; k++)
             all += sums[k];
-        if (o.row != i / CAMBER_TILE_CELLS)
-            camber_placed_in_row(&edges, i / CAMBER_TILE_CELLS);
-        o.row = i / CAMBER_TILE_CELLS;
-        o.column = i % CAMBER_TILE_CELLS;
-        camber_piled_cell_of(&edges, winding, &o);
-        for (int row = 0; row < CAMBER_CELL_PX && o.edge_count <= CAMBER_OVERLAP_EDGES; row++)
-            camber_piled_cell_end(c, &o, row, all < 0.0f ? -1.0f : 1.0f);
+        camber_piled_cell_of(s, &lists, winding, &o);
+        for (int y = 0; y < CAMBER_CELL_PX; y++)
+            camber_piled_cell_end(c, &o, y, all < 0.0f ? -1.0f : 1.0f);
     }
 }
 
 /* ---- The inside ---- */
 
-/* The cells of a row, a bit each. */
-typedef struct camber_area_row {
-    camber_u32 found;    /* any of it lies inside */
-    camber_u32 overlaps; /* rings may overlap there */
-} camber_area_row;
+/* The cells of a tile, a bit each: those that lie inside as a whole, and those of which a part may. */
+typedef struct camber_area_cells {
+    camber_u64 whole, partial;
+} camber_area_cells;
 
-/* Whether rings may overlap in a cell, by its sums and by the windings around its corners, of which these are the least
- * and the most. Where all of it lies inside by the rule that is not even-odd, that changes nothing. */
-CAMBER_FN int camber_cell_overlaps(const camber_tile_state *c, int i, float least, float most) {
-    int is_whole = c->now.mode != CAMBER_BRUSH_AREA_EVENODD && (most <= -1.0f || least >= 1.0f);
+/* How the rings wind around the corners of a cell: the least and the most times. */
+typedef struct camber_corners {
+    int least, most;
+} camber_corners;
+
+/* Whether rings may overlap in a cell, by its sums and its corners. Where all of it lies inside by the rule that is not
+ * even-odd, that changes nothing. */
+CAMBER_FN int camber_cell_overlaps(const camber_mask *sums, camber_corners of, camber_u32 mode, int is_whole) {
+    const int one = CAMBER_AREA_ONE, slack = CAMBER_AREA_SLACK;
+    if (is_whole && mode != CAMBER_BRUSH_AREA_EVENODD && (of.most <= -1 || of.least >= 1))
+        return 0;
     for (int v = 0; v < CAMBER_VECTORS; v++) {
-        const camber_real sum = c->sums[i][CAMBER_AREA_ON][v];
-        is_whole = is_whole && CAMBER_ALL(c->sums[i][CAMBER_AREA_HERE][v] >= 1.0f);
-        least = CAMBER_ANY(sum < -1.0f - CAMBER_AREA_SLACK)             ? -2.0f
-                : least >= 0.0f && CAMBER_ANY(sum < -CAMBER_AREA_SLACK) ? -1.0f
-                                                                        : least;
-        most = CAMBER_ANY(sum > 1.0f + CAMBER_AREA_SLACK)            ? 2.0f
-               : most <= 0.0f && CAMBER_ANY(sum > CAMBER_AREA_SLACK) ? 1.0f
-                                                                     : most;
+        if (CAMBER_ANY(sums[v] < -slack))
+            of.least = CAMBER_ANY(sums[v] < -one - slack) ? -2 : CAMBER_LESS(of.least, -1);
+        if (CAMBER_ANY(sums[v] > slack))
+            of.most = CAMBER_ANY(sums[v] > one + slack) ? 2 : CAMBER_MORE(of.most, 1);
     }
-    return !is_whole && (least < -1.0f || most > 1.0f || most - least > 1.0f);
+    return of.least < -1 || of.most > 1 || of.most - of.least > 1;
 }
 
-/* Finds the cells of a row in which rings may overlap. odd: some sums do not lie between 0 and -1. */
-CAMBER_FN camber_u32 camber_area_find_overlap(const camber_tile_state *c, int row, int odd) {
+/* Finds what is inside of a cell that edges pass. sums: of the windings of its pixels. Returns whether rings may
+ * overlap there. */
+CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_mask *sums, camber_corners of,
+                                    camber_area_cells *found) {
+    const float part = 1.0f / CAMBER_AREA_ONE;
+    int is_whole = 1, is_empty = 1;
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        const camber_mask inside = camber_area_inside(sums[v], c->now.mode);
+        c->sums[i][CAMBER_AREA_INSIDE][v] = part * CAMBER_TO_REAL(inside);
+        is_whole = is_whole && CAMBER_ALL(inside >= CAMBER_AREA_ONE);
+        is_empty = is_empty && !CAMBER_ANY(inside > 0);
+    }
+    if (camber_cell_overlaps(sums, of, c->now.mode, is_whole)) {
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            c->sums[i][CAMBER_AREA_SUM][v] = part * CAMBER_TO_REAL(sums[v]);
+        found->partial |= (camber_u64)1 << i;
+        return 1;
+    }
+    found->whole |= is_whole ? (camber_u64)1 << i : 0;
+    found->partial |= is_whole || is_empty ? 0 : (camber_u64)1 << i;
+    return 0;
+}
+
+/* Adds up what the edges of a row of cells change, from left to right, and finds what is inside. A cell that no edge
+ * passes is all inside or all outside, as one of its pixels is. */
+CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_area_cells *found) {
+    const int *turns_above = c->area.turns[row], *turns_below = c->area.turns[row + 1];
+    int top = c->winding + turns_above[0], bottom = c->winding + turns_below[0];
+    camber_corners left = {CAMBER_LESS(top, bottom), CAMBER_MORE(top, bottom)};
+    camber_words on[CAMBER_VECTORS];
+    camber_mask sums[CAMBER_VECTORS];
     camber_u32 overlaps = 0;
-    float top = (float)c->winding, bottom = top;
+    for (int v = 0; v < CAMBER_VECTORS; v++)
+        on[v] = CAMBER_WORD((camber_u32)top * CAMBER_AREA_ONE);
     for (int x = 0; x < CAMBER_TILE_CELLS; x++) {
         const int i = CAMBER_TILE_CELLS * row + x;
-        const float *corners = (const float *)c->sums[i][CAMBER_AREA_CORNERS];
-        top += corners[CAMBER_CORNERS_LEFT];
-        bottom += corners[CAMBER_CORNERS_LEFT + 1];
-        float least = CAMBER_LESS(top, bottom), most = CAMBER_MORE(top, bottom);
-        top += corners[CAMBER_CORNERS_HERE];
-        bottom += corners[CAMBER_CORNERS_HERE + 1];
-        least = CAMBER_LESS(least, CAMBER_LESS(top, bottom));
-        most = CAMBER_MORE(most, CAMBER_MORE(top, bottom));
-        if ((odd || least < -1.0f || most > 0.0f) && camber_cell_overlaps(c, i, least, most))
-            overlaps |= 1u << x;
-    }
-    return overlaps;
-}
-
-/* Adds up what the edges of a row of cells change, from left to right: the sums become what is inside of the pixels,
- * and what was added up. */
-CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_area_row *r) {
-    camber_mask beyond = CAMBER_ALL_LANES(0);
-    int odd = 0;
-    r->found = 0;
-    for (int v = 0; v < CAMBER_VECTORS; v++) {
-        camber_real sum = CAMBER_REAL((float)c->winding);
-        for (int x = 0; x < CAMBER_TILE_CELLS; x++) {
-            const int i = CAMBER_TILE_CELLS * row + x;
-            sum += c->sums[i][CAMBER_AREA_ON][v];
-            const camber_real here = sum + c->sums[i][CAMBER_AREA_HERE][v];
-            const camber_real inside = camber_area_inside(here, c->now.mode);
-            c->sums[i][CAMBER_AREA_HERE][v] = inside;
-            c->sums[i][CAMBER_AREA_ON][v] = here;
-            beyond |= (here > CAMBER_AREA_SLACK) | (here < -1.0f - CAMBER_AREA_SLACK);
-            r->found |= CAMBER_ANY(inside > 0.0f) ? 1u << x : 0u;
+        top += turns_above[x + 1];
+        bottom += turns_below[x + 1];
+        const camber_corners right = {CAMBER_LESS(top, bottom), CAMBER_MORE(top, bottom)};
+        const camber_corners of = {CAMBER_LESS(left.least, right.least), CAMBER_MORE(left.most, right.most)};
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            on[v] += c->area.changes[row][x][CAMBER_AREA_ON][v];
+            sums[v] = CAMBER_AS_INTEGERS(on[v] + c->area.changes[row][x][CAMBER_AREA_HERE][v]);
         }
-        odd |= CAMBER_ANY(beyond);
+        left = right;
+        if (hidden >> i & 1)
+            continue;
+        if (c->area.edged >> i & 1)
+            overlaps |= camber_area_find_cell(c, i, sums, of, found) ? 1u << x : 0u;
+        else if (camber_winding_is_inside((camber_integer_of(sums, 0) + CAMBER_AREA_ONE / 2) >> 16, c->now.mode))
+            found->whole |= (camber_u64)1 << i;
     }
-    r->overlaps = camber_area_find_overlap(c, row, odd);
+    if (overlaps)
+        camber_area_find_overlaps(c, row, overlaps);
 }
 
-/* Finds the cells that have something inside of the brush's rings, and ends the rings. The sums of those that it
- * returns are the areas of their pixels then; those of *whole lie inside as a whole. */
-CAMBER_FN camber_u64 camber_area_find(camber_tile_state *c, camber_tile_rows where, const camber_area_edges *from,
-                                      camber_u64 *whole) {
-    const int is_inside = camber_most_of(camber_area_inside(CAMBER_REAL((float)c->winding), c->now.mode)) > 0.0f;
-    camber_u64 found = 0, overlaps = 0;
-    *whole = 0;
+/* Finds the cells that have something inside of the brush's rings, and ends the rings. What is inside of those of which
+ * a part may be is in c->sums then. A row of cells that no edge passes is all inside or all outside. */
+CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_area_cells *found) {
+    const camber_u64 hidden = c->done | c->filled, edged = c->area.has_edges ? c->area.edged : 0;
+    found->whole = found->partial = 0;
     for (int row = where.first; row <= where.last; row++) {
         const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row);
-        if (c->edged & cells) {
-            camber_area_row r;
-            camber_area_find_row(c, row, &r);
-            found |= (camber_u64)r.found << (CAMBER_TILE_CELLS * row);
-            overlaps |= (camber_u64)r.overlaps << (CAMBER_TILE_CELLS * row);
-        } else if (is_inside) {
-            *whole |= cells;
-        }
+        const int winding = c->winding + (c->area.has_edges ? c->area.turns[row][0] : 0);
+        if (edged & cells)
+            camber_area_find_row(c, row, hidden, found);
+        else if (camber_winding_is_inside(winding, c->now.mode))
+            found->whole |= cells & ~hidden;
     }
-    *whole &= ~(c->done | c->filled);
-    overlaps &= ~(c->done | c->filled);
-    if (overlaps)
-        camber_area_find_overlaps(c, where, from, c->winding, overlaps);
-    c->edged = 0;
+    c->area.has_edges = 0;
     c->winding = 0;
-    return (found | overlaps) & ~(c->done | c->filled);
 }
 
 /* Draws what the brush's rings have inside, before the brush is closed. */
-CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where, const camber_area_edges *from) {
-    camber_u64 whole;
-    const camber_u64 cells = camber_area_find(c, where, from, &whole);
-    camber_tile_take_cells(c, cells | whole);
-    for (camber_u64 left = cells; left; left &= left - 1) {
-        const int i = camber_lowest(left);
+CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
+    camber_area_cells found;
+    camber_area_find(c, where, &found);
+    camber_tile_take_cells(c, found.partial | found.whole);
+    for (; found.partial; found.partial &= found.partial - 1) {
+        const int i = camber_lowest(found.partial);
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            camber_tile_put_over(c, i, v, c->sums[i][CAMBER_AREA_HERE][v]);
+            camber_tile_put_over(c, i, v, c->sums[i][CAMBER_AREA_INSIDE][v]);
     }
-    for (; whole; whole &= whole - 1)
-        camber_tile_put_whole(c, camber_lowest(whole));
+    for (; found.whole; found.whole &= found.whole - 1)
+        camber_tile_put_whole(c, camber_lowest(found.whole));
 }
 
 #endif

@@ -34,8 +34,8 @@ typedef CAMBER_OF_LANES(ulong) camber_long_words;
 #define CAMBER_AS_INTEGERS(x) CAMBER_OF_LANES(as_int)(x)
 #define CAMBER_LOAD(at, from) CAMBER_OF_LANES(vload)(at, from)
 #define CAMBER_STORE(vector, at, to) CAMBER_OF_LANES(vstore)(vector, at, to)
-#define CAMBER_ANY(mask) any(mask)
-#define CAMBER_ALL(mask) all(mask)
+#define CAMBER_ANY(mask) camber_any(mask)
+#define CAMBER_ALL(mask) camber_all(mask)
 #define CAMBER_BITS(x) as_uint(x) /* of one float */
 #define CAMBER_ALL_LANES(flag) ((camber_mask)((flag) ? -1 : 0))
 
@@ -103,6 +103,8 @@ CAMBER_FN float camber_float_of(camber_u32 bits) {
 #define CAMBER_COLOR(color) camber_real color[4]
 #endif
 #define CAMBER_TRUNCATE(x) CAMBER_TO_REAL(CAMBER_TO_INTEGERS(x))
+/* The nearest whole numbers to reals of less than 2^22, as words: what is added leaves no bits for fractions. */
+#define CAMBER_ROUNDED_WORDS(x) (CAMBER_AS_WORDS((x) + 12582912.0f) - 0x4b400000u)
 /* The low 16 bits of join words, as numbers with a sign. */
 #define CAMBER_TURNS(joins) CAMBER_TO_REAL(CAMBER_AS_INTEGERS((joins) << 16) >> 16)
 
@@ -117,11 +119,40 @@ CAMBER_FN int camber_integer_of(const camber_mask *vector, int k) {
 }
 #endif
 
+#ifdef CAMBER_DEVICE
+/* Whether any lane, and whether all lanes of a mask are set. PoCL's any and all look at one lane after the other. */
+#if CAMBER_LANES == 16
+#define CAMBER_HALF_OF(mask, operator) ((mask).lo operator(mask).hi)
+#else
+#define CAMBER_HALF_OF(mask, operator) (mask)
+#endif
+
+CAMBER_FN int camber_any(camber_mask mask) {
+    const int8 eight = CAMBER_HALF_OF(mask, |);
+    const int4 four = eight.lo | eight.hi;
+    const int2 two = four.lo | four.hi;
+    return (two.x | two.y) != 0;
+}
+
+CAMBER_FN int camber_all(camber_mask mask) {
+    const int8 eight = CAMBER_HALF_OF(mask, &);
+    const int4 four = eight.lo & eight.hi;
+    const int2 two = four.lo & four.hi;
+    return (two.x & two.y) != 0;
+}
+#endif
+
 /* The largest of a vector's lanes: of reals, and of integers. */
 #if CAMBER_LANES == 1
 CAMBER_FN float camber_most_of(camber_real x) {
     return x;
 }
+
+#ifndef CAMBER_GLSL
+CAMBER_FN int camber_largest_of(camber_mask x) {
+    return x;
+}
+#endif
 #else
 #if CAMBER_LANES == 16
 #define CAMBER_FOLD_LANES(x) CAMBER_MORE((x).lo, (x).hi)
@@ -141,6 +172,33 @@ CAMBER_FN int camber_largest_of(camber_mask x) {
     const int4 four = CAMBER_MORE(eight.lo, eight.hi);
     const int2 two = CAMBER_MORE(four.lo, four.hi);
     return CAMBER_MORE(two.x, two.y);
+}
+#endif
+
+#ifndef CAMBER_GLSL
+/* The sum of sixteen numbers, in one order whatever the lanes. */
+CAMBER_FN float camber_sum_of_sixteen(const camber_real *vectors) {
+#if CAMBER_LANES == 1
+    float sums[8];
+    for (int i = 0; i < 8; i++)
+        sums[i] = vectors[i] + vectors[i + 8];
+    for (int left = 4; left > 0; left /= 2)
+        for (int i = 0; i < left; i++)
+            sums[i] += sums[i + left];
+    return sums[0];
+#else
+#if CAMBER_LANES == 16
+    const float8 eight = vectors[0].lo + vectors[0].hi;
+    const float4 four = eight.lo + eight.hi;
+#elif CAMBER_LANES == 8
+    const float8 eight = vectors[0] + vectors[1];
+    const float4 four = eight.lo + eight.hi;
+#else
+    const float4 four = (vectors[0] + vectors[2]) + (vectors[1] + vectors[3]);
+#endif
+    const float2 two = four.lo + four.hi;
+    return two.x + two.y;
+#endif
 }
 #endif
 

@@ -46,13 +46,13 @@ typedef struct camber_target_args {
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state. That is seven sets of cells and a count of each cell, three words for each row of cells, and planes
- * from word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture.
- * Behind them lie the edges of a brush of areas so far, a plane of which keeps 256. */
+ * spills its state. That is seven sets of cells and a count of each cell, words for each row of cells, and planes from
+ * word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture. Behind
+ * them lie what a brush of areas has turned, and its edges so far. */
 typedef struct camber_spill_args {
     camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
     camber_u32 tile_words;
-    camber_u32 sums, group, layer, kept; /* the first plane of sums, of a group, of a layer and of kept edges */
+    camber_u32 sums, group, layer, behind; /* the first plane of sums, of a group, of a layer, and behind all */
 } camber_spill_args;
 
 #define CAMBER_SPILL_WORDS 56
@@ -60,13 +60,20 @@ typedef struct camber_spill_args {
 #define CAMBER_SPILL_BLEND_COUNTS 56 /* the byte at which they begin, behind the sets of cells with a bit a cell */
 #define CAMBER_SPILL_ROWS 30         /* the word at which the rows' words begin */
 #define CAMBER_SPILL_WINDINGS 38     /* the same: the winding of an area's rings */
-#define CAMBER_SPILL_KEPT 46         /* the same: how many of its edges are kept */
+#define CAMBER_SPILL_PLACED 46       /* the same: how many of its edges the tile has */
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
 #define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
 
-/* An edge that is kept: where it begins and ends. More edges of one brush in a tile are not. */
-#define CAMBER_KEPT_WORDS 4
-#define CAMBER_KEPT_MOST 1024
+/* An edge of an area as a tile keeps it: where it begins, where it ends, how steep it is, and the way it goes: 1 down
+ * the ring, -1 up, and times these where it enters the tile through its left side, and where it leaves it there. Of one
+ * brush a tile keeps so many. */
+#define CAMBER_PLACED_WORDS 5
+#define CAMBER_PLACED_MOST 1024
+#define CAMBER_PLACED_ENTERS 2.0f
+#define CAMBER_PLACED_LEAVES 3.0f
+/* How a brush turns at the top and the bottom of a row of cells, as a spill has it; behind all rows' lie the edges. */
+#define CAMBER_TURN_WORDS 18
+#define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
 
 /* rasterize: a job is two words, the tile, and the first and the last row of its cells to draw. */
 #define CAMBER_JOB_WORDS 2

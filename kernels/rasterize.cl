@@ -46,18 +46,34 @@ static inline void write_abreast(const camber_words *cells, global camber_u32 *a
 #endif
 }
 
-/* Behind a tile's pixels lies the background, and above the horizon the sky. */
+/* Behind a tile's pixels lies the background, and above the horizon the sky. Cells that the last brush covers as a
+ * whole have its colour. */
 typedef struct backdrop {
     float back[4], top;
-    camber_words bare;
+    camber_words bare, covered;
+    ulong bare_cells, covered_cells;
 #if CAMBER_RASTER_PITCHED
     camber_words sky;
     float horizon;
 #endif
 } backdrop;
 
+static inline void begin_backdrop(const camber_tile_state *c, camber_target_args s, float top, backdrop *b) {
+    *b = (backdrop){.back = {s.r, s.g, s.b, s.a}, .top = top};
+    b->bare = camber_bare_pixels(b->back);
+    b->covered = camber_rgba(CAMBER_REAL(c->now.r), CAMBER_REAL(c->now.g), CAMBER_REAL(c->now.b), CAMBER_REAL(1.0f));
+    b->bare_cells = ~(c->touched[CAMBER_PICTURE] | c->brushed);
+    b->covered_cells = c->whole & c->brushed & ~c->touched[CAMBER_PICTURE];
+#if CAMBER_RASTER_PITCHED
+    b->sky = camber_rgba(CAMBER_REAL(s.sky[0]), CAMBER_REAL(s.sky[1]), CAMBER_REAL(s.sky[2]), CAMBER_REAL(s.sky[3]));
+    b->horizon = s.horizon;
+#endif
+}
+
 static inline camber_words look_at(camber_tile_state *c, const backdrop *b, int i, int v) {
-    camber_words rgba = camber_tile_has_pixels(c, i) ? camber_tile_pixels(c, i, v, b->back) : b->bare;
+    camber_words rgba = b->bare_cells >> i & 1      ? b->bare
+                        : b->covered_cells >> i & 1 ? b->covered
+                                                    : camber_tile_pixels(c, i, v, b->back);
 #if CAMBER_RASTER_PITCHED
     const camber_real y = b->top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + CAMBER_LOAD((size_t)v, ROWS);
     rgba = y < b->horizon ? b->sky : rgba;
@@ -65,23 +81,37 @@ static inline camber_words look_at(camber_tile_state *c, const backdrop *b, int 
     return rgba;
 }
 
+/* Writes a row of cells of one colour. */
+static inline void write_row(camber_words rgba, global camber_u32 *pixels, size_t stride) {
+    for (size_t y = 0; y < CAMBER_CELL_PX; y++)
+        for (size_t x = 0; x < CAMBER_TILE_PX; x += CAMBER_LANES)
+            WRITE(rgba, pixels + y * stride + x);
+}
+
 static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, camber_target_args s, float top,
                                int first, int last) {
-    backdrop b = {.back = {s.r, s.g, s.b, s.a}, .top = top};
-    b.bare = camber_bare_pixels(b.back);
-#if CAMBER_RASTER_PITCHED
-    b.sky = camber_rgba(CAMBER_REAL(s.sky[0]), CAMBER_REAL(s.sky[1]), CAMBER_REAL(s.sky[2]), CAMBER_REAL(s.sky[3]));
-    b.horizon = s.horizon;
-#endif
-    for (int i = CAMBER_TILE_CELLS * first; i < CAMBER_TILE_CELLS * (last + 1); i += CELLS_ABREAST)
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
-            const int row = i / CAMBER_TILE_CELLS * CAMBER_CELL_PX + v * (CAMBER_LANES / CAMBER_CELL_PX);
-            camber_words cells[CELLS_ABREAST];
-#pragma unroll
-            for (int k = 0; k < CELLS_ABREAST; k++)
-                cells[k] = look_at(c, &b, i + k, v);
-            write_abreast(cells, pixels + (size_t)row * s.stride + i % CAMBER_TILE_CELLS * CAMBER_CELL_PX, s.stride);
+    backdrop b;
+    begin_backdrop(c, s, top, &b);
+    for (int j = first; j <= last; j++) {
+        global camber_u32 *to = pixels + (size_t)(CAMBER_CELL_PX * j) * s.stride;
+#if !CAMBER_RASTER_PITCHED
+        const uint bare = b.bare_cells >> (CAMBER_TILE_CELLS * j) & 255,
+                   covered = b.covered_cells >> (CAMBER_TILE_CELLS * j) & 255;
+        if (bare == 255 || covered == 255) {
+            write_row(bare ? b.bare : b.covered, to, s.stride);
+            continue;
         }
+#endif
+        for (int i = CAMBER_TILE_CELLS * j; i < CAMBER_TILE_CELLS * (j + 1); i += CELLS_ABREAST)
+            for (int v = 0; v < CAMBER_VECTORS; v++) {
+                const int row = v * (CAMBER_LANES / CAMBER_CELL_PX);
+                camber_words cells[CELLS_ABREAST];
+#pragma unroll
+                for (int k = 0; k < CELLS_ABREAST; k++)
+                    cells[k] = look_at(c, &b, i + k, v);
+                write_abreast(cells, to + (size_t)row * s.stride + i % CAMBER_TILE_CELLS * CAMBER_CELL_PX, s.stride);
+            }
+    }
 }
 
 /* ---- Areas ---- */
@@ -89,7 +119,6 @@ static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, 
 /* All that brushes need beside a tile's state. */
 typedef struct tile_brushes {
     global const camber_brush *brushes;
-    camber_area_edges edges; /* of an area that is drawn now */
 #if CAMBER_RASTER_RICH
     global const camber_brush_ext *brush_ext;
     global const float *side_table;
@@ -120,10 +149,7 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
         camber_ring_edges_of(CAMBER_AS_REAL(words[0]), CAMBER_AS_REAL(words[1]), CAMBER_AS_REAL(words[2]),
                              CAMBER_AS_REAL(words[3]), &e);
         camber_tile_edges_of(&e, CAMBER_LOAD(v, numbers) < (int)b->count, where, &t);
-        for (int k = 0; k < count; k++)
-            camber_area_add_edge(c, &t, k, where);
-        for (int k = 0; k < count && CAMBER_ANY(t.above <= t.below); k++)
-            camber_area_cross_rows(c, &t, k, where);
+        camber_area_add(&c->area, &t, count, where);
     }
     b->count = 0;
 }
@@ -153,19 +179,18 @@ static inline void end_area(camber_tile_state *c, const positions *at, const til
             from->eye
 #endif
         };
-        camber_u64 whole;
-        const camber_u64 cells = camber_area_find(c, where, &from->edges, &whole);
-        fill_with_images(c, at, source, cells, whole);
+        camber_area_cells found;
+        camber_area_find(c, where, &found);
+        fill_with_images(c, at, source, found);
         return;
     }
 #endif
-    camber_area_draw(c, where, &from->edges);
+    camber_area_draw(c, where);
 }
 
 static inline void change_brush(camber_tile_state *c, const positions *at, tile_brushes *from, camber_tile_rows where,
                                 camber_u32 brush) {
     end_area(c, at, from, where);
-    from->edges.count = from->edges.kept_count = 0;
     camber_tile_change_brush(c, from->brushes[brush]);
 #if CAMBER_RASTER_RICH
     camber_tile_use_ext(c, from->brush_ext[brush]);
@@ -223,10 +248,8 @@ CAMBER_KERNEL(1, rasterize,
             c.done |= 255ul << (CAMBER_TILE_CELLS * j);
 #endif
     global float *own_spill = spill + tile * slice.tile_words;
-    global float *own_kept = own_spill + CAMBER_SPILL_WORDS + CAMBER_CELLS * 16 * slice.kept;
     tile_brushes from_brushes = {
         brushes,
-        {segments, lists, own_kept, 0, 0},
 #if CAMBER_RASTER_RICH
         brush_ext,
         side_table,
@@ -243,7 +266,7 @@ CAMBER_KERNEL(1, rasterize,
     if (!slice.is_first) {
         if (!slice.is_last && starts[tile] == starts[tile + 1] && left_of.first == left_of.end)
             return;
-        current = restore_cells(&c, own_spill, brushes, slice, first, last, &from_brushes.edges.kept_count);
+        current = restore_cells(&c, own_spill, brushes, slice, first, last);
         if (current != ~0u && current != CAMBER_SPILL_FULL) {
 #if CAMBER_RASTER_RICH
             camber_tile_use_ext(&c, brush_ext[current]);
@@ -251,16 +274,12 @@ CAMBER_KERNEL(1, rasterize,
             c.winding += camber_take_winding(&left_of, current);
         }
     }
-    camber_u32 brush_end = starts[tile + 1]; /* where the list of the brush that is drawn now ends */
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
         global const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k];
         ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 brush = as_uint(segment[CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
             draw_waiting(&c, &at, segments, where, &b);
-            from_brushes.edges.list = lists + k + 1;
-            from_brushes.edges.count = brush_end - k - 1;
-            brush_end = k + 1;
             draw_areas_above(&c, &at, &from_brushes, where, &left_of, brush, current);
             if (camber_tile_is_full(&c))
                 break;
@@ -303,14 +322,11 @@ CAMBER_KERNEL(1, rasterize,
             break;
     }
     draw_waiting(&c, &at, segments, where, &b);
-    from_brushes.edges.list = lists + starts[tile];
-    from_brushes.edges.count = brush_end - starts[tile];
     current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;
-        const camber_u32 kept = camber_brush_is_area(&c.now) ? keep_edges(&from_brushes.edges, where, own_kept) : 0u;
-        spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open, kept);
+        spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open);
         return;
     }
     end_area(&c, &at, &from_brushes, where);
@@ -318,7 +334,7 @@ CAMBER_KERNEL(1, rasterize,
     if (!slice.is_last) {
         camber_tile_close_brush(&c);
         c.done = ~0ul;
-        spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL, 0u);
+        spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL);
         return;
     }
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,

@@ -7,12 +7,12 @@
 #if CAMBER_RASTER_RICH
 
 /* Fills cells with images: the whole of them, or the areas that their sums say. */
-static inline void fill_with_images(camber_tile_state *c, const positions *at, drawn_segment from, ulong cells,
-                                    ulong whole) {
+static inline void fill_with_images(camber_tile_state *c, const positions *at, drawn_segment from,
+                                    camber_area_cells cells) {
     camber_image_sampler m;
     camber_image_sampler_of(from.side_table, 4u * c->brush_ext.image, &m);
-    for (ulong left = cells | whole; left; left &= left - 1) {
-        const int i = camber_lowest(left), is_whole = (int)(whole >> i & 1ul);
+    for (ulong left = cells.partial | cells.whole; left; left &= left - 1) {
+        const int i = camber_lowest(left), is_whole = (int)(cells.whole >> i & 1ul);
         camber_tile_take_level(c, camber_tile_level(c), i);
         for (int v = 0; v < CAMBER_VECTORS; v++) {
             const camber_real x = pixels_x(at, from, i), y = pixels_y(at, from, i, v);
@@ -26,7 +26,7 @@ static inline void fill_with_images(camber_tile_state *c, const positions *at, d
             spot.distance = spot.reach_x = spot.reach_y = CAMBER_REAL(0.0f);
 #endif
             camber_fill_image(&m, &spot, rgba);
-            camber_tile_put_colors(c, i, v, is_whole ? CAMBER_REAL(1.0f) : c->sums[i][CAMBER_AREA_HERE][v], rgba);
+            camber_tile_put_colors(c, i, v, is_whole ? CAMBER_REAL(1.0f) : c->sums[i][CAMBER_AREA_INSIDE][v], rgba);
         }
         camber_tile_count_colors(c, i, is_whole);
     }
@@ -151,7 +151,7 @@ static __attribute__((noinline)) void draw_rich(camber_tile_state *c, const posi
     t.from = from;
     begin_edge(from, &t.edge);
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE && t.edge.half_width >= CAMBER_FILL_PX) {
-        fill_with_images(c, at, from, 0, ~c->done);
+        fill_with_images(c, at, from, (camber_area_cells){.whole = ~c->done});
         return;
     }
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE)

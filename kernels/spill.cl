@@ -27,45 +27,71 @@ static inline void restore_planes(global const float *planes, camber_real *to, c
                     CAMBER_LOAD(plane_at(plane + k, i, v), planes);
 }
 
-/* The cells whose sums are more than nothing. */
-static inline ulong cells_with_sums(const camber_tile_state *c) {
-    return c->now.mode == CAMBER_BRUSH_UNION ? c->brushed : c->edged;
+/* Spills what the edges of an area change in rows of cells [first, last]. changes: two planes. behind: the words behind
+ * the planes. Edges are written by all jobs of a tile, which have the same. */
+static inline void spill_area(const camber_area_state *s, global camber_u32 *changes, global float *behind, int first,
+                              int last) {
+    global int *turns = (global int *)behind;
+    global float *placed = behind + CAMBER_TURN_WORDS * CAMBER_TILE_CELLS;
+    for (int j = first; j <= last; j++) {
+        for (int x = 0; x < CAMBER_TILE_CELLS; x++)
+            for (camber_u32 k = 0; k < 2; k++)
+                for (int v = 0; v < CAMBER_VECTORS; v++)
+                    CAMBER_STORE(s->changes[j][x][k][v], plane_at(k, CAMBER_TILE_CELLS * j + x, v), changes);
+        for (int k = 0; k < CAMBER_TURN_WORDS; k++)
+            turns[CAMBER_TURN_WORDS * j + k] = s->turns[j + k / (CAMBER_TILE_CELLS + 1)][k % (CAMBER_TILE_CELLS + 1)];
+    }
+    for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
+        for (int k = 0; k < s->placed_count && k < CAMBER_PLACED_MOST; k++)
+            placed[CAMBER_PLACED_MOST * i + k] = s->placed[i][k];
 }
 
-/* Keeps edges of an area's brush for the slices to come. All jobs of a tile have the same and write the same. Returns
- * how many are kept, more than CAMBER_KEPT_MOST if not all are. */
-static inline camber_u32 keep_edges(const camber_area_edges *edges, camber_tile_rows where, global float *kept) {
-    camber_u32 count = edges->kept_count;
-    for (camber_u32 k = 0; k < edges->count && count <= CAMBER_KEPT_MOST; k++) {
-        global const float *segment = edges->segments + CAMBER_SEGMENT_WORDS * (size_t)edges->list[k];
-        if (!camber_edge_matters(segment, where))
-            continue;
-        if (count < CAMBER_KEPT_MOST)
-            vstore4(vload4(0, segment), count, kept);
-        count++;
+static inline void restore_area(camber_area_state *s, global const camber_u32 *changes, global const float *behind,
+                                int first, int last, int placed_count, ulong edged) {
+    global const int *turns = (global const int *)behind;
+    global const float *placed = behind + CAMBER_TURN_WORDS * CAMBER_TILE_CELLS;
+    if (placed_count == 0)
+        return;
+    camber_area_begin(s);
+    s->edged = edged;
+    s->placed_count = placed_count;
+    for (int j = first; j <= last; j++) {
+        for (int x = 0; x < CAMBER_TILE_CELLS; x++)
+            for (camber_u32 k = 0; k < 2; k++)
+                for (int v = 0; v < CAMBER_VECTORS; v++)
+                    s->changes[j][x][k][v] = CAMBER_LOAD(plane_at(k, CAMBER_TILE_CELLS * j + x, v), changes);
+        for (int k = 0; k < CAMBER_TURN_WORDS; k++)
+            s->turns[j + k / (CAMBER_TILE_CELLS + 1)][k % (CAMBER_TILE_CELLS + 1)] = turns[CAMBER_TURN_WORDS * j + k];
     }
-    return count;
+    for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
+        for (int k = 0; k < placed_count && k < CAMBER_PLACED_MOST; k++)
+            s->placed[i][k] = placed[CAMBER_PLACED_MOST * i + k];
 }
 
 /* Spills the state of rows of cells [first, last]. now: the brush, and which levels are open. */
 static inline void spill_cells(camber_tile_state *c, global float *spill, camber_spill_args s, int first, int last,
-                               camber_u32 now, camber_u32 kept_count) {
+                               camber_u32 now) {
     global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global camber_u32 *rows = (global camber_u32 *)spill + CAMBER_SPILL_ROWS;
     global float *planes = spill + CAMBER_SPILL_WORDS;
-    const ulong of[CAMBER_SPILL_SETS] = {c->brushed,    c->filled,     c->done, c->touched[0],
-                                         c->touched[1], c->touched[2], c->edged};
+    const camber_u32 placed_count = c->area.has_edges ? (camber_u32)c->area.placed_count : 0u;
+    const ulong of[CAMBER_SPILL_SETS] = {c->brushed,    c->filled,     c->done,      c->touched[0],
+                                         c->touched[1], c->touched[2], c->area.edged};
     for (int j = first; j <= last; j++) {
         for (int k = 0; k < CAMBER_SPILL_SETS; k++)
             bits[CAMBER_TILE_CELLS * k + j] = (uchar)(of[k] >> (CAMBER_TILE_CELLS * j));
         vstore8(vload8((size_t)j, c->blend_count), (size_t)j, blend_count);
         rows[j] = now;
         rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] = (camber_u32)c->winding;
-        rows[j + CAMBER_SPILL_KEPT - CAMBER_SPILL_ROWS] = kept_count;
+        rows[j + CAMBER_SPILL_PLACED - CAMBER_SPILL_ROWS] = placed_count;
     }
     spill_planes(planes, c->brush[0], 0, 1, c->brushed);
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
-    spill_planes(planes, c->sums[0][0], s.sums, 3, cells_with_sums(c));
+    if (c->now.mode == CAMBER_BRUSH_UNION)
+        spill_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
+    if (placed_count)
+        spill_area(&c->area, (global camber_u32 *)planes + plane_at(s.sums, 0, 0) * CAMBER_LANES,
+                   planes + plane_at(s.behind, 0, 0) * CAMBER_LANES, first, last);
     spill_planes(planes, c->level[CAMBER_GROUP][0][0], s.group, 4, c->touched[CAMBER_GROUP]);
     spill_planes(planes, c->level[CAMBER_LAYER][0][0], s.layer, 4, c->touched[CAMBER_LAYER]);
 #if CAMBER_RASTER_RICH
@@ -77,7 +103,7 @@ static inline void spill_cells(camber_tile_state *c, global float *spill, camber
 /* Restores rows of cells [first, last]. Returns the brush that was drawn last, ~0 if none was, or CAMBER_SPILL_FULL.
  * All rows that are not full have been drawn from the same list, so they have the same brush and open levels. */
 static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill, global const camber_brush *brushes,
-                                       camber_spill_args s, int first, int last, camber_u32 *kept_count) {
+                                       camber_spill_args s, int first, int last) {
     global const uchar *bits = (global const uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global const camber_u32 *rows = (global const camber_u32 *)spill + CAMBER_SPILL_ROWS;
     global float *planes = spill + CAMBER_SPILL_WORDS;
@@ -106,13 +132,16 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
     if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
     c->now = brushes[now & CAMBER_SPILL_BRUSH];
-    c->edged = of[6];
+    int placed_count = 0;
     for (int j = first; j <= last; j++)
         if (rows[j] != CAMBER_SPILL_FULL) {
             c->winding = (int)rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
-            *kept_count = rows[j + CAMBER_SPILL_KEPT - CAMBER_SPILL_ROWS];
+            placed_count = (int)rows[j + CAMBER_SPILL_PLACED - CAMBER_SPILL_ROWS];
         }
-    restore_planes(planes, c->sums[0][0], s.sums, 3, cells_with_sums(c));
+    if (c->now.mode == CAMBER_BRUSH_UNION)
+        restore_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
+    restore_area(&c->area, (global const camber_u32 *)planes + plane_at(s.sums, 0, 0) * CAMBER_LANES,
+                 planes + plane_at(s.behind, 0, 0) * CAMBER_LANES, first, last, placed_count, of[6]);
 #if CAMBER_RASTER_RICH
     if (c->now.mode == CAMBER_BRUSH_MASKED)
         restore_planes(planes, c->mask[0], s.layer + 4, 1, c->touched[CAMBER_LAYER]);

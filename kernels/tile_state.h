@@ -13,8 +13,10 @@
 
 #ifdef CAMBER_DEVICE
 typedef uchar camber_u8;
+typedef ushort camber_u16;
 #else
 typedef uint8_t camber_u8;
+typedef uint16_t camber_u16;
 #endif
 
 /* The levels, from the bottom up. */
@@ -30,30 +32,44 @@ typedef uint8_t camber_u8;
 #define CAMBER_HAS_MASKS 0
 #endif
 
-/* A brush of areas has two sums a pixel: what the edges in its cell change there, and what all in its row change from
- * its cell on. And a cell has four: how much more often its upper and its lower side's right ends are wound around than
- * their left ends, and their left ends than the right ends of the cell before. */
+/* Areas and windings of a brush of areas are whole numbers of such parts of a pixel: sums of them have no order, and
+ * edges that run to and fro add up to nothing. */
+#define CAMBER_AREA_ONE 65536
+/* A brush of areas: how its edges change a tile (area.h). */
+typedef struct camber_area_state {
+    /* The edges of a cell change its pixels, and all edges left of a cell change it and those right of it: how much
+     * more they are wound around. The last column lies right of the tile. */
+    camber_words changes[CAMBER_TILE_CELLS][CAMBER_TILE_CELLS + 1][2][CAMBER_VECTORS];
+    /* Just below the tops of rows of cells, and the tile's lower end: how many times more the rings wind around a
+     * cell's left end, and all right of it, than around what lies left of that. */
+    int turns[CAMBER_TILE_CELLS + 1][CAMBER_TILE_CELLS + 1];
+    camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
+    int has_edges;    /* else nothing else is set */
+    int placed_count; /* more than CAMBER_PLACED_MOST: not all are here */
+    float placed[CAMBER_PLACED_WORDS][CAMBER_PLACED_MOST + CAMBER_LANES];
+} camber_area_state;
+
 #define CAMBER_AREA_HERE 0
 #define CAMBER_AREA_ON 1
-#define CAMBER_AREA_CORNERS 2
-#define CAMBER_CORNERS_HERE 0
-#define CAMBER_CORNERS_LEFT 2
+#define CAMBER_AREA_INSIDE 0
+#define CAMBER_AREA_SUM 1
 
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
     camber_real brush[CAMBER_CELLS][CAMBER_VECTORS]; /* let through */
-    /* A union's, of areas and of normals; of rings what their edges change: area.h. */
+    /* A union's, of areas and of normals. An area's: what is inside of the pixels, and the sums of their windings. */
     camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
     camber_real level[CAMBER_LEVELS][CAMBER_CELLS][4][CAMBER_VECTORS];
     camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; a bit each */
     camber_u64 done;                            /* cells in which nothing below shows */
     camber_u64 filled;                          /* cells in which no more of the same brush shows */
-    camber_u64 edged;                           /* of rings: cells of the rows of cells in which they have edges */
+    camber_u64 whole; /* cells that the brush covers and lets nothing through: of one colour */
     int is_open[CAMBER_LEVELS];
     int winding;                         /* of the brush's rings around the tile's top left corner */
     camber_u8 blend_count[CAMBER_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
+    camber_area_state area;
 #if CAMBER_HAS_MASKS
     camber_brush_ext brush_ext; /* the same brush's extension */
     float layer_alpha;          /* of a masked layer's colour, which covers as if it were opaque; else 1 */
@@ -91,7 +107,8 @@ CAMBER_FN int camber_tile_level(const camber_tile_state *c) {
 CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_GLOBAL const camber_brush *first) {
     for (int i = 0; i < CAMBER_CELLS; i++)
         c->blend_count[i] = 0;
-    c->brushed = c->filled = c->edged = 0;
+    c->brushed = c->filled = c->whole = 0;
+    c->area.has_edges = 0;
     c->winding = 0;
     for (int k = 0; k < CAMBER_LEVELS; k++) {
         c->touched[k] = 0;
@@ -154,8 +171,10 @@ CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
     const float through = c->now.mode == CAMBER_BRUSH_UNION ? 0.0f : 1.0f - c->now.a;
     for (int v = 0; v < CAMBER_VECTORS; v++)
         c->brush[i][v] *= through;
-    if (through == 0.0f)
+    if (through == 0.0f) {
         c->filled |= (camber_u64)1 << i;
+        c->whole |= c->now.mode == CAMBER_BRUSH_UNION ? 0 : (camber_u64)1 << i; /* a union's opacity comes later */
+    }
 }
 
 /* ---- Levels ---- */
@@ -227,7 +246,7 @@ CAMBER_FN void camber_tile_close_brush(camber_tile_state *c) {
         camber_tile_look(c, level, i);
     }
     c->touched[level] |= c->brushed;
-    c->brushed = c->filled = 0;
+    c->brushed = c->filled = c->whole = 0;
 }
 
 /* The area that a layer or group covers of a vector's pixels. */

@@ -28,30 +28,52 @@ static camber_status check_rings(camber_context *context, const camber_areas_des
                                i, desc->rings[i], before, desc->ring_count);
         before = desc->rings[i];
     }
+    for (size_t i = 0; desc->rows && i < (desc->rings ? desc->area_count : desc->ring_count); i++)
+        if (desc->rows[i] >= 1u << 24)
+            return camber_fail(context, CAMBER_ERROR_INPUT, "area %zu: its row %u is not below %u; merge equal rows", i,
+                               desc->rows[i], 1u << 24);
+    if (desc->point_count > UINT32_MAX - 3 * (uint64_t)desc->ring_count - 1024u || desc->ring_count > UINT32_MAX / 4)
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%zu points in %zu rings are more than 32-bit slots hold; draw them in parts",
+                           desc->point_count, desc->ring_count);
     return CAMBER_OK;
 }
 
-/* Closed rings as they are written. */
+/* Rings as they are put. */
 typedef struct ring_writer {
-    float *points;
-    uint32_t *offsets, *rows;
-    size_t point_count, ring_count;
+    camber_polylines *made;
+    size_t ring_count;
+    float *points; /* room for any ring, closed */
 } ring_writer;
 
-/* Twice the area that the points [first, end) wind around clockwise as seen. */
-static double signed_area(const float *points, size_t first, size_t end) {
-    double area = 0.0;
-    const float *a = points + 2 * (end - 1);
-    for (size_t i = first; i < end; i++) {
+/* Twice the area that points wind around clockwise as seen. Four sums, as each addition waits for the one before. */
+static double signed_area(const float *points, size_t count) {
+    double areas[4] = {0.0};
+    const float *a = points + 2 * (count - 1);
+    for (size_t i = 0; i < count; i++) {
         const float *b = points + 2 * i;
-        area += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
+        areas[i % 4] += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
         a = b;
     }
-    return area;
+    return (areas[0] + areas[1]) + (areas[2] + areas[3]);
 }
 
-static void turn_over(float *points, size_t first, size_t end) {
-    for (; first + 1 < end; first++, end--)
+/* Whether a ring runs the other way than it should. */
+static bool is_turned(const float *points, size_t count, bool is_hole) {
+    const double area = count ? signed_area(points, count) : 0.0;
+    return is_hole ? area > 0.0 : area < 0.0;
+}
+
+/* Without the last point where it is the first again. */
+static size_t count_open(const float *points, size_t count) {
+    if (count < 2)
+        return count;
+    const float *last = points + 2 * (count - 1);
+    return count - (points[0] == last[0] && points[1] == last[1]);
+}
+
+static void turn_over(float *points, size_t count) {
+    for (size_t first = 0, end = count; first + 1 < end; first++, end--)
         for (size_t k = 0; k < 2; k++) {
             const float kept = points[2 * first + k];
             points[2 * first + k] = points[2 * (end - 1) + k];
@@ -59,66 +81,61 @@ static void turn_over(float *points, size_t first, size_t end) {
         }
 }
 
-/* Writes the valid points of a ring, and the first of them again. */
-static void write_ring(ring_writer *w, const camber_areas_desc *desc, size_t ring, bool is_hole, uint32_t row) {
-    const size_t first = w->point_count;
-    w->offsets[w->ring_count] = (uint32_t)first;
-    w->rows[w->ring_count++] = row;
-    for (size_t i = desc->offsets[ring]; i < desc->offsets[ring + 1]; i++) {
-        const float *point = desc->points + 2 * i;
-        if (!camber_point_is_valid(point))
+/* Puts the valid points of a ring, and the first of them again. */
+static void put_valid(ring_writer *w, const float *points, size_t count, bool is_hole, uint32_t row) {
+    size_t valid = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!camber_point_is_valid(points + 2 * i))
             continue;
-        w->points[2 * w->point_count] = point[0];
-        w->points[2 * w->point_count++ + 1] = point[1];
+        w->points[2 * valid] = points[2 * i];
+        w->points[2 * valid++ + 1] = points[2 * i + 1];
     }
-    const size_t last = w->point_count - 1;
-    const bool is_closed = w->point_count > first + 1 && w->points[2 * first] == w->points[2 * last] &&
-                           w->points[2 * first + 1] == w->points[2 * last + 1];
-    w->point_count -= is_closed;
-    if (w->point_count == first)
-        return;
-    const double area = signed_area(w->points, first, w->point_count);
-    if (is_hole ? area > 0.0 : area < 0.0)
-        turn_over(w->points, first, w->point_count);
-    w->points[2 * w->point_count] = w->points[2 * first];
-    w->points[2 * w->point_count + 1] = w->points[2 * first + 1];
-    w->point_count++;
+    valid = count_open(w->points, valid);
+    if (is_turned(w->points, valid, is_hole))
+        turn_over(w->points, valid);
+    w->points[2 * valid] = w->points[0];
+    w->points[2 * valid + 1] = w->points[1];
+    camber_polylines_put_closed(w->made, w->ring_count, w->points, valid ? valid + 1 : 0, row);
 }
 
-static void write_areas(ring_writer *w, const camber_areas_desc *desc) {
+static void put_ring(ring_writer *w, const camber_areas_desc *desc, size_t ring, bool is_hole, uint32_t row) {
+    const float *points = desc->points + 2 * (size_t)desc->offsets[ring];
+    const size_t count = desc->offsets[ring + 1] - desc->offsets[ring], open = count_open(points, count);
+    const bool turned = is_turned(points, open, is_hole);
+    if (!camber_polylines_put_ring(w->made, w->ring_count, points, open, turned, row))
+        put_valid(w, points, count, is_hole, row);
+    w->ring_count++;
+}
+
+static void put_areas(ring_writer *w, const camber_areas_desc *desc) {
     const size_t count = desc->rings ? desc->area_count : desc->ring_count;
     for (size_t i = 0; i < count; i++) {
         const size_t first = desc->rings ? desc->rings[i] : i, end = desc->rings ? desc->rings[i + 1] : i + 1;
         for (size_t ring = first; ring < end; ring++)
-            write_ring(w, desc, ring, ring > first, desc->rows ? desc->rows[i] : 0);
+            put_ring(w, desc, ring, ring > first, desc->rows ? desc->rows[i] : 0);
     }
-    w->offsets[w->ring_count] = (uint32_t)w->point_count;
+}
+
+static size_t longest_ring(const camber_areas_desc *desc) {
+    size_t most = 0;
+    for (size_t i = 0; i < desc->ring_count; i++)
+        most = desc->offsets[i + 1] - desc->offsets[i] > most ? desc->offsets[i + 1] - desc->offsets[i] : most;
+    return most;
 }
 
 camber_status camber_areas_create(camber_context *context, const camber_areas_desc *desc, camber_polylines **areas) {
     camber_status status = check_rings(context, desc);
     if (status != CAMBER_OK)
         return status;
-    if (desc->point_count + desc->ring_count > UINT32_MAX)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points in %zu rings are more than 32-bit offsets hold",
-                           desc->point_count, desc->ring_count);
-    ring_writer w = {
-        .points = camber_alloc(context, desc->point_count + desc->ring_count, 2 * sizeof *w.points),
-        .offsets = camber_alloc(context, desc->ring_count + 1, sizeof *w.offsets),
-        .rows = camber_alloc(context, desc->ring_count, sizeof *w.rows),
-    };
-    status = w.points && w.offsets && w.rows ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    ring_writer w = {.points = camber_alloc(context, longest_ring(desc) + 1, 2 * sizeof *w.points)};
+    status = w.points
+                 ? camber_polylines_begin(context, desc->point_count + 3 * desc->ring_count, desc->ring_count, &w.made)
+                 : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK) {
-        write_areas(&w, desc);
-        const camber_polylines_desc rings = {.points = w.points,
-                                             .point_count = w.point_count,
-                                             .offsets = w.offsets,
-                                             .polyline_count = w.ring_count,
-                                             .rows = w.rows};
-        status = camber_polylines_create(context, &rings, areas);
+        put_areas(&w, desc);
+        camber_polylines_end(w.made);
+        *areas = w.made;
     }
-    camber_free(context, w.rows);
-    camber_free(context, w.offsets);
     camber_free(context, w.points);
     return status;
 }

@@ -106,18 +106,17 @@ static void put_stretch(camber_polylines *p, const float *points, size_t count, 
     p->stats.rings++;
 }
 
-static uint32_t set_row(camber_polylines *p, const camber_polylines_desc *desc, size_t polyline) {
-    const uint32_t row = desc->rows ? desc->rows[polyline] : 0;
+static void set_row(camber_polylines *p, size_t polyline, uint32_t row) {
     p->first_slots[polyline] = (uint32_t)p->slot_count;
     p->polyline_rows[polyline] = row;
     p->row_count = row + 1 > p->row_count ? row + 1 : p->row_count;
-    return row;
 }
 
 static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc, size_t polyline) {
     const float *points = desc->points + 2 * (size_t)desc->offsets[polyline];
     const size_t count = desc->offsets[polyline + 1] - desc->offsets[polyline];
-    const uint32_t row = set_row(p, desc, polyline);
+    const uint32_t row = desc->rows ? desc->rows[polyline] : 0;
+    set_row(p, polyline, row);
     p->stats.empty_polylines += count == 0;
     size_t first = 0;
     for (size_t i = 0; i <= count; i++) {
@@ -128,6 +127,15 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
         p->stats.invalid_points += i < count;
         first = i + 1;
     }
+}
+
+void camber_polylines_put_closed(camber_polylines *p, size_t polyline, const float *points, size_t count,
+                                 uint32_t row) {
+    set_row(p, polyline, row);
+    p->stats.points += count;
+    p->stats.empty_polylines += count == 0;
+    if (count > 0)
+        put_stretch(p, points, count, row, true);
 }
 
 /* ---- Bundles of open polylines ---- */
@@ -145,13 +153,9 @@ static size_t find_bundle_end(const camber_polylines_desc *desc, size_t first) {
     return end;
 }
 
-/* Puts the coordinates of points. Gives how many repeat the one before; SIZE_MAX where one is invalid. */
-static size_t put_coordinates(const float *restrict points, size_t count, float *restrict x, float *restrict y) {
+/* How many of points that were put repeat the one before; SIZE_MAX where one is invalid. */
+static size_t count_repeated(const float *x, const float *y, size_t count) {
     uint32_t invalid = 0, repeated = 0;
-    for (size_t i = 0; i < count; i++) {
-        x[i] = points[2 * i];
-        y[i] = points[2 * i + 1];
-    }
     for (size_t i = 0; i < count; i++)
         invalid |= !(fabsf(x[i]) <= CAMBER_FARTHEST_PX) | !(fabsf(y[i]) <= CAMBER_FARTHEST_PX);
     for (size_t i = 1; i < count; i++) {
@@ -159,6 +163,19 @@ static size_t put_coordinates(const float *restrict points, size_t count, float 
         repeated += dx * dx + dy * dy <= REPEATED_PX2;
     }
     return invalid ? SIZE_MAX : repeated;
+}
+
+/* Puts the coordinates of points, from the last to the first where they are turned. */
+static void put_coordinates(const float *restrict points, size_t count, bool turned, float *restrict x,
+                            float *restrict y) {
+    for (size_t i = 0; i < count && !turned; i++) {
+        x[i] = points[2 * i];
+        y[i] = points[2 * i + 1];
+    }
+    for (size_t i = 0; i < count && turned; i++) {
+        x[i] = points[2 * (count - 1 - i)];
+        y[i] = points[2 * (count - 1 - i) + 1];
+    }
 }
 
 /* How many polylines but the first begin where the one before ends. */
@@ -174,7 +191,8 @@ static size_t count_joined(const camber_polylines_desc *desc, size_t first, size
 /* Puts the polylines [first, end). false: a point is invalid, or repeats the one before it in its polyline. */
 static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, size_t first, size_t end) {
     const size_t from = desc->offsets[first], count = desc->offsets[end] - from, slot = p->slot_count + 1;
-    const size_t repeated = put_coordinates(desc->points + 2 * from, count, p->x + slot, p->y + slot);
+    put_coordinates(desc->points + 2 * from, count, false, p->x + slot, p->y + slot);
+    const size_t repeated = count_repeated(p->x + slot, p->y + slot, count);
     if (repeated > 0 && repeated != count_joined(desc, first, end))
         return false;
     const uint32_t row = desc->rows ? desc->rows[first] : 0;
@@ -182,7 +200,7 @@ static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, s
         p->info[slot + i] = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
     for (size_t i = first; i < end; i++) {
         const size_t points = desc->offsets[i + 1] - desc->offsets[i];
-        set_row(p, desc, i);
+        set_row(p, i, row);
         p->info[p->slot_count + 1] |= CAMBER_POINT_FIRST;
         p->slot_count += points;
         p->info[p->slot_count] |= CAMBER_POINT_LAST;
@@ -190,6 +208,33 @@ static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, s
     }
     p->stats.kept_points += count;
     p->stats.kept_segments += count - (end - first);
+    return true;
+}
+
+bool camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float *points, size_t count, bool turned,
+                               uint32_t row) {
+    const size_t sentinel = p->slot_count + 1, first = sentinel + 1, end = first + count;
+    float *x = p->x, *y = p->y;
+    put_coordinates(points, count, turned, x + first, y + first);
+    x[end] = x[first];
+    y[end] = y[first];
+    if (count < 3 || count_repeated(x + first, y + first, count + 1) > 0)
+        return false;
+    x[sentinel] = x[end - 1];
+    y[sentinel] = y[end - 1];
+    x[end + 1] = x[first + 1];
+    y[end + 1] = y[first + 1];
+    for (size_t i = first; i <= end; i++)
+        p->info[i] = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
+    p->info[sentinel] = p->info[end + 1] = 0;
+    p->info[first] |= CAMBER_POINT_FIRST | CAMBER_POINT_RING;
+    p->info[end] |= CAMBER_POINT_LAST | CAMBER_POINT_RING;
+    set_row(p, polyline, row);
+    p->slot_count += count + 3;
+    p->stats.points += count + 1;
+    p->stats.kept_points += count + 1;
+    p->stats.kept_segments += count;
+    p->stats.rings++;
     return true;
 }
 
@@ -229,33 +274,45 @@ static bool reserve(camber_polylines *p, size_t slots) {
     return true;
 }
 
-camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
-                                      camber_polylines **polylines) {
-    camber_status status = check_desc(context, desc);
-    if (status != CAMBER_OK)
-        return status;
+camber_status camber_polylines_begin(camber_context *context, size_t slots, size_t polyline_count,
+                                     camber_polylines **polylines) {
     camber_polylines *p = camber_alloc_zero(context, 1, sizeof *p);
     if (!p)
         return CAMBER_ERROR_MEMORY;
     p->context = context;
     p->serial = context->next_serial++;
-    p->polyline_count = desc->polyline_count;
-    p->stats.polylines = desc->polyline_count;
-    p->stats.points = desc->point_count;
-    size_t rings = 0;
-    for (size_t i = 0; i < desc->polyline_count; i++)
-        rings += desc->offsets[i + 1] - desc->offsets[i] > 2;
-    const size_t slots = desc->point_count + 2 * (desc->keep_open ? 0 : rings) + 2 + CAMBER_BLOCK;
-    if (!reserve(p, slots)) {
+    p->polyline_count = polyline_count;
+    p->stats.polylines = polyline_count;
+    if (!reserve(p, slots + 2 + CAMBER_BLOCK)) {
         camber_polylines_destroy(p);
         return CAMBER_ERROR_MEMORY;
     }
     p->x[0] = p->y[0] = 0;
     p->info[0] = 0;
-    put_polylines(p, desc);
-    p->first_slots[desc->polyline_count] = (uint32_t)p->slot_count;
-    put_padding(p);
     *polylines = p;
+    return CAMBER_OK;
+}
+
+void camber_polylines_end(camber_polylines *p) {
+    p->first_slots[p->polyline_count] = (uint32_t)p->slot_count;
+    put_padding(p);
+}
+
+camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
+                                      camber_polylines **polylines) {
+    camber_status status = check_desc(context, desc);
+    if (status != CAMBER_OK)
+        return status;
+    size_t rings = 0;
+    for (size_t i = 0; i < desc->polyline_count; i++)
+        rings += desc->offsets[i + 1] - desc->offsets[i] > 2;
+    status = camber_polylines_begin(context, desc->point_count + 2 * (desc->keep_open ? 0 : rings),
+                                    desc->polyline_count, polylines);
+    if (status != CAMBER_OK)
+        return status;
+    (*polylines)->stats.points = desc->point_count;
+    put_polylines(*polylines, desc);
+    camber_polylines_end(*polylines);
     return CAMBER_OK;
 }
 

@@ -13,8 +13,9 @@
 #include <string.h>
 
 /* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A tile with more segments
- * than HEAVY is drawn by as many work-items as it has rows of cells. */
-enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
+ * than HEAVY, and with more than one in SHARES of what each of the device's processors draws, is drawn by as many
+ * work-items as it has rows of cells: each walks the whole list, but none is waited for in the end. */
+enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
@@ -214,7 +215,8 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
 }
 
 static bool is_heavy(const camber_raster *raster, size_t tile) {
-    return raster->starts[tile + 1] - raster->starts[tile] > HEAVY;
+    const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
+    return count > HEAVY && SHARES * units * count > raster->starts[raster->tile_count];
 }
 
 /* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. */
@@ -243,8 +245,8 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
     return camber_raster_put(raster, BUFFER_JOBS, raster->jobs, 2 * count * sizeof *raster->jobs);
 }
 
-/* Lays out the planes of a spill: five for the brush and the picture, three for unions and areas, four for the group
- * and for the layer, one for masks, and four for the edges of areas. */
+/* Lays out the planes of a spill: five for the brush and the picture, three for unions or two for areas, four for the
+ * group and for the layer, and one for masks. */
 static camber_spill_args plan_spill(const camber_raster_scene *scene) {
     bool unions = false, areas = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
@@ -255,10 +257,10 @@ static camber_spill_args plan_spill(const camber_raster_scene *scene) {
         masks = masks || scene->brushes[i].mode == CAMBER_BRUSH_MASKED;
     }
     camber_spill_args k = {.sums = 5};
-    k.group = k.sums + (unions || areas ? 3 : 0);
+    k.group = k.sums + (unions ? 3 : areas ? 2 : 0);
     k.layer = k.group + (groups ? 4 : 0);
-    k.kept = k.layer + (layers ? 4 : 0) + (masks ? 1 : 0);
-    k.tile_words = CAMBER_SPILL_WORDS + k.kept * PLANE_WORDS + (areas ? CAMBER_KEPT_MOST * CAMBER_KEPT_WORDS : 0);
+    k.behind = k.layer + (layers ? 4 : 0) + (masks ? 1 : 0);
+    k.tile_words = CAMBER_SPILL_WORDS + k.behind * PLANE_WORDS + (areas ? CAMBER_AREA_WORDS : 0);
     return k;
 }
 

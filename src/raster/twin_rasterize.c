@@ -210,7 +210,8 @@ static void draw_cells(camber_tile_state *c, const float *segment, const drawn_s
 static void draw_segment(camber_tile_state *c, const camber_twin *t, uint32_t which, camber_tile_rows where) {
     const camber_raster_stages *stages = t->stages;
     const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * which;
-    const float *arc_length = stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)which;
+    const float *arc_length =
+        stages->arc_lengths ? stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)which : NULL;
     const camber_u32 flags = CAMBER_BITS(segment[CAMBER_SEGMENT_FLAGS]);
     drawn_segment by = {.extras = {0}, .eye = {0, 0, 0, 0}};
 #if CAMBER_STROKE_PITCHED
@@ -258,7 +259,6 @@ typedef struct drawn_tile {
     const camber_twin *twin;
     camber_tile_state *state;
     camber_crossings_left crossings; /* those of its row that are left */
-    camber_area_edges edges;         /* of an area that is drawn now */
     camber_tile_rows where;
     uint32_t column;
 } drawn_tile;
@@ -269,8 +269,7 @@ static void add_edge(camber_tile_state *c, const float *segment, camber_tile_row
     camber_ring_edges_of(segment[CAMBER_SEGMENT_AX], segment[CAMBER_SEGMENT_AY], segment[CAMBER_SEGMENT_BX],
                          segment[CAMBER_SEGMENT_BY], &e);
     camber_tile_edges_of(&e, 1, where, &t);
-    camber_area_add_edge(c, &t, 0, where);
-    camber_area_cross_rows(c, &t, 0, where);
+    camber_area_add(&c->area, &t, 1, where);
 }
 
 /* Draws the area whose edges have been added. */
@@ -281,11 +280,11 @@ static void end_area(const drawn_tile *d) {
     if (!camber_brush_is_area(&c->now))
         return;
     if (!(c->brush_ext.features & CAMBER_FEATURE_IMAGE)) {
-        camber_area_draw(c, d->where, &d->edges);
+        camber_area_draw(c, d->where);
         return;
     }
-    camber_u64 whole;
-    const camber_u64 cells = camber_area_find(c, d->where, &d->edges, &whole);
+    camber_area_cells found;
+    camber_area_find(c, d->where, &found);
 #if CAMBER_STROKE_PITCHED
     by.eye = scene->eye;
 #endif
@@ -293,9 +292,9 @@ static void end_area(const drawn_tile *d) {
     for (int i = 0; i < CAMBER_CELLS; i++) {
         const float x = d->where.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)),
                     y = d->where.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS));
-        if ((cells | whole) >> i & 1)
+        if ((found.partial | found.whole) >> i & 1)
             put_images(c, &by, (cell_place){i, x - by.eye.x, y - by.eye.y},
-                       whole >> i & 1 ? NULL : c->sums[i][CAMBER_AREA_HERE]);
+                       found.whole >> i & 1 ? NULL : c->sums[i][CAMBER_AREA_INSIDE]);
     }
 }
 
@@ -303,7 +302,6 @@ static void change_brush(drawn_tile *d, camber_u32 brush) {
     static const camber_brush_ext none = {0};
     const camber_raster_scene *scene = d->twin->scene;
     end_area(d);
-    d->edges.count = 0;
     camber_tile_change_brush(d->state, scene->brushes[brush]);
     camber_tile_use_ext(d->state, scene->brush_ext ? scene->brush_ext[brush] : none);
 }
@@ -329,7 +327,6 @@ static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
                                   (float)t->area->y + (float)(row * CAMBER_TILE_PX), 0, CAMBER_TILE_CELLS - 1};
     d->crossings.end = crossing_count;
     d->crossings.column = d->column;
-    d->edges = (camber_area_edges){.segments = stages->segments};
     camber_tile_begin(c, ~(camber_u64)0, t->scene->brushes);
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
         const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * stages->lists[k];
@@ -340,8 +337,6 @@ static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
             c->winding = camber_take_winding(&d->crossings, brush);
         }
         current = brush;
-        d->edges.list = stages->lists + k;
-        d->edges.count++;
         if (camber_brush_is_area(&c->now))
             add_edge(c, segment, d->where);
         else

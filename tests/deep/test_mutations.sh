@@ -259,8 +259,12 @@ mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 
 mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area * (1.0 - area)), area, area)' \
     'area * (1.0 - area)), 0.0, area)'
 mutant strip kernels/area.h "areas: edges through a tile's left side" 't->turn = enters ? -e->down' 't->turn = enters ? 0.0f * e->down'
-mutant strip kernels/area.h "areas: pixels that an edge enters" 'e->rise * (to - from) * (to + from)' '0.0f * e->rise * (to - from)'
-mutant strip kernels/area_inside.h "areas: holes that fill" 'CAMBER_FABS(sum)' 'CAMBER_FABS(sum) + 1.0f'
+mutant strip kernels/area.h "areas: pixels that an edge enters" 'rise * inner * inner' '0.0f * rise * inner'
+mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : sum' \
+    'CAMBER_AREA_ONE + (sum < 0 ? -sum : sum)'
+mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
+    'of.least < -9'
+mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
 mutant strip kernels/union.h "united lines: every two edges face alike" 'weight = CAMBER_FABS(cosine)' 'weight = one'

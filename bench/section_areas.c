@@ -87,9 +87,10 @@ static void report(const trial *t, json_t *result) {
 
 static camber_status measure_scene(bench *b, const bench_scene *scene, json_t *result) {
     trial t = {.b = b, .scene = scene, .truth = malloc(PIXELS * sizeof *t.truth)};
-    camber_status status = t.truth && camber_oracle_fill(&scene->lines, false, BENCH_SIDE_PX, BENCH_SIDE_PX, t.truth)
-                               ? CAMBER_OK
-                               : CAMBER_ERROR_MEMORY;
+    camber_status status =
+        t.truth && camber_oracle_fill(&scene->lines, CAMBER_ORACLE_NONZERO, BENCH_SIDE_PX, BENCH_SIDE_PX, t.truth)
+            ? CAMBER_OK
+            : CAMBER_ERROR_MEMORY;
     /* In turn, so that a machine whose speed drifts is fair to all. */
     for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
         status = draw_ours(&t, run >= b->warm_ups);

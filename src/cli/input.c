@@ -252,8 +252,6 @@ static int open_map(camber_input *input) {
     const double start_ms = camber_clock_ms();
     bool done = false;
     int status = open_style(input);
-    if (status == CAMBER_EXIT_DONE && session->options->verb == CAMBER_VERB_VALIDATE)
-        camber_style_leave_out_areas(input->style);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         take_view(input);
     if (status == CAMBER_EXIT_DONE && session->opens_beside)
@@ -281,6 +279,26 @@ static int open_map(camber_input *input) {
     return CAMBER_EXIT_DONE;
 }
 
+static bool has_areas(camber_scene *scene) {
+    const camber_frame frame = camber_scene_get_frame(scene, NULL);
+    for (size_t i = 0; i < frame.pass_count; i++)
+        for (size_t k = 0; k < frame.passes[i].paint_count; k++)
+            if (frame.passes[i].paints[k].fill)
+                return true;
+    return false;
+}
+
+/* Lines are checked as lines alone, and areas with all that is drawn. */
+static camber_status project_validated(camber_input *input, camber_scene_desc desc) {
+    const camber_status status = camber_scene_create(input->features, &desc, &input->scene);
+    if (status != CAMBER_OK || !has_areas(input->scene))
+        return status;
+    input->filled = input->scene;
+    input->scene = NULL;
+    desc.lines_only = true;
+    return camber_scene_create(input->features, &desc, &input->scene);
+}
+
 static camber_status project_map(camber_input *input) {
     if (input->scene)
         return camber_scene_move(input->scene, &input->view);
@@ -291,6 +309,8 @@ static camber_status project_map(camber_input *input) {
                                     .still = once,
                                     .spent = once ? input->features : NULL,
                                     .lines_only = input->session->options->verb == CAMBER_VERB_TESSELLATE};
+    if (input->session->options->verb == CAMBER_VERB_VALIDATE)
+        return project_validated(input, desc);
     camber_status status = camber_scene_create(input->features, &desc, &input->scene);
     if (status != CAMBER_OK || !once)
         return status;
@@ -319,6 +339,7 @@ void camber_input_close(camber_input *input) {
         return;
 #ifdef CAMBER_MAP
     camber_scene_destroy(input->scene);
+    camber_scene_destroy(input->filled);
     camber_features_destroy(input->features);
     camber_style_destroy(input->style);
 #endif

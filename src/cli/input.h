@@ -24,6 +24,7 @@ typedef struct camber_input {
     const char *base_path; /* the style's paths are relative to its folder. NULL: to the working folder */
     camber_features *features;
     camber_scene *scene;
+    camber_scene *filled; /* validate: with areas, where there are any; scene is without them then. NULL: none */
     camber_polylines_stats drawn; /* render: of the lines in the picture, which are released once they are counted */
 } camber_input;
 

@@ -76,6 +76,18 @@ static camber_validation_input input_of(run *r) {
     camber_subject *s = &made.subject;
     s->strokes = s->drawn_strokes = camber_input_strokes(input, &s->stroke_count);
     made.network = camber_input_network(input, &made.camera, &made.strokes);
+#ifdef CAMBER_MAP
+    if (input->filled) {
+        made.frame = camber_scene_get_frame(input->filled, NULL);
+        made.map = (camber_subject){.name = s->name,
+                                    .lines = *camber_scene_get_lines(input->filled),
+                                    .rows = camber_scene_get_rows(input->filled),
+                                    .polylines = camber_scene_get_polylines(input->filled),
+                                    .width = made.frame.width,
+                                    .height = made.frame.height};
+        made.map.strokes = made.map.drawn_strokes = camber_scene_get_strokes(input->filled, &made.map.stroke_count);
+    }
+#endif
     return made;
 }
 
@@ -83,7 +95,7 @@ static int open_input(camber_input *input, camber_session *session) {
     int status = camber_input_open(input, session);
     if (status == CAMBER_EXIT_DONE)
         status = camber_input_project(input);
-    if (status == CAMBER_EXIT_DONE)
+    if (status == CAMBER_EXIT_DONE && !input->filled)
         camber_input_warn_empty(input, "nothing is checked");
     return status;
 }

@@ -337,12 +337,14 @@ camber_status camber_triangulator_add(camber_triangulator *t, const float *point
         add_point(t, &made,
                   (camber_corner){(int32_t)floor((double)at[2 * i] * window->units + 0.5),
                                   (int32_t)floor((double)at[2 * i + 1] * window->units + 0.5)});
+    if (t->failed)
+        return forget(t, CAMBER_ERROR_MEMORY);
     close_ring(t, &made);
     if (made.count < 3) {
         t->corner_count = made.first;
-        return t->failed ? forget(t, CAMBER_ERROR_MEMORY) : CAMBER_OK;
+        return CAMBER_OK;
     }
-    if (t->failed || !camber_grow(t->context, &t->rings, &t->ring_capacity, t->ring_count + 1, sizeof *t->rings))
+    if (!camber_grow(t->context, &t->rings, &t->ring_capacity, t->ring_count + 1, sizeof *t->rings))
         return forget(t, CAMBER_ERROR_MEMORY);
     measure(t, &made);
     made.group = (uint32_t)t->ring_count;
@@ -665,6 +667,9 @@ static camber_status merge_corners(camber_triangulator *t) {
 camber_status camber_triangulator_fill(camber_triangulator *t, camber_triangles *triangles) {
     camber_status status = CAMBER_OK;
     t->index_count = 0;
+    *triangles = (camber_triangles){0};
+    if (t->ring_count == 0)
+        return forget(t, status);
     if (!camber_grow(t->context, &t->sides, &t->side_capacity, t->ring_count, sizeof *t->sides) ||
         !camber_grow(t->context, &t->ears, &t->ear_capacity, MOST_COMPARED, sizeof *t->ears))
         status = CAMBER_ERROR_MEMORY;

@@ -162,22 +162,46 @@ static bool stages_differ(const camber_drawing_stages *got, const camber_drawing
 
 /* ---- The check ---- */
 
-static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_drawing_path *path,
-                             int variant, camber_check *check) {
+static camber_status compare_frame(camber_renderer *renderer, const camber_frame *frame, camber_check *check) {
     camber_drawing_stages got = {0}, expected = {0};
-    drawn d;
-    if (!make_frame(s, v->desc, path->mesh, variant, &d))
-        return CAMBER_ERROR_MEMORY;
-    camber_status status = camber_renderer_read_stages(path->renderer, &d.frame, &got);
+    camber_status status = camber_renderer_read_stages(renderer, frame, &got);
     if (status == CAMBER_OK)
-        status = camber_drawing_stages_rasterize(path->renderer, &d.frame, &expected);
+        status = camber_drawing_stages_rasterize(renderer, frame, &expected);
     if (status == CAMBER_OK && stages_differ(&got, &expected, &check->finding))
         check->result = CAMBER_RESULT_FAILED;
     camber_drawing_stages_destroy(&got);
     camber_drawing_stages_destroy(&expected);
+    return status;
+}
+
+static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_drawing_path *path,
+                             int variant, camber_check *check) {
+    drawn d;
+    if (!make_frame(s, v->desc, path->mesh, variant, &d))
+        return CAMBER_ERROR_MEMORY;
+    const camber_status status = compare_frame(path->renderer, &d.frame, check);
     free(d.paints);
     return status;
 }
+
+static bool is_long(const camber_mesh *mesh) {
+    return camber_mesh_get_info(mesh).record_count > RECORDS_MAX;
+}
+
+/* Takes a check that was made. What is drawn in slices has no stages to compare, and is skipped. */
+static camber_status end_check(camber_validation *v, camber_check *check, camber_status status) {
+    char reason[sizeof check->reason];
+    if (status == CAMBER_ERROR_LIMIT) {
+        v->desc->host.take_message(v->desc->host.user, reason, sizeof reason);
+        camber_results_skip(&v->results, *check, reason);
+        return CAMBER_OK;
+    }
+    if (status == CAMBER_OK)
+        camber_results_add(&v->results, check);
+    return status;
+}
+
+static const char too_long[] = "there are more than a million points, which take the twin minutes";
 
 /* Kernels that draw: with the device's own vectors, or with those of the other width. */
 typedef struct kernels {
@@ -197,16 +221,13 @@ static camber_status check_method(camber_validation *v, const camber_subject *s,
         return CAMBER_OK;
     }
     camber_status made = camber_subject_tessellate(s, on->path.mesh, &desc);
-    if (made == CAMBER_OK && camber_mesh_get_info(on->path.mesh).record_count > RECORDS_MAX) {
-        camber_results_skip(&v->results, check, "there are more than a million points, which take the twin minutes");
+    if (made == CAMBER_OK && is_long(on->path.mesh)) {
+        camber_results_skip(&v->results, check, too_long);
         return CAMBER_OK;
     }
     if (made == CAMBER_OK)
         made = compare(v, s, &on->path, on->variant, &check);
-    const camber_status status = made;
-    if (status == CAMBER_OK)
-        camber_results_add(&v->results, &check);
-    return status;
+    return end_check(v, &check, made);
 }
 
 static camber_status check_methods(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
@@ -246,6 +267,50 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
                 status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
             for (size_t n = 0; n < CAMBER_CHECKED_GROUPS && status == CAMBER_OK && v->desc->full; n++)
                 status = check_lanes(v, s, checked, drawer->name, n);
+        }
+    return status;
+}
+
+/* ---- A frame as it is ---- */
+
+static camber_status check_frame_on(camber_validation *v, const camber_subject *s, const camber_frame *frame,
+                                    const camber_checked_device *checked, const camber_checked_drawer *drawer) {
+    const camber_tessellation_desc desc = {s->strokes, s->stroke_count, CAMBER_METHOD_STRIP, 0, false};
+    const camber_drawing_path *path = drawer->paths;
+    camber_check check =
+        camber_check_start(checked->name, drawer->name,
+                           "%s: as styled, areas and lines: drawn as by the CPU twin, on %s", s->name, checked->name);
+    camber_frame part = *frame;
+    part.width = frame->width < SIDE_PX ? frame->width : SIDE_PX;
+    part.height = frame->height < SIDE_PX ? frame->height : SIDE_PX;
+    part.coverage = (camber_coverage)v->desc->coverage;
+    if (checked->broken[CAMBER_METHOD_STRIP]) {
+        camber_results_skip(&v->results, check, "the mesh is not the CPU twin's");
+        return CAMBER_OK;
+    }
+    camber_pass *passes = malloc(frame->pass_count * sizeof *passes);
+    camber_status status = passes ? camber_subject_tessellate(s, path->mesh, &desc) : CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < frame->pass_count && passes; i++) {
+        passes[i] = frame->passes[i];
+        passes[i].mesh = path->mesh;
+    }
+    part.passes = passes;
+    if (status == CAMBER_OK && is_long(path->mesh)) {
+        camber_results_skip(&v->results, check, too_long);
+    } else if (status == CAMBER_OK) {
+        status = end_check(v, &check, compare_frame(path->renderer, &part, &check));
+    }
+    free(passes);
+    return status;
+}
+
+camber_status camber_check_frame(camber_validation *v, const camber_subject *s, const camber_frame *frame) {
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < v->devices.count; r++)
+        for (size_t e = 0; e < v->devices.list[r].drawer_count && status == CAMBER_OK; e++) {
+            const camber_checked_device *checked = v->devices.list + r;
+            if (!checked->drawers[e].in_gl)
+                status = check_frame_on(v, s, frame, checked, checked->drawers + e);
         }
     return status;
 }

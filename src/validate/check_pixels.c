@@ -39,7 +39,8 @@ static camber_drawing drawing_of(const job *j, camber_overlap overlap) {
                             .width = j->s->width,
                             .height = j->s->height,
                             .coverage = coverage_of(j),
-                            .overlap = overlap};
+                            .overlap = overlap,
+                            .fills = j->s->fills};
 }
 
 static camber_status draw(const job *j, const camber_drawing_path *path, const camber_drawing *drawing,
@@ -59,7 +60,8 @@ static camber_status check_truth(job *j, camber_check *check, camber_truth_kind 
         return status;
     }
     check->has_error = true;
-    check->most = kind == CAMBER_TRUTH_OVER ? j->bounds : camber_bounds_of_united(j->s->scene, j->bounds);
+    check->most =
+        kind == CAMBER_TRUTH_OVER || j->s->fills ? j->bounds : camber_bounds_of_united(j->s->scene, j->bounds);
     camber_samples_compare(&j->samples, kind, levels, j->s->width, &check->error, &worst);
     if (!j->s->scene)
         check->most = camber_bounds_of_few(check->most, &check->error);
@@ -265,10 +267,11 @@ static camber_status check_drawn(job *j, size_t which) {
     const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_FLATTEN);
     camber_status status = draw(j, &drawer->paths[0], &drawing, j->own);
     if (status == CAMBER_OK)
-        status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
-    if (status == CAMBER_OK && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
+        status = check_truth(j, &check, j->s->fills ? CAMBER_TRUTH_UNION : CAMBER_TRUTH_OVER, j->own);
+    const bool unites = j->desc.method == CAMBER_METHOD_STRIP && !j->s->network && !j->s->fills;
+    if (status == CAMBER_OK && unites)
         status = check_united(j, drawer);
-    if (status == CAMBER_OK && j->desc.method == CAMBER_METHOD_STRIP && j->is_shared)
+    if (status == CAMBER_OK && unites && j->is_shared)
         status = check_translucent(j, drawer);
     const bool counts = drawer->in_gl && j->desc.method != CAMBER_METHOD_FAN;
     if (status == CAMBER_OK && j->is_drawn_once && counts)
@@ -336,7 +339,7 @@ static camber_status find_bounds(job *j) {
     const double joins = (double)(twin.info.joins ? twin.info.joins : 1);
     const double share = (double)(twin.info.tight_joins + twin.info.split_joins) / joins;
     camber_mesh_data_destroy(&twin);
-    camber_bounds_of_pixels(j->s->scene, share, coverage_of(j), &j->bounds);
+    camber_bounds_of_pixels(j->s->fills ? "areas" : j->s->scene, share, coverage_of(j), &j->bounds);
     if (j->s->network && j->s->camera.simplify_px > 0)
         j->bounds = camber_bounds_of_simplified(j->bounds);
     return status;
@@ -352,7 +355,7 @@ static camber_status check_number(job *j, size_t number) {
     j->is_drawn_once = styled && strcmp(s->scene, CAMBER_SCENE_DRAWN_ONCE) == 0;
     j->is_shared = number == 0 && !s->network;
     if (!styled)
-        snprintf(j->style, sizeof j->style, "as styled");
+        snprintf(j->style, sizeof j->style, s->fills ? "filled" : "as styled");
     else
         snprintf(j->style, sizeof j->style, "%s joins, %s caps", camber_join_name(styles[number].join),
                  camber_cap_name(styles[number].cap));

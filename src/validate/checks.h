@@ -31,6 +31,12 @@ camber_status camber_check_networks(camber_validation *validation, const camber_
 camber_status camber_check_pixels(camber_validation *validation, const camber_subject *subject);
 /* The kernels that draw against their twin. */
 camber_status camber_check_drawing(camber_validation *validation, const camber_subject *subject);
+/* The same of a frame: its passes draw the subject. */
+camber_status camber_check_frame(camber_validation *validation, const camber_subject *subject,
+                                 const camber_frame *frame);
+/* The areas of a frame, whose passes draw the subject: the frame as it is, and the pixels of each layer of areas. */
+camber_status camber_check_areas(camber_validation *validation, const camber_subject *subject,
+                                 const camber_frame *frame);
 /* The CPU twin's lines beside others: how far they lie from these. */
 camber_status camber_check_offsets(camber_validation *validation);
 /* Gaps, blurs, dashes, trims and ramps, on lines of its own. */
@@ -78,8 +84,8 @@ camber_status camber_failure_image_of_mesh(camber_validation *validation, const 
 
 /* ---- Bounds: pixel_bounds.c ---- */
 
-/* The bounds of a made-up scene, of "a segment", or of a user's lines (NULL), a share of whose joins is tight or split.
- * false: it is not drawn. */
+/* The bounds of a made-up scene, of "a segment", of "areas", or of a user's lines (NULL), a share of whose joins is
+ * tight or split. false: it is not drawn. */
 bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_coverage coverage,
                              camber_pixel_bounds *bounds);
 /* The same for lines that are united, from those of lines that are drawn one over the other. */

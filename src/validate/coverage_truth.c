@@ -1,3 +1,5 @@
+/* The truth of a window, pixel by pixel: each line by the oracle, united with the others or laid over them; or what all
+ * lines wind around. */
 #include "validate/coverage_truth.h"
 
 #include <math.h>
@@ -83,13 +85,35 @@ static bool draw_line(canvas *c, size_t line) {
     return drawn;
 }
 
+/* The inside of the lines, in the window's own pixels: near it the moved points are exact. */
+static bool fill_window(const camber_truth_desc *desc, camber_window window, float *coverage) {
+    const camber_lines *lines = desc->lines;
+    const bool sums = desc->kind == CAMBER_TRUTH_OVER;
+    camber_lines moved = *lines;
+    moved.points = malloc((lines->point_count + 1) * 2 * sizeof *moved.points);
+    if (!moved.points)
+        return false;
+    for (size_t i = 0; i < lines->point_count; i++) {
+        moved.points[2 * i] = lines->points[2 * i] - (float)window.x0;
+        moved.points[2 * i + 1] = lines->points[2 * i + 1] - (float)window.y0;
+    }
+    const bool made = camber_oracle_fill(&moved, sums ? CAMBER_ORACLE_SUM : CAMBER_ORACLE_NONZERO, window.width,
+                                         window.height, coverage);
+    for (int i = 0; i < window.width * window.height; i++)
+        coverage[i] = fminf(fabsf(coverage[i]), 1.0f);
+    free(moved.points);
+    return made;
+}
+
 bool camber_truth_make(const camber_truth_desc *desc, camber_window window, float *coverage) {
     canvas c = {.desc = desc, .window = window, .coverage = coverage};
     const size_t count = (size_t)window.width * (size_t)window.height;
-    const bool united = desc->kind == CAMBER_TRUTH_UNION;
+    const bool united = desc->kind == CAMBER_TRUTH_UNION && !desc->fills;
     bool made = !united || camber_oracle_open(&c.ink, window.x0, window.y0, window.width, window.height);
     for (size_t i = 0; i < count; i++)
         coverage[i] = 0;
+    if (desc->fills)
+        return fill_window(desc, window, coverage);
     for (size_t i = 0; i < desc->lines->polyline_count && made; i++)
         made = draw_line(&c, i);
     for (size_t i = 0; i < count && made && united; i++)

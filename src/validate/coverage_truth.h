@@ -17,6 +17,9 @@ typedef struct camber_truth_desc {
     const camber_stroke *strokes; /* drawn at their full width */
     bool keep_open;               /* as in camber_polylines_desc */
     camber_truth_kind kind;
+    /* The lines are rings, and the truth is what they wind around together. OVER: what they wind around twice counts
+     * twice, and what the other way around, less; at most a whole pixel. Strokes are not read. */
+    bool fills;
 } camber_truth_desc;
 
 /* A window of the picture, px. */

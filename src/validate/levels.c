@@ -10,12 +10,15 @@ bool camber_levels_take(void *user, const uint8_t *rgba, uint32_t first_row, uin
     return true;
 }
 
+static const camber_fill white = {.color = {1, 1, 1, 1}};
+
 /* Returns paints to be freed with free. NULL: out of memory. */
 static camber_paint *make_paints(const camber_drawing *drawing) {
     camber_paint *paints = calloc(drawing->stroke_count + 1, sizeof *paints);
     for (size_t row = 0; paints && row < drawing->stroke_count; row++)
         paints[row] = (camber_paint){.width_px = drawing->strokes[row].width_px,
-                                     .color = {1, 1, 1, drawing->alpha > 0 ? drawing->alpha : 1}};
+                                     .color = {1, 1, 1, drawing->alpha > 0 ? drawing->alpha : 1},
+                                     .fill = drawing->fills ? &white : NULL};
     return paints;
 }
 

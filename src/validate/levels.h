@@ -19,6 +19,7 @@ typedef struct camber_drawing {
     uint32_t width, height; /* px */
     camber_coverage coverage;
     camber_overlap overlap;
+    bool fills;  /* what is inside, in place of lines */
     int passes;  /* 0: one; each draws the whole mesh, over the one before */
     float alpha; /* of the passes; 0: 1, opaque */
 } camber_drawing;

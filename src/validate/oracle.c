@@ -288,9 +288,9 @@ static size_t cross_row(const camber_lines *rings, edge_rows *rows, double y, do
     return count;
 }
 
-/* Adds samples [first, end) of a row to the shares of its pixels. */
-static void add_samples(float *shares, int first, int end) {
-    const float one = 1.0f / (SIDE * SIDE);
+/* Adds samples [first, end) of a row to the shares of its pixels, each so many times. */
+static void add_samples(float *shares, int first, int end, int times) {
+    const float one = (float)times / (SIDE * SIDE);
     while (first < end) {
         const int pixel = first / SIDE, next = (pixel + 1) * SIDE < end ? (pixel + 1) * SIDE : end;
         shares[pixel] += one * (float)(next - first);
@@ -298,7 +298,8 @@ static void add_samples(float *shares, int first, int end) {
     }
 }
 
-static void fill_row(const camber_lines *rings, edge_rows *rows, bool odd, int width, int row, float *shares) {
+static void fill_row(const camber_lines *rings, edge_rows *rows, camber_oracle_rule rule, int width, int row,
+                     float *shares) {
     size_t kept = 0;
     for (size_t i = 0; i < rows->active_count; i++) {
         const float *p = rings->points + 2 * rows->active[i];
@@ -314,19 +315,22 @@ static void fill_row(const camber_lines *rings, edge_rows *rows, bool odd, int w
         int winding = 0;
         for (size_t i = 0; i < count; i++) {
             winding += rows->crossings[i].winding;
-            if (odd ? winding % 2 != 0 : winding != 0)
+            const int times = rule == CAMBER_ORACLE_SUM       ? winding
+                              : rule == CAMBER_ORACLE_EVENODD ? winding % 2 != 0
+                                                              : winding != 0;
+            if (times)
                 add_samples(shares, rows->crossings[i].sample,
-                            i + 1 < count ? rows->crossings[i + 1].sample : width * SIDE);
+                            i + 1 < count ? rows->crossings[i + 1].sample : width * SIDE, times);
         }
     }
 }
 
-bool camber_oracle_fill(const camber_lines *rings, bool odd, int width, int height, float *shares) {
+bool camber_oracle_fill(const camber_lines *rings, camber_oracle_rule rule, int width, int height, float *shares) {
     edge_rows rows = {.active_count = 0};
     const bool done = open_edges(rings, height, &rows);
     memset(shares, 0, (size_t)width * (size_t)height * sizeof *shares);
     for (int row = 0; row < height && done; row++)
-        fill_row(rings, &rows, odd, width, row, shares + (size_t)row * (size_t)width);
+        fill_row(rings, &rows, rule, width, row, shares + (size_t)row * (size_t)width);
     close_edges(&rows);
     return done;
 }

@@ -43,10 +43,14 @@ void camber_oracle_close(camber_oracle_window *window);
 bool camber_oracle_stroke(camber_oracle_window *window, const float *points, size_t count,
                           const camber_oracle_style *style);
 
-/* The share of each pixel, 0 to 1, that rings wind around a number of times that is not 0 in sum; odd: an odd number.
- * Rings end where they begin. By 16 rows of 16 samples a pixel, and by where the rings' edges cross these rows.
- * shares: width * height, rows from the top down. false: out of memory. */
-bool camber_oracle_fill(const camber_lines *rings, bool odd, int width, int height, float *shares);
+/* Rings wind around a sample so many times in sum. It counts whether they do, whether the number is odd, or the number
+ * itself. */
+typedef enum camber_oracle_rule { CAMBER_ORACLE_NONZERO, CAMBER_ORACLE_EVENODD, CAMBER_ORACLE_SUM } camber_oracle_rule;
+
+/* The share of each pixel, 0 to 1, that rings wind around; SUM: the mean of the numbers. Rings end where they begin. By
+ * 16 rows of 16 samples a pixel, and by where the rings' edges cross these rows. shares: width * height, rows from the
+ * top down. false: out of memory. */
+bool camber_oracle_fill(const camber_lines *rings, camber_oracle_rule rule, int width, int height, float *shares);
 
 /* 0 to 1, of the pixel whose corner is x0 + column, y0 + row. */
 double camber_oracle_coverage(const camber_oracle_window *window, int column, int row);

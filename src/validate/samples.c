@@ -2,6 +2,7 @@
  * against it, window by window. */
 #include "validate/samples.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,9 +69,12 @@ static size_t area_of(const camber_window *window) {
 
 camber_status camber_samples_make(const camber_subject *subject, const camber_stroke *strokes, size_t count,
                                   camber_samples *samples) {
-    camber_truth_desc desc = {
-        .lines = &subject->lines, .rows = subject->rows, .strokes = strokes, .keep_open = subject->keep_open};
-    *samples = (camber_samples){.list = calloc(count + 1, sizeof *samples->list)};
+    camber_truth_desc desc = {.lines = &subject->lines,
+                              .rows = subject->rows,
+                              .strokes = strokes,
+                              .keep_open = subject->keep_open,
+                              .fills = subject->fills};
+    *samples = (camber_samples){.list = calloc(count + 1, sizeof *samples->list), .fills = subject->fills};
     if (!samples->list)
         return CAMBER_ERROR_MEMORY;
     choose(subject, count, samples);
@@ -131,6 +135,10 @@ void camber_samples_compare(const camber_samples *samples, camber_truth_kind kin
         const size_t area = area_of(&sample->window);
         memcpy(truth, sample->truths[kind], area * sizeof *truth);
         camber_sample_cut(sample, levels, width, drawn);
+        for (size_t k = 0; k < area && samples->fills; k++) {
+            const float *one = sample->truths[CAMBER_TRUTH_UNION] + k, *other = sample->truths[CAMBER_TRUTH_OVER] + k;
+            truth[k] = fminf(fmaxf((float)drawn[k] / 255.0f, fminf(*one, *other)), fmaxf(*one, *other));
+        }
         const camber_difference difference = compare_edges(truth, drawn, area);
         camber_difference_add(&sum, &difference);
         if (difference.sum > worst_sum) {

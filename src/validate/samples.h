@@ -14,6 +14,7 @@ typedef struct camber_sample {
 typedef struct camber_samples {
     camber_sample *list; /* count */
     size_t count;
+    bool fills; /* of areas: a pixel is right by either truth, and between them */
 } camber_samples;
 
 /* Chooses up to count windows about points of the lines, none twice, spread over all of them, and makes their truth

@@ -64,10 +64,13 @@ static camber_status check_scene(camber_validation *v, size_t number) {
 }
 
 static camber_status check_input(camber_validation *v, const camber_validation_input *input) {
-    const camber_status status = check_subject(v, &input->subject);
-    return status == CAMBER_OK
-               ? camber_check_networks(v, &input->subject, input->network, &input->camera, &input->strokes)
-               : status;
+    camber_status status = check_subject(v, &input->subject);
+    if (status == CAMBER_OK)
+        status = camber_check_networks(v, &input->subject, input->network, &input->camera, &input->strokes);
+    camber_results_group(&v->results, "%s: areas", input->subject.name);
+    if (status == CAMBER_OK && input->frame.pass_count)
+        status = camber_check_areas(v, &input->map, &input->frame);
+    return status;
 }
 
 camber_status camber_validation_run(camber_validation *v, const camber_validation_desc *desc,

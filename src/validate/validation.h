@@ -50,6 +50,7 @@ typedef struct camber_subject {
     const camber_stroke *strokes;       /* stroke_count; the checks of meshes set joins and caps */
     const camber_stroke *drawn_strokes; /* stroke_count: as pictures have them */
     size_t stroke_count;
+    bool fills; /* a user's rings: what is inside of them is drawn in place of lines, for the check of pixels alone */
     const char
         *scene; /* its name, where it is made up. NULL: a user's, whose drawn strokes keep their joins and caps */
     uint32_t width, height; /* of the picture, px */
@@ -65,6 +66,8 @@ typedef struct camber_validation_input {
     camber_network *network; /* NULL: one is made of the subject's lines */
     camber_camera camera;    /* of the network */
     camber_tessellation_desc strokes;
+    camber_subject map; /* with its areas, lines and all */
+    camber_frame frame; /* of the map, as styled; meshes are those of the checks. No passes: there are no areas */
 } camber_validation_input;
 
 typedef struct camber_drawing_path camber_drawing_path;

@@ -1,3 +1,5 @@
+/* Draws a mesh on a device as lines over each other, united, in a group, and filled, and wants of each stage what the
+ * twin makes. */
 #include "fuzz_drawing.h"
 
 #include <stdlib.h>
@@ -51,11 +53,17 @@ static void compare(const camber_drawing_stages *got, const camber_drawing_stage
     REQUIRE(memcmp(got->rgba, expected->rgba, 4 * (size_t)WIDTH_PX * HEIGHT_PX) == 0);
 }
 
-/* Without bands beside lines, with them, and a plane that is seen at an angle: a variant of the kernels each. */
+/* Fills of neighbouring rows. */
+static const camber_fill fills[] = {{.color = {1, 0.5f, 0, 1}},
+                                    {.color = {0, 0.5f, 1, 0.5f}, .rule = CAMBER_FILL_EVENODD}};
+
+/* Without bands beside lines, with them, and a plane that is seen at an angle: a variant of the kernels each. Then with
+ * the inside of the lines filled, too. */
 static const struct {
     float gap_px, blur_px;
     double pitch_deg;
-} variants[] = {{0, 0, 0}, {1.5f, 0.8f, 0}, {0, 0, 50}};
+    bool fills;
+} variants[] = {{0, 0, 0, false}, {1.5f, 0.8f, 0, false}, {0, 0, 50, false}, {0, 0, 0, true}, {0, 0, 50, true}};
 
 static void draw(const fuzz_drawer *drawer, const camber_stroke *strokes, size_t stroke_count, size_t variant) {
     static const float widths[PASSES] = {1.0f, 0.6f, 0.3f}, alphas[PASSES] = {1.0f, 0.5f, 0.7f};
@@ -70,7 +78,8 @@ static void draw(const fuzz_drawer *drawer, const camber_stroke *strokes, size_t
                                           .color = {0.5f * (float)k, k == 1 ? 1.0f : 0.1f * (float)i, 0.5f, alphas[k]},
                                           .translate_x_px = 0.7f * (float)k,
                                           .gap_px = i % 2 ? variants[variant].gap_px : 0,
-                                          .blur_px = k == 2 ? variants[variant].blur_px : 0};
+                                          .blur_px = k == 2 ? variants[variant].blur_px : 0,
+                                          .fill = variants[variant].fills && k != 1 ? fills + i % 2 : NULL};
     }
     passes[1].overlap = CAMBER_OVERLAP_UNITE;
     passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;

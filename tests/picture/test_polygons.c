@@ -264,7 +264,8 @@ static double error_of(const board *b, row at, const picture *drawn) {
     assert_non_null(truth);
     rings.point_count = b->point_count;
     rings.polyline_count = b->first_ring[at + 1] - b->first_ring[at];
-    assert_true(camber_oracle_fill(&rings, at == CROSSINGS_EVENODD, COLUMNS * CELL_PX, ROWS * CELL_PX, truth));
+    assert_true(camber_oracle_fill(&rings, at == CROSSINGS_EVENODD ? CAMBER_ORACLE_EVENODD : CAMBER_ORACLE_NONZERO,
+                                   COLUMNS * CELL_PX, ROWS * CELL_PX, truth));
     for (uint32_t y = CELL_PX * at; y < CELL_PX * (at + 1u); y++)
         for (uint32_t x = 0; x < drawn->width; x++) {
             const double share = (double)truth[y * drawn->width + x];

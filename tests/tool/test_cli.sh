@@ -643,6 +643,12 @@ expect 0 "validate a map" validate -v "$tiger" --method kite --size 200x200 --ba
 passes 40
 has "$tmp/stdout" ': network, zoomed in: kite: as the CPU twin, on '
 lacks "$tmp/stdout" 'EGL'
+expect 0 "validate a map's areas" validate -v "$here/data/monaco/monaco.osm.pbf" --method strip --size 300x300 --windows 8
+passes 60
+has "$tmp/stdout" ': as styled, areas and lines: drawn as by the CPU twin, on ' ': layer 1 of areas: strip, filled: pixels, on .*, OpenCL$' \
+    ': layer 5 of areas: strip, filled: pixels, on .*, EGL$' '^# .* pixels: mean '
+expect 0 "validate a style of lines alone" validate -v "$here/data/monaco/monaco.osm.pbf" --style roads --method strip --size 100x100 --draw cl
+lacks "$tmp/stdout" 'of areas\|as styled, areas'
 expect 0 "validate what kernels draw" validate -v --polylines "$lines" --draw cl --windows 8
 passes 12
 has "$tmp/stdout" ': pixels, on .*, OpenCL$' ': united, on .*, OpenCL$'

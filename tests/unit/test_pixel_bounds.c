@@ -1,6 +1,7 @@
-/* The bounds that pixels are held to: the oracle's own error, and what few pixels may be off by and may not. */
-#include "validate/checks.h"
+/* The bounds that pixels are held to: the oracle's own error, what few pixels may be off by and may not, and how areas
+ * count that lie over each other. */
 #include "validate/oracle.h"
+#include "validate/samples.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -62,6 +63,51 @@ static void test_oracle(void **state) {
     assert_true(most > 4 && most <= 8);
 }
 
+/* ---- Areas ---- */
+
+enum { SIDE_PX = 200 };
+
+/* How far off a picture is that has one level in a pixel of two equal squares of a quarter of it, and nothing else. */
+static camber_pixel_error squares_error(uint8_t level, bool opposed) {
+    static const float one[] = {150.25f, 120.25f, 150.75f, 120.25f, 150.75f,
+                                120.75f, 150.25f, 120.75f, 150.25f, 120.25f};
+    static uint8_t picture[SIDE_PX * SIDE_PX];
+    static uint32_t offsets[] = {0, 5, 10};
+    float points[20];
+    for (size_t i = 0; i < 10; i++) {
+        points[i] = one[i];
+        points[10 + i] = one[opposed ? 8 - i / 2 * 2 + i % 2 : i];
+    }
+    const camber_subject rings = {
+        .lines = {.points = points, .offsets = offsets, .point_count = 10, .polyline_count = 2},
+        .keep_open = true,
+        .fills = true,
+        .width = SIDE_PX,
+        .height = SIDE_PX};
+    camber_samples samples;
+    camber_pixel_error error;
+    size_t worst;
+    assert_int_equal(camber_samples_make(&rings, NULL, 8, &samples), CAMBER_OK);
+    assert_int_equal(samples.count, 1);
+    picture[120 * SIDE_PX + 150] = level;
+    camber_samples_compare(&samples, CAMBER_TRUTH_UNION, picture, SIDE_PX, &error, &worst);
+    camber_samples_free(&samples);
+    return error;
+}
+
+/* Within a pixel two rings may count once or twice, or not at all where one runs the other way. */
+static void test_overlaps(void **state) {
+    (void)state;
+    static const struct {
+        uint8_t level;
+        bool opposed;
+        int error;
+    } known[] = {{64, false, 0},   {100, false, 0}, {127, false, 0}, {30, false, 34},
+                 {200, false, 72}, {0, true, 0},    {20, true, 20}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        assert_in_range(squares_error(known[i].level, known[i].opposed).max + 1, known[i].error, known[i].error + 2);
+}
+
 /* ---- Verdicts ---- */
 
 /* A user's lines: so many pixels, all but far of them off by usual levels, and those by most. */
@@ -113,6 +159,7 @@ static void test_scenes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_oracle),
+        cmocka_unit_test(test_overlaps),
         cmocka_unit_test(test_few_pixels),
         cmocka_unit_test(test_scenes),
     };

@@ -2,7 +2,8 @@
 # Whether what OSS-Fuzz is given would build and run there, without its images: check.sh SOURCE [FOLDER]
 #
 # projects/camber is what google/oss-fuzz has of a project. This stands in for its base-builder: the same variables, in a
-# folder of their own. Exits with 77 where clang or libFuzzer is missing.
+# folder of their own, which is kept where it is named: ../run.sh fuzzes what lies there. The sanitizers are those that
+# OSS-Fuzz builds with one by one. Exits with 77 where clang or libFuzzer is missing.
 set -u
 source=$(realpath "$1") folder=${2:-}
 project=$source/tests/fuzz/oss-fuzz/projects/camber
@@ -41,11 +42,13 @@ check_packages() {
 # ---- The build, and a second of each target ----
 
 build() {
-    mkdir -p "$folder/src" "$folder/out" "$folder/work"
+    local flags="-O1 -fno-omit-frame-pointer -gline-tables-only -fno-sanitize-recover=all"
+    flags+=" -fsanitize=address,undefined,float-cast-overflow,fuzzer-no-link"
+    rm -rf "$folder/out" "$folder/away" "$folder/seeds"
+    mkdir -p "$folder/src" "$folder/out" "$folder/work" "$folder/tests"
     ln -sfn "$source" "$folder/src/camber"
-    env SRC="$folder/src" OUT="$folder/out" WORK="$folder/work" CC=clang CXX=clang++ \
-        CFLAGS="-O1 -fno-omit-frame-pointer -gline-tables-only -fsanitize=address,fuzzer-no-link" \
-        CXXFLAGS="-O1 -fno-omit-frame-pointer -gline-tables-only -fsanitize=address,fuzzer-no-link" \
+    ln -sfn ../away "$folder/tests/fuzz"
+    env SRC="$folder/src" OUT="$folder/out" WORK="$folder/work" CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags" \
         LIB_FUZZING_ENGINE=-fsanitize=fuzzer SANITIZER=address FUZZING_ENGINE=libfuzzer ARCHITECTURE=x86_64 \
         bash -eu "$project/build.sh" >"$folder/build.log" 2>&1
 }

@@ -150,8 +150,8 @@ static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     if (!camber_osm_reserve(pass, &run->points, points * 2 * sizeof(double), failure) ||
         !camber_osm_reserve(pass, &run->ends, ends * sizeof(size_t), failure) ||
         !camber_osm_reserve(pass, &run->ways, from->way_count * sizeof(made_way), failure) ||
-        !camber_osm_reserve(pass, &run->places, from->node_count * sizeof(uint64_t), failure) ||
-        !camber_osm_reserve(pass, &run->world, from->node_count * 2 * sizeof(double), failure))
+        !camber_osm_reserve(pass, &run->places, (from->node_count + 1) * sizeof(uint64_t), failure) ||
+        !camber_osm_reserve(pass, &run->world, (from->node_count + 1) * 2 * sizeof(double), failure))
         return false;
     run->way_count = 0;
     run->stats = (camber_features_stats){0};

@@ -341,9 +341,9 @@ static bool add_way(decoder *self, camber_wire ids, uint64_t count, camber_osm_w
         !camber_osm_reserve(self->pass, &to->ways, (to->way_count + 1) * sizeof way, self->failure))
         return false;
     uint32_t *at = (uint32_t *)(void *)to->ids.bytes + to->id_count;
-    while (ids.at < ids.end) {
+    for (const uint32_t *end = at + count; at < end;) {
         id += (uint64_t)camber_wire_signed(&ids);
-        if (id >= (uint64_t)CAMBER_OSM_MOST_ID)
+        if (ids.bad || id >= (uint64_t)CAMBER_OSM_MOST_ID)
             return ids.bad ? camber_osm_fail(self->failure, "a way that does not parse")
                            : camber_osm_decline(self->failure);
         if (id >> CAMBER_OSM_LEAF_BITS != self->last_leaf_id && !find_leaf(self, id >> CAMBER_OSM_LEAF_BITS))
@@ -352,7 +352,7 @@ static bool add_way(decoder *self, camber_wire ids, uint64_t count, camber_osm_w
         ((block_leaf *)(void *)to->leaves.bytes)[self->last_leaf].bits[low >> 6] |= UINT64_C(1) << (low & 63);
         *at++ = self->last_leaf << CAMBER_OSM_LEAF_BITS | low;
     }
-    if (ids.bad)
+    if (ids.at < ids.end) /* the last is cut off */
         return camber_osm_fail(self->failure, "a way that does not parse");
     to->id_count += (size_t)count;
     ((camber_osm_way *)(void *)to->ways.bytes)[to->way_count++] = way;

@@ -146,22 +146,14 @@ static bool walk_role(walker *self, uint32_t role) {
 
 /* ---- Roles ---- */
 
-static double longitude_of(uint64_t place) {
-    return (double)(int32_t)(uint32_t)(place >> 32);
-}
-
-static double latitude_of(uint64_t place) {
-    return (double)(int32_t)(uint32_t)place;
-}
-
 /* Whether a place lies in a ring: 1, outside of it: 0, or on it: below 0. That is exact for
  * rings below some 9 degrees, whose products fit a double. */
 static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, uint64_t place) {
-    const double x = longitude_of(place), y = latitude_of(place);
+    const double x = camber_osm_longitude(place), y = camber_osm_latitude(place);
     bool inside = false;
     for (size_t i = ring->first; i + 1 < ring->first + ring->count; i++) {
-        const double x0 = longitude_of(a->places[i]) - x, y0 = latitude_of(a->places[i]) - y,
-                     x1 = longitude_of(a->places[i + 1]) - x, y1 = latitude_of(a->places[i + 1]) - y;
+        const double x0 = camber_osm_longitude(a->places[i]) - x, y0 = camber_osm_latitude(a->places[i]) - y,
+                     x1 = camber_osm_longitude(a->places[i + 1]) - x, y1 = camber_osm_latitude(a->places[i + 1]) - y;
         const double side = x0 * y1 - x1 * y0;
         if (side == 0.0 && x0 * x1 + y0 * y1 <= 0.0)
             return -1;

@@ -4,7 +4,7 @@
  * made. Ids of a country lie in runs, so that a node takes some bits, and an id that lies alone takes 350 bytes. */
 #include "osm/node_set.h"
 
-enum { LEAF_BITS = 9, TWIG_BITS = 6 };
+enum { LEAF_BITS = CAMBER_OSM_LEAF_BITS, TWIG_BITS = 6 };
 
 void camber_osm_node_set_init(camber_osm_node_set *set, camber_context *context) {
     *set = (camber_osm_node_set){.context = context, .last_leaf_id = UINT64_MAX};
@@ -63,11 +63,15 @@ camber_status camber_osm_node_set_add(camber_osm_node_set *set, int64_t id) {
     return CAMBER_OK;
 }
 
-/* Adds neighbouring bits up, then pairs, then bytes: a call of the compiler's library takes longer. */
-static inline uint32_t count_bits(uint64_t word) {
-    word = word - (word >> 1 & 0x5555555555555555u);
-    word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
-    return (uint32_t)(((word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+camber_status camber_osm_node_set_add_leaf(camber_osm_node_set *set, uint64_t leaf_id,
+                                           const uint64_t bits[CAMBER_OSM_LEAF_WORDS], uint32_t *leaf) {
+    const camber_status status = find_leaf(set, leaf_id);
+    if (status != CAMBER_OK)
+        return status;
+    for (int w = 0; w < CAMBER_OSM_LEAF_WORDS; w++)
+        set->leaves[set->last_leaf].bits[w] |= bits[w];
+    *leaf = (uint32_t)set->last_leaf;
+    return CAMBER_OK;
 }
 
 camber_status camber_osm_node_set_complete(camber_osm_node_set *set) {
@@ -79,7 +83,7 @@ camber_status camber_osm_node_set_complete(camber_osm_node_set *set) {
         set->ranks[i] = (uint32_t)count;
         for (int w = 0; w < CAMBER_OSM_LEAF_WORDS; w++) {
             set->leaves[i].before[w] = (uint16_t)(count - set->ranks[i]);
-            count += count_bits(set->leaves[i].bits[w]);
+            count += camber_osm_count_bits(set->leaves[i].bits[w]);
         }
     }
     if (count > UINT32_MAX)
@@ -108,9 +112,9 @@ bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber
     if (!(leaf->bits[word] & bit))
         return false;
     const bool follows = id == finger->id + 1 && (id & ((1 << LEAF_BITS) - 1)) != 0;
-    finger->index = follows
-                        ? finger->index + 1
-                        : set->ranks[finger->leaf - 1] + leaf->before[word] + count_bits(leaf->bits[word] & (bit - 1));
+    finger->index = follows ? finger->index + 1
+                            : set->ranks[finger->leaf - 1] + leaf->before[word] +
+                                  camber_osm_count_bits(leaf->bits[word] & (bit - 1));
     finger->id = id;
     *index = finger->index;
     return true;

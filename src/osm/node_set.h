@@ -7,7 +7,7 @@
 /* Ids are below 2^36; OpenStreetMap's are below 2^34 (2026). */
 #define CAMBER_OSM_MOST_ID ((int64_t)1 << 36)
 
-enum { CAMBER_OSM_LEAF_WORDS = 8 };
+enum { CAMBER_OSM_LEAF_WORDS = 8, CAMBER_OSM_LEAF_BITS = 9 };
 
 /* The ids of 512 nodes in a row. */
 typedef struct camber_osm_leaf {
@@ -38,6 +38,14 @@ static inline uint64_t camber_osm_place(int32_t longitude, int32_t latitude) {
     return (uint64_t)(uint32_t)longitude << 32 | (uint32_t)latitude;
 }
 
+static inline int32_t camber_osm_longitude(uint64_t place) {
+    return (int32_t)(uint32_t)(place >> 32);
+}
+
+static inline int32_t camber_osm_latitude(uint64_t place) {
+    return (int32_t)(uint32_t)place;
+}
+
 /* Where a thread found its last leaf, and its last node: ids often follow each other. */
 typedef struct camber_osm_finger {
     uint64_t leaf_id; /* UINT64_MAX: none yet */
@@ -50,9 +58,27 @@ void camber_osm_node_set_init(camber_osm_node_set *set, camber_context *context)
 void camber_osm_node_set_free(camber_osm_node_set *set);
 /* 0 <= id < CAMBER_OSM_MOST_ID */
 camber_status camber_osm_node_set_add(camber_osm_node_set *set, int64_t id);
+/* Adds ids of a leaf, which are those of a bitmap; leaf_id is what their upper bits are. *leaf: its index. */
+camber_status camber_osm_node_set_add_leaf(camber_osm_node_set *set, uint64_t leaf_id,
+                                           const uint64_t bits[CAMBER_OSM_LEAF_WORDS], uint32_t *leaf);
 /* No id is added from now on. */
 camber_status camber_osm_node_set_complete(camber_osm_node_set *set);
 /* Finds the index of an id's place. false: no line needs it. */
 bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber_osm_finger *finger, uint32_t *index);
+
+/* Adds neighbouring bits up, then pairs, then bytes: a call of the compiler's library takes longer. */
+static inline uint32_t camber_osm_count_bits(uint64_t word) {
+    word = word - (word >> 1 & 0x5555555555555555u);
+    word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+    return (uint32_t)(((word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+}
+
+/* The index of an id of the set by its leaf: no branch depends on which it is. */
+static inline uint32_t camber_osm_node_set_index(const camber_osm_node_set *set, uint32_t leaf, uint32_t id) {
+    const camber_osm_leaf *from = &set->leaves[leaf];
+    const uint32_t word = id >> 6 & (CAMBER_OSM_LEAF_WORDS - 1);
+    return set->ranks[leaf] + from->before[word] +
+           camber_osm_count_bits(from->bits[word] & ((UINT64_C(1) << (id & 63)) - 1));
+}
 
 #endif

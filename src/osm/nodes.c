@@ -154,13 +154,12 @@ camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm
 
 typedef struct search {
     const camber_osm_file *file;
-    size_t first; /* blob behind those kinds, as far as is known */
-    uint64_t last_kind;
+    camber_osm_ends *ends;
 } search;
 
 /* Whether the first entity of a blob is of one of the kinds. A blob without any is. */
-static bool begins_with_kind(const search *self, size_t blob, camber_osm_pass *pass, block *one, bool *begins,
-                             camber_osm_failure *failure) {
+static bool begins_with_kind(const search *self, size_t blob, uint64_t last_kind, camber_osm_pass *pass, block *one,
+                             bool *begins, camber_osm_failure *failure) {
     camber_osm_entities entities;
     camber_wire group;
     uint64_t key = CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES);
@@ -168,46 +167,43 @@ static bool begins_with_kind(const search *self, size_t blob, camber_osm_pass *p
         return false;
     if (camber_osm_entities_next(&entities, &group))
         (void)camber_wire_next(&group, &key);
-    *begins = key >> 3 >= CAMBER_OSM_NODE && key >> 3 <= self->last_kind;
+    *begins = key >> 3 >= CAMBER_OSM_NODE && key >> 3 <= last_kind;
     return true;
 }
 
+/* Looks about a guess in steps that grow, until the end lies between two of them; then it halves what is left. */
 static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
-    search *self = user;
-    size_t end = self->file->blob_count;
-    (void)part;
-    while (self->first < end) {
-        const size_t middle = self->first + (end - self->first) / 2;
-        bool begins;
-        if (!begins_with_kind(self, middle, pass, slot, &begins, failure))
+    const search *self = user;
+    const uint64_t last_kind = part ? CAMBER_OSM_WAY : CAMBER_OSM_DENSE;
+    size_t first = 0, end = self->file->blob_count;
+    /* Most files have nodes in six blobs of seven, and relations in the last few. */
+    size_t at = part ? end - 1 : end / 7 * 6 + end % 7 * 6 / 7, step = 1;
+    bool begins, before = false, turned = false;
+    for (bool looked = false; first < end; looked = true) {
+        if (!begins_with_kind(self, at, last_kind, pass, slot, &begins, failure))
             return false;
-        if (begins)
-            self->first = middle + 1;
-        else
-            end = middle;
+        turned = turned || (looked && begins != before);
+        before = begins;
+        *(begins ? &first : &end) = at + begins;
+        turned = turned || step >= end - first;
+        at = turned ? first + (end - first) / 2 : begins ? first + step - 1 : end - step;
+        step *= 2;
     }
+    *(part ? &self->ends->ways : &self->ends->nodes) = first;
     return true;
 }
 
-static camber_status find_end(const camber_osm_file *file, uint64_t last_kind, size_t *blob, bool *declined) {
-    search self = {.file = file, .last_kind = last_kind};
+camber_status camber_osm_find_ends(const camber_osm_file *file, bool of_ways, unsigned threads, camber_osm_ends *ends,
+                                   bool *declined) {
+    search self = {.file = file, .ends = ends};
     const camber_osm_pass_desc pass = {.context = file->context,
                                        .name = file->path,
-                                       .part_count = 1,
-                                       .threads = 1,
+                                       .part_count = of_ways ? 2 : 1,
+                                       .threads = threads,
                                        .slot_bytes = sizeof(block),
                                        .user = &self,
                                        .work = search_blobs,
                                        .free_slot = free_block};
-    const camber_status status = camber_osm_pass_run(&pass, declined);
-    *blob = self.first;
-    return status;
-}
-
-camber_status camber_osm_nodes_end(const camber_osm_file *file, size_t *blob, bool *declined) {
-    return find_end(file, CAMBER_OSM_DENSE, blob, declined);
-}
-
-camber_status camber_osm_ways_end(const camber_osm_file *file, size_t *blob, bool *declined) {
-    return find_end(file, CAMBER_OSM_WAY, blob, declined);
+    *ends = (camber_osm_ends){0, 0};
+    return camber_osm_pass_run(&pass, declined);
 }

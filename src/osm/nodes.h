@@ -12,11 +12,15 @@ typedef struct camber_osm_nodes_desc {
     double from, to; /* of the progress */
 } camber_osm_nodes_desc;
 
-/* Finds the first blob that begins with a way or a relation; all blobs before it begin with nodes, if the file is in
- * order. */
-camber_status camber_osm_nodes_end(const camber_osm_file *file, size_t *blob, bool *declined);
-/* The same for the first that begins with a relation. */
-camber_status camber_osm_ways_end(const camber_osm_file *file, size_t *blob, bool *declined);
+/* Where kinds of entities end, if the file is in order. */
+typedef struct camber_osm_ends {
+    size_t nodes; /* the first blob that begins with a way or a relation: all before it begin with nodes */
+    size_t ways;  /* the first that begins with a relation */
+} camber_osm_ends;
+
+/* of_ways: where ways end is wanted, too; else that is 0. */
+camber_status camber_osm_find_ends(const camber_osm_file *file, bool of_ways, unsigned threads, camber_osm_ends *ends,
+                                   bool *declined);
 /* Reads the places of the set's nodes. *declined: a way comes before a node, or a node comes twice. */
 camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm_nodes_desc *desc, bool *declined);
 

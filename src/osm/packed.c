@@ -6,18 +6,20 @@
  */
 #include "osm/packed.h"
 
-/* The most that a place takes: differences have 33 bits and a sign, seven bits a byte. */
-enum { MOST_PLACE_BYTES = 2 * 5 };
+/* A difference of longitudes and one of latitudes, 16 bits each, in 10^-7 degrees; or this, and then a place. */
+static const uint32_t FAR = 0x8000;
+enum { MOST_PLACE_WORDS = 3 };
 
 typedef struct packed_run {
-    camber_osm_block bytes, ways; /* ways: camber_osm_way, as they will be */
-    size_t size_bytes, node_count, dropped;
+    camber_osm_block places, words, ways; /* uint64_t; uint32_t; camber_osm_way, as they will be */
+    size_t word_count, node_count, dropped;
 } packed_run;
 
 static void free_run(camber_context *context, void *slot) {
     packed_run *run = slot;
     camber_free(context, run->ways.bytes);
-    camber_free(context, run->bytes.bytes);
+    camber_free(context, run->words.bytes);
+    camber_free(context, run->places.bytes);
 }
 
 typedef struct packing {
@@ -28,32 +30,41 @@ typedef struct packing {
 
 /* Where a thread is in its run. */
 typedef struct packer {
-    camber_wire ids;
-    camber_osm_finger finger;
-    uint8_t *at;
-    int32_t longitude, latitude;
+    const uint64_t *places; /* of the nodes to come */
+    uint32_t *at;
+    uint64_t place; /* the last that was packed */
 } packer;
 
 static void put_place(packer *to, uint64_t place) {
-    const int32_t longitude = (int32_t)(uint32_t)(place >> 32), latitude = (int32_t)(uint32_t)place;
-    to->at = camber_wire_put_signed(to->at, (int64_t)longitude - to->longitude);
-    to->at = camber_wire_put_signed(to->at, (int64_t)latitude - to->latitude);
-    to->longitude = longitude;
-    to->latitude = latitude;
+    const int64_t east = (int64_t)camber_osm_longitude(place) - camber_osm_longitude(to->place),
+                  north = (int64_t)camber_osm_latitude(place) - camber_osm_latitude(to->place);
+    if (east > INT16_MIN && east <= INT16_MAX && north >= INT16_MIN && north <= INT16_MAX) {
+        *to->at++ = ((uint32_t)east & 0xffff) | (uint32_t)north << 16;
+    } else {
+        *to->at++ = FAR;
+        *to->at++ = (uint32_t)(place >> 32);
+        *to->at++ = (uint32_t)place;
+    }
+    to->place = place;
+}
+
+/* Looks the places of a run up. Nothing branches here, so the processor waits for many of them at a time. */
+static void look_up_places(const camber_osm_ways *ways, const camber_osm_run *run, uint64_t *places) {
+    const camber_osm_node_set *nodes = &ways->nodes;
+    const uint32_t *ids = ways->ids + run->first_id, *leaves = ways->leaves + run->first_leaf;
+    for (size_t i = 0; i < run->node_count; i++) {
+        const uint32_t index = camber_osm_node_set_index(nodes, leaves[ids[i] >> CAMBER_OSM_LEAF_BITS], ids[i]);
+        places[i] = atomic_load_explicit(&nodes->places[index], memory_order_relaxed);
+    }
 }
 
 /* Packs a way, and returns what it is now. Fewer than two nodes make no line. *dropped counts areas that go. */
 static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, packer *to, size_t *dropped) {
-    const camber_osm_node_set *nodes = &all->ways->nodes;
     const packer before = *to;
-    uint64_t id = 0, first = 0, last = 0;
+    uint64_t first = 0, last = 0;
     uint32_t found = 0;
     for (uint32_t i = 0; i < way->node_count; i++) {
-        uint32_t index;
-        id += (uint64_t)camber_wire_signed(&to->ids);
-        if (!camber_osm_node_set_find(nodes, (int64_t)id, &to->finger, &index))
-            continue;
-        const uint64_t place = atomic_load_explicit(&nodes->places[index], memory_order_relaxed);
+        const uint64_t place = *to->places++;
         if (place == CAMBER_OSM_NOWHERE)
             continue;
         first = found++ ? first : place;
@@ -65,8 +76,7 @@ static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, pa
     *dropped += drops;
     if (drops || found < 2) {
         to->at = before.at;
-        to->longitude = before.longitude;
-        to->latitude = before.latitude;
+        to->place = before.place;
         found = 0;
     }
     return (camber_osm_way){way->tags & ~(area ? 0u : (uint32_t)CAMBER_OSM_WAY_AREA), found};
@@ -77,19 +87,20 @@ static bool pack_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     const camber_osm_ways *ways = all->ways;
     const camber_osm_run *from = &ways->runs[part];
     packed_run *run = slot;
-    if (!camber_osm_reserve(pass, &run->bytes, from->node_count * MOST_PLACE_BYTES, failure) ||
+    if (!camber_osm_reserve(pass, &run->places, from->node_count * sizeof(uint64_t), failure) ||
+        !camber_osm_reserve(pass, &run->words, from->node_count * MOST_PLACE_WORDS * sizeof(uint32_t), failure) ||
         !camber_osm_reserve(pass, &run->ways, from->way_count * sizeof(camber_osm_way), failure))
         return false;
-    packer to = {.ids = {ways->ids + from->first_id, ways->ids + ways->id_bytes, false},
-                 .finger = {.leaf_id = UINT64_MAX, .id = -2},
-                 .at = run->bytes.bytes};
+    uint64_t *places = (uint64_t *)(void *)run->places.bytes;
+    packer to = {.places = places, .at = (uint32_t *)(void *)run->words.bytes};
     camber_osm_way *packed = (camber_osm_way *)(void *)run->ways.bytes;
+    look_up_places(ways, from, places);
     run->node_count = run->dropped = 0;
     for (size_t i = 0; i < from->way_count; i++) {
         packed[i] = pack_way(all, &ways->ways[from->first_way + i], &to, &run->dropped);
         run->node_count += packed[i].node_count;
     }
-    run->size_bytes = (size_t)(to.at - run->bytes.bytes);
+    run->word_count = (size_t)(to.at - (const uint32_t *)(const void *)run->words.bytes);
     return true;
 }
 
@@ -99,14 +110,15 @@ static camber_status add_run(void *user, size_t part, void *slot) {
     camber_osm_ways *ways = all->ways;
     camber_osm_run *to = &ways->runs[part];
     const packed_run *run = slot;
-    if (!camber_grow(ways->context, &ways->packed, &ways->packed_capacity, ways->packed_bytes + run->size_bytes, 1))
+    if (!camber_grow(ways->context, &ways->packed, &ways->packed_capacity, ways->packed_count + run->word_count,
+                     sizeof *ways->packed))
         return CAMBER_ERROR_MEMORY;
-    if (run->size_bytes)
-        memcpy(ways->packed + ways->packed_bytes, run->bytes.bytes, run->size_bytes);
+    if (run->word_count)
+        memcpy(ways->packed + ways->packed_count, run->words.bytes, run->word_count * sizeof *ways->packed);
     memcpy(ways->ways + to->first_way, run->ways.bytes, to->way_count * sizeof *ways->ways);
-    to->first_packed = ways->packed_bytes;
+    to->first_packed = ways->packed_count;
     to->node_count = run->node_count;
-    ways->packed_bytes += run->size_bytes;
+    ways->packed_count += run->word_count;
     all->dropped += run->dropped;
     return CAMBER_OK;
 }
@@ -125,17 +137,37 @@ camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc 
                                        .from = desc->from,
                                        .to = desc->to};
     bool declined;
-    const camber_status status = camber_osm_pass_run(&pass, &declined);
+    /* Most places take one word, and the first of a way three. */
+    camber_status status = CAMBER_ERROR_MEMORY;
+    if (camber_grow(ways->context, &ways->packed, &ways->packed_capacity, ways->node_count + 2 * ways->way_count,
+                    sizeof *ways->packed))
+        status = camber_osm_pass_run(&pass, &declined);
     camber_osm_node_set_free(&ways->nodes);
+    camber_free(ways->context, ways->leaves);
     camber_free(ways->context, ways->ids);
-    ways->ids = NULL;
-    ways->id_bytes = ways->id_capacity = 0;
+    ways->ids = ways->leaves = NULL;
+    ways->id_capacity = ways->leaf_count = ways->leaf_capacity = 0;
     *dropped = all.dropped;
     return status;
 }
 
-camber_osm_unpacking camber_osm_unpack_run(const camber_osm_ways *ways, const camber_osm_run *run) {
-    if (!ways->packed_bytes) /* no ways: nothing to point into */
-        return (camber_osm_unpacking){.wire = {NULL, NULL, false}};
-    return (camber_osm_unpacking){.wire = {ways->packed + run->first_packed, ways->packed + ways->packed_bytes, false}};
+/* A signed number of 16 bits as one of 32. */
+static uint32_t extend(uint32_t number) {
+    return (number ^ 0x8000) - 0x8000;
+}
+
+void camber_osm_unpack_run(const camber_osm_ways *ways, const camber_osm_run *run, uint64_t *places) {
+    const uint32_t *at = run->node_count ? ways->packed + run->first_packed : NULL;
+    uint32_t longitude = 0, latitude = 0;
+    for (size_t i = 0; i < run->node_count; i++) {
+        const uint32_t word = *at++;
+        if ((word & 0xffff) == FAR) {
+            longitude = *at++;
+            latitude = *at++;
+        } else {
+            longitude += extend(word & 0xffff);
+            latitude += extend(word >> 16);
+        }
+        places[i] = (uint64_t)longitude << 32 | latitude;
+    }
 }

@@ -1,4 +1,4 @@
-/* Ways with the places of their nodes, packed: four bytes a point or so, until there is room for all of them. */
+/* Ways with the places of their nodes, packed: five bytes a point or so, until there is room for all of them. */
 #ifndef CAMBER_OSM_PACKED_H
 #define CAMBER_OSM_PACKED_H
 
@@ -16,18 +16,7 @@ typedef struct camber_osm_pack_desc {
  * *dropped: so many areas are gone. */
 camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc *desc, size_t *dropped);
 
-/* Where a reader of a run's places is. */
-typedef struct camber_osm_unpacking {
-    camber_wire wire;
-    int64_t longitude, latitude; /* of the last node, in 10^-7 degrees */
-} camber_osm_unpacking;
-
-/* Begins at the first node of a run that was packed. */
-camber_osm_unpacking camber_osm_unpack_run(const camber_osm_ways *ways, const camber_osm_run *run);
-
-static inline void camber_osm_unpack_node(camber_osm_unpacking *from) {
-    from->longitude += camber_wire_signed(&from->wire);
-    from->latitude += camber_wire_signed(&from->wire);
-}
+/* Unpacks the places of a run: node_count of them. */
+void camber_osm_unpack_run(const camber_osm_ways *ways, const camber_osm_run *run, uint64_t *places);
 
 #endif

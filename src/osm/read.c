@@ -10,11 +10,13 @@
 
 #include "osm/nodes.h"
 #include "osm/packed.h"
+#include "source/mercator.h"
 #include "source/osm_keys.h"
 #include "source/rings.h"
 #include "source/tile_reader.h"
 #include "source/world_lines.h"
 
+#include <math.h>
 #include <unistd.h>
 
 static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* of the progress */
@@ -48,43 +50,63 @@ static unsigned count_threads(const camber_source_desc *desc) {
 /* ---- Ways become lines, on any thread ---- */
 
 typedef struct made_way {
-    uint32_t tags;        /* as the way has them, with the area's bit set only where the line is closed */
-    uint32_t line_count;  /* as a line, or as an outline; then comes its ring */
-    uint32_t place_count; /* of a relation's way */
+    uint32_t tags;       /* as the way has them, with the area's bit set only where the line is closed */
+    uint32_t line_count; /* as a line, or as an outline; then comes its ring */
     bool has_ring;
+    uint32_t place_count; /* of a relation's way, in the run's places */
+    size_t first_place;
 } made_way;
 
 typedef struct made_run {
     camber_osm_block points, ends, ways; /* pairs of doubles, size_t, made_way */
-    camber_osm_block places;             /* of relations' ways: uint64_t */
-    size_t way_count, place_count;
+    camber_osm_block places, world;      /* of the run's nodes: uint64_t, and pairs of doubles */
+    size_t way_count;
     camber_world_lines lines;
     camber_features_stats stats; /* of its rings */
 } made_run;
 
 static void free_run(camber_context *context, void *slot) {
     made_run *run = slot;
+    camber_free(context, run->world.bytes);
     camber_free(context, run->places.bytes);
     camber_free(context, run->ways.bytes);
     camber_free(context, run->ends.bytes);
     camber_free(context, run->points.bytes);
 }
 
-static void add_nodes(const camber_osm_way *way, camber_osm_unpacking *from, camber_world_lines *lines) {
-    for (uint32_t i = 0; i < way->node_count; i++) {
-        camber_osm_unpack_node(from);
-        camber_world_lines_add_degrees(lines, (double)from->longitude / 1.0e7, (double)from->latitude / 1.0e7);
+/* Unpacks the places of a run, and projects them: some at a time, which stay in the cache. */
+static void project_run(const camber_osm_ways *ways, const camber_osm_run *from, made_run *run) {
+    enum { MOST = 256 };
+    double longitudes[MOST], latitudes[MOST], *world = (double *)(void *)run->world.bytes;
+    uint64_t *places = (uint64_t *)(void *)run->places.bytes;
+    camber_osm_unpack_run(ways, from, places);
+    for (size_t first = 0; first < from->node_count; first += MOST) {
+        const size_t left = from->node_count - first, count = left < MOST ? left : MOST;
+        for (size_t i = 0; i < count; i++) {
+            longitudes[i] = camber_osm_longitude(places[first + i]) / 1.0e7;
+            latitudes[i] = camber_osm_latitude(places[first + i]) / 1.0e7;
+        }
+        camber_world_points(longitudes, latitudes, count, world + 2 * first);
     }
 }
 
+/* Adds the nodes of a way, the first of which is the run's node of this number. */
+static void add_nodes(const camber_osm_way *way, size_t first, made_run *run) {
+    const double *world = (const double *)(const void *)run->world.bytes;
+    const uint64_t *places = (const uint64_t *)(const void *)run->places.bytes;
+    camber_world_lines_add_points(&run->lines, world + 2 * first, way->node_count);
+    for (size_t i = first; i < first + way->node_count; i++)
+        run->lines.clamped_points += fabs((double)camber_osm_latitude(places[i])) > CAMBER_MERCATOR_LATITUDE * 1.0e7;
+}
+
 /* Makes a ring of a closed way. counts: what is counted of its points was not counted with an outline. */
-static bool make_ring(const camber_osm_way *way, camber_osm_unpacking *from, made_run *run, bool counts) {
+static bool make_ring(const camber_osm_way *way, size_t node, made_run *run, bool counts) {
     camber_world_lines *lines = &run->lines;
     camber_rings rings = {.stats = &run->stats};
     const size_t first = lines->point_count, clamped = lines->clamped_points;
     bool crosses = false;
     lines->uncut = true;
-    add_nodes(way, from, lines);
+    add_nodes(way, node, run);
     lines->uncut = false;
     size_t count = camber_ring_unroll(lines->points + 2 * first, lines->point_count - first, &crosses);
     count = camber_rings_take(&rings, lines->points + 2 * first, count, false);
@@ -96,36 +118,21 @@ static bool make_ring(const camber_osm_way *way, camber_osm_unpacking *from, mad
     return count > 0;
 }
 
-static void keep_places(const camber_osm_way *way, camber_osm_unpacking *from, made_run *run) {
-    for (uint32_t i = 0; i < way->node_count; i++) {
-        camber_osm_unpack_node(from);
-        ((uint64_t *)(void *)run->places.bytes)[run->place_count++] =
-            camber_osm_place((int32_t)from->longitude, (int32_t)from->latitude);
-    }
-}
-
-/* The lines of a way that was packed, its ring if it is an area, and its places if it is a relation's. */
-static void make_way(const camber_style *style, const camber_osm_way *way, camber_osm_unpacking *from, made_run *run) {
+/* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
+static void make_way(const camber_style *style, const camber_osm_way *way, size_t node, made_run *run) {
     camber_world_lines *lines = &run->lines;
     const size_t lines_before = lines->line_count;
     const bool area = way->tags & CAMBER_OSM_WAY_AREA, bare = way->tags & CAMBER_OSM_WAY_BARE;
     const bool has_lines = !bare && (!area || style->wants_polygons);
-    const camber_osm_unpacking start = *from;
-    made_way made = {.tags = way->tags};
+    made_way made = {.tags = way->tags, .first_place = node};
     if (has_lines) {
-        add_nodes(way, from, lines);
+        add_nodes(way, node, run);
         camber_world_lines_end(lines);
     }
     made.line_count = (uint32_t)(lines->line_count - lines_before);
-    if (area && style->wants_areas) {
-        *from = start;
-        made.has_ring = make_ring(way, from, run, !has_lines);
-    }
-    if (way->tags & CAMBER_OSM_WAY_MEMBER) {
-        *from = start;
+    made.has_ring = area && style->wants_areas && make_ring(way, node, run, !has_lines);
+    if (way->tags & CAMBER_OSM_WAY_MEMBER)
         made.place_count = way->node_count;
-        keep_places(way, from, run);
-    }
     ((made_way *)(void *)run->ways.bytes)[run->way_count++] = made;
 }
 
@@ -143,17 +150,20 @@ static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     if (!camber_osm_reserve(pass, &run->points, points * 2 * sizeof(double), failure) ||
         !camber_osm_reserve(pass, &run->ends, ends * sizeof(size_t), failure) ||
         !camber_osm_reserve(pass, &run->ways, from->way_count * sizeof(made_way), failure) ||
-        (ways->relations.count &&
-         !camber_osm_reserve(pass, &run->places, from->node_count * sizeof(uint64_t), failure)))
+        !camber_osm_reserve(pass, &run->places, (from->node_count + 1) * sizeof(uint64_t), failure) ||
+        !camber_osm_reserve(pass, &run->world, (from->node_count + 1) * 2 * sizeof(double), failure))
         return false;
-    run->way_count = run->place_count = 0;
+    run->way_count = 0;
     run->stats = (camber_features_stats){0};
     run->lines =
         (camber_world_lines){.points = (double *)(void *)run->points.bytes, .ends = (size_t *)(void *)run->ends.bytes};
-    camber_osm_unpacking places = camber_osm_unpack_run(ways, from);
-    for (const camber_osm_way *way = ways->ways + from->first_way, *end = way + from->way_count; way < end; way++)
+    project_run(ways, from, run);
+    size_t node = 0;
+    for (const camber_osm_way *way = ways->ways + from->first_way, *end = way + from->way_count; way < end; way++) {
         if (way->node_count || way->tags & CAMBER_OSM_WAY_MEMBER)
-            make_way(style, way, &places, run);
+            make_way(style, way, node, run);
+        node += way->node_count;
+    }
     return true;
 }
 
@@ -217,9 +227,8 @@ static camber_status add_run(void *user, size_t part, void *slot) {
         status = add_way(self, &ways[i], filled, &run->lines, &line);
         if (!member || status != CAMBER_OK)
             continue;
-        status = camber_osm_relations_add_places(relations, self->met++, places, ways[i].place_count);
-        if (ways[i].place_count)
-            places += ways[i].place_count;
+        status =
+            camber_osm_relations_add_places(relations, self->met++, places + ways[i].first_place, ways[i].place_count);
     }
     self->features->stats.empty_rings += run->stats.empty_rings;
     self->clamped += run->lines.clamped_points;
@@ -247,8 +256,7 @@ static camber_status add_ring(reader *self, made_area *area, const camber_osm_ri
         return CAMBER_ERROR_MEMORY;
     for (size_t i = ring->first; i < ring->first + ring->count; i++) {
         const uint64_t place = area->assembly.places[i];
-        camber_world_lines_add_degrees(lines, (double)(int32_t)(uint32_t)(place >> 32) / 1.0e7,
-                                       (double)(int32_t)(uint32_t)place / 1.0e7);
+        camber_world_lines_add_degrees(lines, camber_osm_longitude(place) / 1.0e7, camber_osm_latitude(place) / 1.0e7);
     }
     size_t count = camber_ring_unroll(lines->points, lines->point_count, &crosses);
     self->splits += crosses;
@@ -282,7 +290,7 @@ static camber_status make_areas(reader *self) {
         return CAMBER_OK;
     camber_free(self->context, ways->packed);
     ways->packed = NULL;
-    ways->packed_bytes = ways->packed_capacity = 0;
+    ways->packed_count = ways->packed_capacity = 0;
     if (ways->set_count)
         memset(self->classes[CAMBER_GEOMETRY_AREA], 0, ways->set_count * sizeof **self->classes);
     camber_status status = camber_features_find_layer(self->features, RELATION_LAYER, &self->layer);
@@ -317,6 +325,13 @@ static camber_status make_lines(reader *self) {
     camber_status status = camber_osm_pack(ways, &pack, &self->skipped);
     if (status == CAMBER_OK)
         status = camber_features_find_layer(features, LAYER, &self->layer);
+    size_t points = features->point_count;
+    for (size_t i = 0; i < ways->run_count; i++)
+        points += ways->runs[i].node_count;
+    /* At once: an array that grows is copied, and takes half as much again. */
+    if (status == CAMBER_OK &&
+        !camber_grow(self->context, &features->points, &features->point_capacity, points, 2 * sizeof *features->points))
+        status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
         status = camber_osm_pass_run(&pass, &declined);
     return status == CAMBER_OK ? make_areas(self) : status;
@@ -324,29 +339,21 @@ static camber_status make_lines(reader *self) {
 
 /* ---- A file ---- */
 
-static camber_status read_relations(reader *self, const camber_osm_file *file, size_t *end, bool *declined) {
-    *end = 0;
-    if (!self->features->style->wants_areas || self->desc->layer)
-        return CAMBER_OK;
-    const camber_status status = camber_osm_ways_end(file, end, declined);
-    if (status != CAMBER_OK || *declined)
-        return status;
-    /* The last blob that begins with ways may go on with relations. */
-    const camber_osm_ways_desc desc = {file, *end ? *end - 1 : 0, *end, self->threads, 0.0, 0.0};
-    return camber_osm_relations_read(&self->ways, &desc, declined);
-}
-
 static camber_status read_places(reader *self, const camber_osm_file *file, bool *declined) {
-    size_t end = 0, relations = 0;
-    camber_status status = camber_osm_nodes_end(file, &end, declined);
-    if (status == CAMBER_OK && !*declined)
-        status = read_relations(self, file, &relations, declined);
+    const bool areas = self->features->style->wants_areas && !self->desc->layer;
+    camber_osm_ends ends;
+    camber_status status = camber_osm_find_ends(file, areas, self->threads, &ends, declined);
     if (status != CAMBER_OK || *declined)
         return status;
-    /* The last blob that begins with nodes may go on with ways. */
-    const camber_osm_ways_desc ways = {file, end ? end - 1 : 0, relations, self->threads, 0.0, WAYS_SHARE};
-    const camber_osm_nodes_desc nodes = {file, end, self->threads, WAYS_SHARE, NODES_SHARE};
-    status = camber_osm_ways_read(&self->ways, &ways, declined);
+    /* The last blob that begins with ways may go on with relations, and the last that begins with nodes with ways. */
+    const camber_osm_ways_desc relations = {file, ends.ways ? ends.ways - 1 : 0, ends.ways, self->threads, 0.0, 0.0};
+    const camber_osm_ways_desc ways = {file,      ends.nodes ? ends.nodes - 1 : 0, ends.ways, self->threads, 0.0,
+                                       WAYS_SHARE};
+    const camber_osm_nodes_desc nodes = {file, ends.nodes, self->threads, WAYS_SHARE, NODES_SHARE};
+    if (areas)
+        status = camber_osm_relations_read(&self->ways, &relations, declined);
+    if (status == CAMBER_OK && !*declined)
+        status = camber_osm_ways_read(&self->ways, &ways, declined);
     if (status == CAMBER_OK && !*declined)
         status = camber_osm_nodes_read(&self->ways.nodes, &nodes, declined);
     return status;

@@ -11,7 +11,7 @@
 #include <strings.h>
 
 /* A run is what one thread makes lines of at a time. */
-enum { RUN_NODES = 16384, FIRST_SLOTS = 1024 };
+enum { RUN_NODES = 16384, FIRST_SLOTS = 1024, FIRST_LEAF_SLOTS = 16384 };
 enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, STRING = 1 };
 enum { RELATION_ROLES = 8, RELATION_MEMBERS = 9, RELATION_TYPES = 10, MEMBER_WAY = 1 };
 static const uint32_t NO_STRING = UINT32_MAX, NO_PROPERTY = UINT32_MAX;
@@ -93,6 +93,7 @@ void camber_osm_ways_free(camber_osm_ways *ways) {
     camber_free(context, ways->values);
     camber_free(context, ways->runs);
     camber_free(context, ways->packed);
+    camber_free(context, ways->leaves);
     camber_free(context, ways->ids);
     camber_free(context, ways->ways);
     camber_free(context, ways->keys);
@@ -102,18 +103,27 @@ void camber_osm_ways_free(camber_osm_ways *ways) {
 
 typedef struct block {
     camber_osm_unpacked unpacked;
-    camber_osm_block strings; /* uint32_t: where the table has them */
-    camber_osm_block roles;   /* uint16_t a string: its key + 2; 1: it is no key; 0: not looked up */
-    camber_osm_block sets;    /* uint32_t: strings of properties, a set after the other */
-    camber_osm_block slots;   /* uint32_t: a hash table of sets; index + 1 */
-    camber_osm_block ways;    /* camber_osm_way, with sets of the block */
-    camber_osm_block ids;
-    camber_osm_block members;   /* of relations: camber_osm_member; of ways: their indices among the relations' ways */
-    camber_osm_block relations; /* camber_osm_relation, with sets and members of the block */
+    camber_osm_block strings;    /* uint32_t: where the table has them */
+    camber_osm_block roles;      /* uint16_t a string: its key + 2; 1: it is no key; 0: not looked up */
+    camber_osm_block sets;       /* uint32_t: strings of properties, a set after the other */
+    camber_osm_block slots;      /* uint32_t: a hash table of sets; index + 1 */
+    camber_osm_block ways;       /* camber_osm_way, with sets of the block */
+    camber_osm_block ids;        /* uint32_t, as camber_osm_ways has them */
+    camber_osm_block leaves;     /* block_leaf */
+    camber_osm_block leaf_slots; /* uint32_t: a hash table of leaves; index + 1 */
+    camber_osm_block members;    /* of relations: camber_osm_member; of ways: their indices among the relations' ways */
+    camber_osm_block relations;  /* camber_osm_relation, with sets and members of the block */
     camber_wire table;
-    size_t string_count, set_count, slot_count, way_count, id_bytes, member_count, relation_count;
+    size_t string_count, set_count, slot_count, way_count, id_count, leaf_count, leaf_slot_count;
+    size_t member_count, relation_count;
     bool has_ways;
 } block;
+
+/* Ids that a block names, as a leaf of the nodes has them: so the file's leaves are looked up once a block. */
+typedef struct block_leaf {
+    uint64_t id; /* the upper bits of the ids */
+    uint64_t bits[CAMBER_OSM_LEAF_WORDS];
+} block_leaf;
 
 typedef struct decoder {
     const camber_osm_ways *ways;
@@ -122,6 +132,8 @@ typedef struct decoder {
     camber_osm_failure *failure;
     size_t property_count;
     camber_osm_finger finger; /* among the relations' ways */
+    uint64_t last_leaf_id;    /* UINT64_MAX: none yet */
+    uint32_t last_leaf;
 } decoder;
 
 static void free_block(camber_context *context, void *slot) {
@@ -129,6 +141,8 @@ static void free_block(camber_context *context, void *slot) {
     camber_osm_unpacked_free(context, &one->unpacked);
     camber_free(context, one->relations.bytes);
     camber_free(context, one->members.bytes);
+    camber_free(context, one->leaf_slots.bytes);
+    camber_free(context, one->leaves.bytes);
     camber_free(context, one->ids.bytes);
     camber_free(context, one->ways.bytes);
     camber_free(context, one->slots.bytes);
@@ -278,24 +292,69 @@ static bool read_tags(decoder *self, camber_wire keys, camber_wire values, tag_f
     return true;
 }
 
-/* Copies the differences of ids as they are. */
-static bool copy_ids(decoder *self, camber_wire ids, uint64_t count, camber_osm_way way) {
+static bool grow_leaves(decoder *self) {
     block *to = self->to;
-    const size_t size = (size_t)(ids.end - ids.at);
+    const size_t slots = to->leaf_slot_count ? 2 * to->leaf_slot_count : FIRST_LEAF_SLOTS;
+    if (to->leaf_count >= UINT32_MAX >> CAMBER_OSM_LEAF_BITS)
+        return camber_osm_decline(self->failure);
+    if (!camber_osm_reserve(self->pass, &to->leaf_slots, slots * sizeof(uint32_t), self->failure) ||
+        !camber_osm_reserve(self->pass, &to->leaves, slots / 2 * sizeof(block_leaf), self->failure))
+        return false;
+    uint32_t *table = (uint32_t *)(void *)to->leaf_slots.bytes;
+    const block_leaf *leaves = (const block_leaf *)(const void *)to->leaves.bytes;
+    memset(table, 0, slots * sizeof *table);
+    to->leaf_slot_count = slots;
+    for (size_t i = 0; i < to->leaf_count; i++) {
+        size_t slot = (size_t)camber_mix(0, leaves[i].id) & (slots - 1);
+        while (table[slot])
+            slot = (slot + 1) & (slots - 1);
+        table[slot] = (uint32_t)i + 1;
+    }
+    return true;
+}
+
+/* Finds a leaf among those of the block, or adds it to them. It is then the last. */
+static bool find_leaf(decoder *self, uint64_t leaf_id) {
+    block *to = self->to;
+    if (to->leaf_count >= to->leaf_slot_count / 2 && !grow_leaves(self))
+        return false;
+    uint32_t *table = (uint32_t *)(void *)to->leaf_slots.bytes;
+    block_leaf *leaves = (block_leaf *)(void *)to->leaves.bytes;
+    size_t slot = (size_t)camber_mix(0, leaf_id) & (to->leaf_slot_count - 1);
+    while (table[slot] && leaves[table[slot] - 1].id != leaf_id)
+        slot = (slot + 1) & (to->leaf_slot_count - 1);
+    if (!table[slot]) {
+        leaves[to->leaf_count] = (block_leaf){.id = leaf_id};
+        table[slot] = (uint32_t)++to->leaf_count;
+    }
+    self->last_leaf_id = leaf_id;
+    self->last_leaf = table[slot] - 1;
+    return true;
+}
+
+/* Adds a way with the ids of its nodes. */
+static bool add_way(decoder *self, camber_wire ids, uint64_t count, camber_osm_way way) {
+    block *to = self->to;
     uint64_t id = 0;
-    if (count > UINT32_MAX || !camber_osm_reserve(self->pass, &to->ids, to->id_bytes + size, self->failure) ||
+    if (count > UINT32_MAX ||
+        !camber_osm_reserve(self->pass, &to->ids, (to->id_count + count) * sizeof(uint32_t), self->failure) ||
         !camber_osm_reserve(self->pass, &to->ways, (to->way_count + 1) * sizeof way, self->failure))
         return false;
-    memcpy(to->ids.bytes + to->id_bytes, ids.at, size);
-    while (ids.at < ids.end) {
+    uint32_t *at = (uint32_t *)(void *)to->ids.bytes + to->id_count;
+    for (const uint32_t *end = at + count; at < end;) {
         id += (uint64_t)camber_wire_signed(&ids);
-        if (id >= (uint64_t)CAMBER_OSM_MOST_ID)
+        if (ids.bad || id >= (uint64_t)CAMBER_OSM_MOST_ID)
             return ids.bad ? camber_osm_fail(self->failure, "a way that does not parse")
                            : camber_osm_decline(self->failure);
+        if (id >> CAMBER_OSM_LEAF_BITS != self->last_leaf_id && !find_leaf(self, id >> CAMBER_OSM_LEAF_BITS))
+            return false;
+        const uint32_t low = (uint32_t)id & ((1U << CAMBER_OSM_LEAF_BITS) - 1);
+        ((block_leaf *)(void *)to->leaves.bytes)[self->last_leaf].bits[low >> 6] |= UINT64_C(1) << (low & 63);
+        *at++ = self->last_leaf << CAMBER_OSM_LEAF_BITS | low;
     }
-    if (ids.bad)
+    if (ids.at < ids.end) /* the last is cut off */
         return camber_osm_fail(self->failure, "a way that does not parse");
-    to->id_bytes += size;
+    to->id_count += (size_t)count;
     ((camber_osm_way *)(void *)to->ways.bytes)[to->way_count++] = way;
     return true;
 }
@@ -349,7 +408,7 @@ static bool read_way(decoder *self, camber_wire wire) {
         return false;
     bits |= bare ? CAMBER_OSM_WAY_BARE : facts.area ? CAMBER_OSM_WAY_AREA : 0u;
     return (!(bits & CAMBER_OSM_WAY_MEMBER) || add_member_index(self)) &&
-           copy_ids(self, ids, count, (camber_osm_way){set * CAMBER_OSM_WAY_BITS | bits, (uint32_t)count});
+           add_way(self, ids, count, (camber_osm_way){set * CAMBER_OSM_WAY_BITS | bits, (uint32_t)count});
 }
 
 /* relations_allowed: they were read before, or do not matter. */
@@ -386,7 +445,9 @@ static bool begin_block(const reading *all, camber_osm_pass *pass, size_t blob, 
     self->pass = pass;
     self->property_count = all->ways->features->style->property_count;
     self->finger = (camber_osm_finger){.leaf_id = UINT64_MAX, .id = -2};
-    to->set_count = to->slot_count = to->way_count = to->id_bytes = to->member_count = to->relation_count = 0;
+    self->last_leaf_id = UINT64_MAX;
+    to->set_count = to->slot_count = to->way_count = to->id_count = to->member_count = to->relation_count = 0;
+    to->leaf_count = to->leaf_slot_count = 0;
     to->has_ways = false;
     return camber_osm_file_unpack(all->desc->file, blob, pass, &to->unpacked, entities, self->failure) &&
            list_strings(self, entities->strings);
@@ -592,32 +653,35 @@ static camber_status add_set(camber_osm_ways *ways, const block *from, const uin
     return CAMBER_OK;
 }
 
-static camber_status add_ids(camber_osm_ways *ways, const uint8_t *bytes, size_t size, const camber_osm_way *way,
-                             size_t *used) {
-    camber_wire wire = {bytes + *used, bytes + size, false};
-    uint64_t id = 0;
-    camber_status status = CAMBER_OK;
-    for (uint32_t i = 0; i < way->node_count && status == CAMBER_OK; i++) {
-        id += (uint64_t)camber_wire_signed(&wire);
-        status = camber_osm_node_set_add(&ways->nodes, (int64_t)id);
-    }
-    *used = (size_t)(wire.at - bytes);
-    return status;
-}
-
-/* Adds a way whose ids lie at this place to the last run, or to a new one. */
-static camber_status add_to_run(camber_osm_ways *ways, const camber_osm_way *way, size_t first_id) {
+/* Adds a way of a block, whose leaves begin at this place, to the last run, or to a new one. */
+static camber_status add_to_run(camber_osm_ways *ways, const camber_osm_way *way, size_t first_leaf) {
     camber_osm_run *last = ways->run_count ? &ways->runs[ways->run_count - 1] : NULL;
-    if (!last || last->node_count + way->node_count > RUN_NODES) {
+    if (!last || last->first_leaf != first_leaf || last->node_count + way->node_count > RUN_NODES) {
         if (!camber_grow(ways->context, &ways->runs, &ways->run_capacity, ways->run_count + 1, sizeof *ways->runs))
             return CAMBER_ERROR_MEMORY;
         last = &ways->runs[ways->run_count++];
-        *last = (camber_osm_run){.first_way = ways->way_count, .first_id = first_id};
+        *last = (camber_osm_run){.first_way = ways->way_count, .first_id = ways->node_count, .first_leaf = first_leaf};
     }
     last->way_count++;
     last->node_count += way->node_count;
     ways->node_count += way->node_count;
     return CAMBER_OK;
+}
+
+/* Adds the ids that a block names to the file's nodes. */
+static camber_status add_ids(camber_osm_ways *ways, const block *from) {
+    const block_leaf *leaves = (const block_leaf *)(const void *)from->leaves.bytes;
+    camber_status status = CAMBER_OK;
+    if (!camber_grow(ways->context, &ways->ids, &ways->id_capacity, ways->node_count + from->id_count,
+                     sizeof *ways->ids) ||
+        !camber_grow(ways->context, &ways->leaves, &ways->leaf_capacity, ways->leaf_count + from->leaf_count,
+                     sizeof *ways->leaves))
+        return CAMBER_ERROR_MEMORY;
+    memcpy(ways->ids + ways->node_count, from->ids.bytes, from->id_count * sizeof *ways->ids);
+    for (size_t i = 0; i < from->leaf_count && status == CAMBER_OK; i++)
+        status =
+            camber_osm_node_set_add_leaf(&ways->nodes, leaves[i].id, leaves[i].bits, &ways->leaves[ways->leaf_count++]);
+    return status;
 }
 
 /* Gives the sets of a block to the file; ways->local has their numbers. */
@@ -646,27 +710,24 @@ static camber_status add_member(camber_osm_ways *ways, const camber_osm_way *way
 static camber_status add_block(void *user, size_t part, void *slot) {
     camber_osm_ways *ways = ((const reading *)user)->ways;
     const block *from = slot;
-    const size_t first_id = ways->id_bytes;
+    const size_t first_leaf = ways->leaf_count;
     const camber_osm_way *added = (const camber_osm_way *)(const void *)from->ways.bytes;
     const uint32_t *members = (const uint32_t *)(const void *)from->members.bytes;
-    size_t used = 0, member = 0;
+    size_t member = 0;
     (void)part;
     if (from->way_count == 0)
         return CAMBER_OK;
     if (!camber_grow(ways->context, &ways->ways, &ways->way_capacity, ways->way_count + from->way_count,
-                     sizeof *ways->ways) ||
-        !camber_grow(ways->context, &ways->ids, &ways->id_capacity, ways->id_bytes + from->id_bytes, 1))
+                     sizeof *ways->ways))
         return CAMBER_ERROR_MEMORY;
-    memcpy(ways->ids + first_id, from->ids.bytes, from->id_bytes);
-    ways->id_bytes += from->id_bytes;
-    camber_status status = add_sets(ways, from);
+    camber_status status = add_ids(ways, from);
+    if (status == CAMBER_OK)
+        status = add_sets(ways, from);
     for (size_t i = 0; i < from->way_count && status == CAMBER_OK; i++) {
         const uint32_t bits = added[i].tags % CAMBER_OSM_WAY_BITS, local = added[i].tags / CAMBER_OSM_WAY_BITS;
         const uint32_t set = bits & CAMBER_OSM_WAY_BARE ? 0 : ways->local[local];
         const camber_osm_way way = {set * CAMBER_OSM_WAY_BITS | bits, added[i].node_count};
-        status = add_to_run(ways, &way, first_id + used);
-        if (status == CAMBER_OK)
-            status = add_ids(ways, from->ids.bytes, from->id_bytes, &way, &used);
+        status = add_to_run(ways, &way, first_leaf);
         if (status == CAMBER_OK && bits & CAMBER_OSM_WAY_MEMBER)
             status = add_member(ways, &way, members[member++]);
         ways->ways[ways->way_count++] = way;

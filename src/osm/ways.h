@@ -30,9 +30,10 @@ typedef struct camber_osm_way {
     uint32_t node_count;
 } camber_osm_way;
 
-/* Ways in a row, and where the ids of their nodes begin; later, where their places do (packed.h). */
+/* Ways in a row, of one block, and where the ids of their nodes begin and the block's leaves; later, where their places
+ * begin (packed.h). */
 typedef struct camber_osm_run {
-    size_t first_way, way_count, first_id, first_packed, node_count;
+    size_t first_way, way_count, first_id, first_leaf, first_packed, node_count;
 } camber_osm_run;
 
 typedef struct camber_osm_ways {
@@ -46,14 +47,16 @@ typedef struct camber_osm_ways {
 
     camber_osm_way *ways;
     size_t way_count, way_capacity;
-    uint8_t *ids; /* as the file has them: differences as varints, beginning anew with each way */
-    size_t id_bytes, id_capacity;
+    uint32_t *ids; /* node_count: a leaf of the block, times 2^CAMBER_OSM_LEAF_BITS, and the id's lower bits */
+    size_t id_capacity;
+    uint32_t *leaves; /* those of a block, one block after the other, as leaves of the nodes */
+    size_t leaf_count, leaf_capacity;
     camber_osm_run *runs;
     size_t run_count, run_capacity;
     size_t node_count; /* of all ways, each as often as it is named */
     camber_osm_node_set nodes;
-    uint8_t *packed; /* places, once they are known: differences as varints, beginning anew with each run */
-    size_t packed_bytes, packed_capacity;
+    uint32_t *packed; /* places, once they are known (packed.h), beginning anew with each run */
+    size_t packed_count, packed_capacity;
 
     /* Sets of tags that differ in what the style reads. */
     camber_value *values; /* set_count * style->property_count */

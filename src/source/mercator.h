@@ -7,14 +7,18 @@
 #ifndef CAMBER_SOURCE_MERCATOR_H
 #define CAMBER_SOURCE_MERCATOR_H
 
+#include <stddef.h>
+
 /* The latitude of y = 0: atan(sinh(pi)), degrees. */
 #define CAMBER_MERCATOR_LATITUDE 85.051128779806604
 
 /* The sphere of EPSG:3857, metres. */
 #define CAMBER_MERCATOR_RADIUS_M 6378137.0
 
-/* x is not wrapped: 190 degrees east lies beyond 1. y is infinite or NaN at and beyond the poles. */
+/* x is not wrapped: 190 degrees east lies beyond 1. y is NaN at and beyond the poles. */
 void camber_mercator_project(double longitude, double latitude, double *x, double *y);
+/* As many places, none beyond the limit, as pairs of x and y: in vectors, with the same bits. */
+void camber_mercator_project_many(const double *longitudes, const double *latitudes, size_t count, double *points);
 void camber_mercator_unproject(double x, double y, double *longitude, double *latitude);
 
 /* Metres of EPSG:3857, y up, to world coordinates. */

@@ -106,3 +106,19 @@ void camber_world_lines_add_degrees(camber_world_lines *lines, double longitude,
     /* The limit itself may come out a rounding error beyond the world. */
     add(lines, camber_mercator_wrap(x), fmin(fmax(y, 0), 1));
 }
+
+void camber_world_points(const double *longitudes, double *latitudes, size_t count, double *points) {
+    for (size_t i = 0; i < count; i++)
+        latitudes[i] = fabs(latitudes[i]) > CAMBER_MERCATOR_LATITUDE ? copysign(CAMBER_MERCATOR_LATITUDE, latitudes[i])
+                                                                     : latitudes[i];
+    camber_mercator_project_many(longitudes, latitudes, count, points);
+    for (size_t i = 0; i < count; i++) {
+        const double y = points[2 * i + 1];
+        points[2 * i + 1] = y < 0.0 ? 0.0 : y > 1.0 ? 1.0 : y;
+    }
+}
+
+void camber_world_lines_add_points(camber_world_lines *lines, const double *points, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        add(lines, points[2 * i], points[2 * i + 1]);
+}

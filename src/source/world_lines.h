@@ -35,9 +35,14 @@ size_t camber_world_lines_most_points(size_t point_count);
 size_t camber_world_lines_most_ends(size_t point_count);
 /* Adds a point to the open line, or opens one. Room has been made. */
 void camber_world_lines_add_degrees(camber_world_lines *lines, double longitude, double latitude);
+/* The same for points whose world coordinates camber_world_points made. */
+void camber_world_lines_add_points(camber_world_lines *lines, const double *points, size_t count);
 void camber_world_lines_add_metres(camber_world_lines *lines, double east, double north);
 /* Ends the line, if one is open; the next point opens another. */
 void camber_world_lines_end(camber_world_lines *lines);
 void camber_world_lines_free(camber_world_lines *lines);
+/* World coordinates of longitudes within 180 degrees, and of latitudes, which are moved to Web Mercator's limit: those
+ * that camber_world_lines_add_degrees adds. */
+void camber_world_points(const double *longitudes, double *latitudes, size_t count, double *points);
 
 #endif

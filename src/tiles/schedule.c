@@ -12,21 +12,27 @@
 
 #include "source/pmtiles.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* The time that a picture and a tile take besides its points, in points; 2026-11-25, two cores of an AMD EPYC. */
 static const double PICTURE_COST = 12e3, TILE_COST = 1.6e3;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
-/* The time to take a point from the file of features, in points that are drawn. */
-static const double READ_COST = 0.15;
+/* The time to take a point from the file of features, in points that are drawn; and to pass over it. */
+static const double READ_COST = 0.15, SKIP_COST = 0.12;
 /* The time to look whether deep tiles have a point. A part that goes on from wide zooms to deep ones holds all points.
  */
 static const double LOOK_COST = 0.2;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
-/* A point takes up to so much longer where many lie in a tile; half of that where so many do (2026-11-25). */
-static const double DENSE_COST = 0.6, DENSE_POINTS = 150e3;
+/* A point takes up to so much longer where many lie in a tile; half of that where so many do (2026-11-26). */
+static const double DENSE_COST = 0.9, DENSE_POINTS = 50e3;
+/* Where more points lie in a square of 32 px they hide each other, and each takes less: as the root of their number
+ * (2026-11-26, of 10 million points in one tile 0.37 us, in tiles of zoom 3 0.8). The squares are tiles of a zoom that
+ * is so many deeper. */
+static const double CROWD_POINTS = 250e3;
+enum { CROWD_ZOOMS = 3 };
 enum { CUT_STEPS = 60 };
 
 static unsigned count_tiles(uint64_t tiles) {
@@ -208,7 +214,8 @@ typedef struct walk {
     size_t *order; /* of the tasks: wide ones, then deep ones */
     size_t wide;   /* so many are wide */
     int deepest;   /* zoom */
-    double read_all, look_all;
+    double read_all, skip_all, look_all;
+    double crowd[CAMBER_LARGEST_TILE_ZOOM + 1]; /* of each zoom: what a point's time is multiplied by */
 } walk;
 
 static int compare_deep(const void *left, const void *right) {
@@ -219,6 +226,15 @@ static int compare_deep(const void *left, const void *right) {
 /* Finds out what the walk is like: the tasks come by zoom, and a deep zoom has no wide one below it. */
 static void measure(walk *w) {
     const camber_schedule *s = w->schedule;
+    double points[CAMBER_LARGEST_TILE_ZOOM + 1] = {0}, tiles[CAMBER_LARGEST_TILE_ZOOM + 1] = {0};
+    for (size_t i = 0; i < s->count; i++) {
+        points[s->tasks[i].zoom] += (double)s->tasks[i].points;
+        tiles[s->tasks[i].zoom] += count_tiles(s->tasks[i].touched);
+    }
+    for (int z = 0; z <= CAMBER_LARGEST_TILE_ZOOM; z++) {
+        const double most = z + CROWD_ZOOMS <= CAMBER_LARGEST_TILE_ZOOM ? CROWD_POINTS * tiles[z + CROWD_ZOOMS] : 0.0;
+        w->crowd[z] = most > 0.0 && points[z] > most ? sqrt(most / points[z]) : 1.0;
+    }
     for (size_t first = 0, end; first < s->count; first = end) {
         uint64_t most = 0, all = 0;
         for (end = first; end < s->count && s->tasks[end].zoom == s->tasks[first].zoom; end++) {
@@ -229,6 +245,7 @@ static void measure(walk *w) {
             w->wide = end;
         w->deepest = s->tasks[first].zoom;
         w->read_all = READ_COST * (double)all;
+        w->skip_all = SKIP_COST * (double)all;
         w->look_all = LOOK_COST * (double)all;
     }
 }
@@ -262,17 +279,17 @@ static camber_status order_tasks(walk *w) {
  * they are counted alone. Returns how many there are. */
 static uint64_t fill(const walk *w, double most, uint32_t *parts) {
     uint64_t part = 1;
-    double sum = w->wide ? w->read_all : 0.0;
+    double sum = w->skip_all + (w->wide ? w->read_all : 0.0);
     bool empty = true;
     for (size_t i = 0; i < w->schedule->count; i++) {
         const camber_tile_task *task = w->schedule->tasks + w->order[i];
         const double reads = i >= w->wide && task->zoom == w->deepest ? READ_COST * (double)task->points : 0.0;
-        const double cost = camber_task_cost(task) + reads;
+        const double cost = w->crowd[task->zoom] * camber_task_cost(task) + reads;
         if (i == w->wide && !empty)
             sum += w->look_all;
         if (sum + cost > most && !empty) {
             part++;
-            sum = i < w->wide ? w->read_all : 0.0;
+            sum = w->skip_all + (i < w->wide ? w->read_all : 0.0);
         }
         empty = false;
         sum += cost;
@@ -284,7 +301,7 @@ static uint64_t fill(const walk *w, double most, uint32_t *parts) {
 
 /* Finds the least time that the longest part takes. */
 static double find_most(const walk *w, uint32_t shards) {
-    double low = 0.0, high = w->read_all + w->look_all;
+    double low = 0.0, high = w->read_all + w->skip_all + w->look_all;
     for (size_t i = 0; i < w->schedule->count; i++)
         high += (1.0 + READ_COST) * camber_task_cost(w->schedule->tasks + i);
     for (int i = 0; i < CUT_STEPS; i++) {

@@ -54,6 +54,33 @@ static void test_there_and_back(void **state) {
     }
 }
 
+/* Against the C library's functions; and many at once have the same bits as each by itself. */
+static void test_many(void **state) {
+    enum { COUNT = 1701 };
+    static double longitudes[COUNT], latitudes[COUNT], points[2 * COUNT];
+    const double pi = 3.14159265358979323846;
+    (void)state;
+    for (int i = 0; i < COUNT; i++) {
+        longitudes[i] = (i - COUNT / 2) * 0.2109375;
+        latitudes[i] = (i - COUNT / 2) * 0.05;
+    }
+    camber_mercator_project_many(longitudes, latitudes, COUNT, points);
+    for (int i = 0; i < COUNT; i++) {
+        double x, y;
+        camber_mercator_project(longitudes[i], latitudes[i], &x, &y);
+        near(points[2 * i], x, 0);
+        near(points[2 * i + 1], y, 0);
+        near(y, 0.5 - asinh(tan(latitudes[i] * (pi / 180.0))) / (2.0 * pi), 1e-15);
+        near(points[2 * (COUNT - 1 - i) + 1] - 0.5, 0.5 - y, 2e-16);
+    }
+    static const double beyond[] = {90, -90, 91, -1000, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
+        double x, y;
+        camber_mercator_project(0, beyond[i], &x, &y);
+        assert_true(isnan(y));
+    }
+}
+
 /* A pixel at zoom 22 is 1 / (512 * 2^22) of the world; projection must be far finer. */
 static void test_precision(void **state) {
     (void)state;
@@ -91,7 +118,7 @@ static void test_wrap(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_known_places), cmocka_unit_test(test_there_and_back), cmocka_unit_test(test_precision),
-        cmocka_unit_test(test_metres),       cmocka_unit_test(test_wrap),
+        cmocka_unit_test(test_metres),       cmocka_unit_test(test_wrap),           cmocka_unit_test(test_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -258,6 +258,66 @@ static void test_nodes(void **state) {
     assert_int_equal(finish(it, true), 1);
 }
 
+/* Steps of 16 bits and about them, forth and back, and ids so far apart that each has a leaf of its own. */
+static void test_packing(void **state) {
+    enum { STEPS = 8, MOST = 1800, FAR_IDS = 5 * MOST }; /* GDAL takes 2000 nodes of a way */
+    static const int32_t steps[STEPS] = {32767, 32768, 32769, 65535, 65536, -32767, -32768, -32769};
+    static pbf_node apart[FAR_IDS];
+    static int64_t ids[FAR_IDS];
+    fixture *it = *state;
+    pbf_header(&it->file, "DenseNodes");
+    for (int i = 0; i < STEPS; i++)
+        for (int k = 0; k < STEPS; k++)
+            pbf_dense(&it->block,
+                      (const pbf_node[]){
+                          {1000 + 100 * i + k, 10000000 + steps[i] / 2, 20000000 + steps[k] / 2},
+                          {5000 + 100 * i + k, 10000000 + steps[i] / 2 - steps[i], 20000000 + steps[k] / 2 - steps[k]}},
+                      2);
+    pbf_end_block(&it->file, &it->block);
+    for (int i = 0; i < STEPS; i++)
+        for (int k = 0; k < STEPS; k++)
+            WAY(it, street, 1000 + 100 * i + k, 5000 + 100 * i + k, 1000 + 100 * i + k);
+    assert_int_equal(finish(it, true), STEPS * STEPS);
+    uint32_t random = 1; /* what packs too well is refused */
+    for (int i = 0; i < FAR_IDS; i++) {
+        random = random * 1664525 + 1013904223;
+        ids[i] = 1 + 1000 * (int64_t)i + random % 487;
+        apart[i] = (pbf_node){ids[i], 10000000 + (random >> 20), 20000000 + (random >> 21)};
+    }
+    pbf_header(&it->file, "DenseNodes");
+    pbf_dense(&it->block, apart, FAR_IDS);
+    pbf_end_block(&it->file, &it->block);
+    for (int first = 0; first < FAR_IDS; first += MOST)
+        add_way(it, street, MOST, ids + first);
+    add_way(it, street, MOST, ids + MOST / 2);
+    assert_int_equal(finish(it, true), FAR_IDS / MOST + 1);
+}
+
+/* Where ways and relations begin is found in files of so many blobs of each. */
+static void test_ends(void **state) {
+    static const char *const relation[] = {"type", "multipolygon", NULL};
+    fixture *it = *state;
+    it->on.style.wants_areas = true;
+    for (int n = 0; n < 6 * 7 * 3; n++) {
+        const int node_blobs = 1 + n / 3 % 7 * 2, way_blobs = 1 + n / 21 * 3, relation_blobs = n % 3 * 2;
+        pbf_header(&it->file, "DenseNodes");
+        for (int i = 0; i < node_blobs; i++) {
+            pbf_dense(&it->block,
+                      (const pbf_node[]){{10 * i, 10000000, 20000000}, {10 * i + 1, 10000000 + i, 20000001}}, 2);
+            pbf_end_block(&it->file, &it->block);
+        }
+        for (int i = 0; i < way_blobs; i++) {
+            WAY(it, street, 10 * (i % node_blobs), 10 * (i % node_blobs) + 1);
+            pbf_end_block(&it->file, &it->block);
+        }
+        for (int i = 0; i < relation_blobs; i++) {
+            pbf_relation(&it->block, relation, (const pbf_member[]){{1, "outer"}}, 1);
+            pbf_end_block(&it->file, &it->block);
+        }
+        assert_int_equal(finish(it, true), way_blobs);
+    }
+}
+
 /* Files left to GDAL: it has rules of its own for them, or says why it cannot read them. */
 static void test_declined(void **state) {
     fixture *it = *state;
@@ -668,6 +728,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_real_areas, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_ways, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_nodes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_packing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_ends, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_declined, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_filters, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_relations, set_up, tear_down),

@@ -13,8 +13,9 @@
 #include <string.h>
 
 /* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A tile with more segments
- * than HEAVY, and with more than one in SHARES of what each of the device's processors draws, is drawn by as many
- * work-items as it has rows of cells: each walks the whole list, but none is waited for in the end. */
+ * than HEAVY is drawn by as many work-items as it has rows of cells: each walks the list until its row is full. Edges
+ * are walked to their end. So where there are any, such a tile must also have more than one in SHARES of what each of
+ * the device's processors draws. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
@@ -216,7 +217,7 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
 
 static bool is_heavy(const camber_raster *raster, size_t tile) {
     const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
-    return count > HEAVY && SHARES * units * count > raster->starts[raster->tile_count];
+    return count > HEAVY && (raster->end_edge == 0 || SHARES * units * count > raster->starts[raster->tile_count]);
 }
 
 /* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. */

@@ -27,11 +27,11 @@ static const double LOOK_COST = 0.2;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
 /* A point takes up to so much longer where many lie in a tile; half of that where so many do (2026-11-26). */
-static const double DENSE_COST = 0.9, DENSE_POINTS = 50e3;
+static const double DENSE_COST = 0.6, DENSE_POINTS = 50e3;
 /* Where more points lie in a square of 32 px they hide each other, and each takes less: as the root of their number
  * (2026-11-26, of 10 million points in one tile 0.37 us, in tiles of zoom 3 0.8). The squares are tiles of a zoom that
  * is so many deeper. */
-static const double CROWD_POINTS = 250e3;
+static const double CROWD_POINTS = 600e3;
 enum { CROWD_ZOOMS = 3 };
 enum { CUT_STEPS = 60 };
 

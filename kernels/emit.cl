@@ -80,13 +80,11 @@ CAMBER_KERNEL(LANES, emit,
     const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1,
                  words = (1 + CAMBER_HAS_ARC_LENGTH) * CAMBER_RECORD_WORDS;
     camber_u32 rare[CAMBER_POINT_CHUNK], begins[CAMBER_POINT_CHUNK], goes_on[CAMBER_POINT_CHUNK];
-    camber_u32 near[CAMBER_POINT_CHUNK], other_join[CAMBER_POINT_CHUNK], other_last[CAMBER_POINT_CHUNK];
+    camber_u32 other_join[CAMBER_POINT_CHUNK], other_last[CAMBER_POINT_CHUNK];
 #pragma clang loop vectorize_width(16)
     for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
-        const camber_u32 join = camber_near_join(joins[first + n], joins[first + n - 1], joins[first + n + 1]);
-        const camber_u32 point = info[first + n], is_first = point & CAMBER_POINT_FIRST;
+        const camber_u32 join = joins[first + n], point = info[first + n], is_first = point & CAMBER_POINT_FIRST;
         const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
-        near[n] = join;
         rare[n] = is_rare(join, point);
         begins[n] = is_first ? CAMBER_RECORD_WORDS : 0u;
         goes_on[n] = ((camber_join_kind(join) ^ CAMBER_KIND_TIGHT) | ends) == 0u ? CAMBER_RECORD_WORDS : 0u;
@@ -100,7 +98,7 @@ CAMBER_KERNEL(LANES, emit,
         const size_t i = first + n;
         if (CAMBER_HAS_ARC_LENGTH | rare[n] | rare[n + 1] | rare[n + 2] | rare[n + 3]) {
             for (size_t p = i; p < i + 4; p++) {
-                const size_t count = put_any(x, y, p, near[p - first], info[p], to);
+                const size_t count = put_any(x, y, p, joins[p], info[p], to);
 #if CAMBER_HAS_ARC_LENGTH
                 put_arc_lengths(to, count, arc_lengths, p - 1);
 #endif
@@ -110,7 +108,7 @@ CAMBER_KERNEL(LANES, emit,
         }
         const uint4 px = as_uint4(vload4(0, x + i)), py = as_uint4(vload4(0, y + i));
         const uint4 xy_low = (uint4)(px.s0, py.s0, px.s1, py.s1), xy_high = (uint4)(px.s2, py.s2, px.s3, py.s3);
-        const uint4 join = vload4(0, near + n), last = vload4(0, info + i);
+        const uint4 join = vload4(0, joins + i), last = vload4(0, info + i);
         const uint4 low = (uint4)(join.s0, last.s0, join.s1, last.s1);
         const uint4 high = (uint4)(join.s2, last.s2, join.s3, last.s3);
         const uint4 join_2 = vload4(0, other_join + n), last_2 = vload4(0, other_last + n);
@@ -190,13 +188,16 @@ static inline void put_join(global camber_u32 *indices, camber_u32 record, cambe
 
 /* A point's record and indices; gives how many indices. */
 static inline size_t put_point(global const float *x, global const float *y, global const camber_u32 *info,
-                               global const camber_row *rows, global const camber_u32 *joins, size_t i,
-                               global camber_u32 *records, global camber_u32 *index) {
+                               global const camber_u32 *joins, size_t i, global camber_u32 *records,
+                               global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
-    const camber_u32 before = joins[i - 1], cap = rows[point >> CAMBER_POINT_ROW_SHIFT].cap;
+    const camber_u32 before = joins[i - 1], end = joins[join & CAMBER_JOIN_BEFORE_LAST ? i + 1 : i - 1];
+    const camber_u32 cap = camber_join_end(end) == CAMBER_ENDS_BUTT ? CAMBER_CAPS_BUTT : CAMBER_CAPS_ROUND;
     /* A record a slot, sentinels too: a ring's are where its seam's neighbours lie. */
-    const float half_shorter = camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i]);
-    put_record(records, i - 1, x[i], y[i], camber_record_join(join, before, joins[i + 1], cap, half_shorter), point);
+    put_record(records, i - 1, x[i], y[i],
+               camber_record_join(
+                   join, cap, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
+               point);
     if (kind == CAMBER_KIND_SENTINEL || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
         return 0;
     const camber_u32 here = (camber_u32)(i - 1) << CAMBER_CORNER_BITS, in_left = here | CAMBER_CORNER_IN_LEFT;
@@ -225,7 +226,7 @@ CAMBER_KERNEL(LANES, emit,
     const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
     size_t at = (size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16);
     for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i++) {
-        at += put_point(x, y, info, rows, joins, i, records, indices + at);
+        at += put_point(x, y, info, joins, i, records, indices + at);
 #if CAMBER_HAS_ARC_LENGTH
         put_arc_lengths(records + 2 * CAMBER_RECORD_WORDS * (i - 1), 1, arc_lengths, i - 1);
 #endif

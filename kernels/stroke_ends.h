@@ -84,12 +84,6 @@ CAMBER_FN void camber_half_turn(camber_real q, CAMBER_OUT(camber_real) c, CAMBER
     CAMBER_AT(s) = 2.0f * q * scale;
 }
 
-/* Whether a segment at a join is so short, near a butt cap, that it may leave open what the other one gives up. */
-CAMBER_FN camber_mask camber_is_brief(camber_words join) {
-    const camber_words most = CAMBER_WORD(CAMBER_STUB_MOST - 1u);
-    return CAMBER_JOIN_STUB(join) - 1u < most;
-}
-
 /* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
  * bisector on the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their
  * edges would be drawn twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it.
@@ -105,18 +99,13 @@ CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_mask butt,
 /* A join that is flat has the length of the stub behind it in units of this, and 1 more. */
 #define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 126.0f)
 
-/* The bits of an end that say where a join is flat: camber_cut_end. Before a butt cap the next segment may be too
- * short to cover what lies past the body on its inner side, before any short one, too; a bevel's triangle leaves that
- * open. A segment that is no longer than the stub does not know the other one's length: it is taken for a long one.
- * butt: the line ends with the next segment, in a butt cap; own: camber_owner_side; length: of the segment itself. */
+/* The bits of an end that say where a join before a butt cap is flat: camber_end_inside. A segment that is no longer
+ * than the stub does not know the other one's length: it is taken for a long one. butt: the line ends with the next
+ * segment, in a butt cap; own: camber_owner_side; length: of the segment itself. */
 CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, camber_mask own, camber_real length) {
     const camber_words stub = CAMBER_JOIN_STUB(join), none = CAMBER_WORD(0u), most = CAMBER_WORD(CAMBER_STUB_MOST);
-    const camber_words end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
-    const camber_mask bevel = CAMBER_EITHER(end == CAMBER_ENDS_BEVEL, end == CAMBER_ENDS_SPLIT_BEVEL);
-    const camber_mask opens = CAMBER_EITHER(bevel, CAMBER_EITHER(butt, camber_is_brief(join)));
-    const camber_mask knows = CAMBER_BOTH(butt, length > (CAMBER_TO_REAL(stub) + 1.0f) * CAMBER_STUB_UNIT_PX);
-    const camber_words behind = knows ? stub : most;
-    return CAMBER_EITHER(behind < most, CAMBER_BOTH(own, opens)) ? behind << CAMBER_END_FLAT_SHIFT : none;
+    const camber_words behind = length > (CAMBER_TO_REAL(stub) + 1.0f) * CAMBER_STUB_UNIT_PX ? stub : most;
+    return CAMBER_BOTH(butt, CAMBER_EITHER(own, behind < most)) ? behind << CAMBER_END_FLAT_SHIFT : none;
 }
 
 /* The tangent of half a turn, as images bend at joins; 0 where the line goes straight on. */

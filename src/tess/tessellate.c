@@ -345,7 +345,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         const bool is_round = desc->strokes[i].join == CAMBER_JOIN_ROUND;
         mesh->round_limits |= is_round && desc->strokes[i].round_limit > 1.0f;
         mesh->sharp_joins |= !is_round || desc->strokes[i].round_limit > 1.0f;
-        mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND || mesh->sharp_joins;
+        mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND;
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;

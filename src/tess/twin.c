@@ -32,10 +32,10 @@ typedef struct twin {
     bool failed; /* out of memory, or out of 32-bit indices: nothing is appended any more */
 } twin;
 
-/* The point that the walk has reached: its slot, info and join word, and the join words of the slots beside it. */
+/* The point that the walk has reached: its slot, info and join word, and the join word of the slot before. */
 typedef struct visited_point {
     size_t slot;
-    camber_u32 info, before, join, after;
+    camber_u32 info, before, join;
 } visited_point;
 
 static bool grow_records(twin *t) {
@@ -94,7 +94,7 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
         return camber_cap_word(row->cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
     const camber_u32 line_ends = camber_line_ends(p->info[slot - 1], p->info[slot + 1]);
     const camber_u32 join = camber_join_word(turn, row, t->method) | line_ends;
-    return t->method == CAMBER_STRIP ? join | camber_stub_pack(row->cap, turn.half_shorter) : join;
+    return t->method == CAMBER_STRIP ? join | camber_stub_pack(line_ends, row->cap, turn.half_shorter) : join;
 }
 
 /* ---- strip ---- */
@@ -240,14 +240,10 @@ static void walk_point(twin *t, const visited_point *p, float half_shorter) {
         camber_mesh_info_add_join(&t->data->info, p->join, p->info);
     }
     if (t->method != CAMBER_STRIP) /* a record for each slot, sentinels too */
-        push_point(t, p,
-                   camber_record_join(p->join, p->before, p->after, t->rows[p->info >> CAMBER_POINT_ROW_SHIFT].cap,
-                                      half_shorter),
+        push_point(t, p, camber_record_join(p->join, t->rows[p->info >> CAMBER_POINT_ROW_SHIFT].cap, half_shorter),
                    p->info);
-    visited_point strip = *p;
-    strip.join = camber_near_join(p->join, p->before, p->after);
     if (real && drawn && t->method == CAMBER_STRIP)
-        walk_strip_point(t, &strip);
+        walk_strip_point(t, p);
     else if (real && drawn)
         walk_body_point(t, p);
 }
@@ -256,14 +252,12 @@ static void walk(twin *t) {
     const camber_polylines *lines = t->polylines;
     const size_t slots =
         lines->first_slots[lines->polyline_count]; /* the padding behind them is not part of the mesh */
-    float half_shorter = 0.0f, half_after = 0.0f;
-    visited_point p = {.after = slots > 0 ? join_word(t, 1, &half_after) : 0u};
+    visited_point p = {0};
     for (p.slot = 1; p.slot <= slots && !t->failed; p.slot++) {
-        half_shorter = half_after;
+        float half_shorter = 0.0f;
         p.info = lines->info[p.slot];
         p.before = p.join;
-        p.join = p.after;
-        p.after = p.slot < slots ? join_word(t, p.slot + 1, &half_after) : 0u;
+        p.join = join_word(t, p.slot, &half_shorter);
         walk_point(t, &p, half_shorter);
     }
 }

@@ -302,7 +302,7 @@ static void test_reversed(void **state) {
 /* Known: a bevel's second line is looked for along the whole segment, so that a straight one on the way takes the
  * bend's correction back; and neighbours that the point makes shorter turn joins tight. */
 static void test_point_added(void **state) {
-    const size_t known = draws_in_cl() ? 24 : 20, known_tight = draws_in_cl() ? 30 : 27;
+    const size_t known = draws_in_cl() ? 24 : 20, known_tight = draws_in_cl() ? 30 : 26;
     property_check(&(property){"point added, plain joins", property_make_plain, check_point_added, 300, known}, *state);
     property_check(&(property){"point added, tight", property_make_any, check_point_added_tight, 300, known_tight},
                    *state);

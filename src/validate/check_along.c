@@ -7,13 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE_PX = 96, LINES = 3, PIXELS = SIDE_PX * SIDE_PX };
+enum { SIDE_PX = 96, LINES = 3, RINGS = 6, PIXELS = SIDE_PX * SIDE_PX };
 
-/* Apart from each other: straight, bent, curved. */
-static const float points[] = {6.3f,  9.6f,  89.1f, 20.2f, 10.3f, 34.6f, 38.1f, 30.2f, 60.8f, 47.4f,
-                               86.7f, 43.9f, 8.0f,  66.f,  18.0f, 58.0f, 28.0f, 56.0f, 38.0f, 60.0f,
-                               46.0f, 68.0f, 56.0f, 76.0f, 68.0f, 80.0f, 80.f,  78.0f, 88.0f, 70.0f};
-static const uint32_t offsets[] = {0, 2, 6, 15};
+/* Lines apart from each other: straight, bent, curved. Rings are these, closed, a square, and two bars over each other
+ * that are narrower than a pixel. */
+static const float points[] = {6.3f,  9.6f,  89.1f, 20.2f, 10.3f, 34.6f, 38.1f, 30.2f, 60.8f, 47.4f, 86.7f,
+                               43.9f, 8.0f,  66.f,  18.0f, 58.0f, 28.0f, 56.0f, 38.0f, 60.0f, 46.0f, 68.0f,
+                               56.0f, 76.0f, 68.0f, 80.0f, 80.f,  78.0f, 88.0f, 70.0f, 54.3f, 2.4f,  66.6f,
+                               2.4f,  66.6f, 9.7f,  54.3f, 9.7f,  70.1f, 2.4f,  70.9f, 2.4f,  70.9f, 14.7f,
+                               70.1f, 14.7f, 70.2f, 1.3f,  71.0f, 1.3f,  71.0f, 13.6f, 70.2f, 13.6f};
+static const uint32_t offsets[] = {0, 2, 6, 15, 19, 23, 27};
 
 static const float even[] = {9.3f, 6.1f}, roomy[] = {7, 10.5f, 0, 9};
 static const camber_dash dashes[] = {{even, 2}, {roomy, 4}};
@@ -45,8 +48,8 @@ static const struct {
     {"a ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps, WHITE}, {0.3, 0.002, 0.0005}},
     {"a steep ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 2, WHITE}, {0.65, 0.004, 0.0005}},
     {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 1, WHITE}, {0.3, 0.002, 0.0005}},
-    {"areas", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}},
-    {"areas by even-odd", CAMBER_CAP_BUTT, {.fill = fills + 1}, {0.2, 0.002, 0.0005}},
+    {"areas", CAMBER_CAP_BUTT, {.fill = fills}, {0.33, 0.002, 0.0005}},
+    {"areas by even-odd", CAMBER_CAP_BUTT, {.fill = fills + 1}, {0.33, 0.002, 0.0005}},
 };
 
 /* Red, then alpha. */
@@ -63,10 +66,10 @@ static bool take(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t r
     return true;
 }
 
-/* How often a line, closed, winds around a point: by its edges that pass to the left. */
-static int winding_around(size_t line, double x, double y) {
+/* How often a ring winds around a point: by its edges that pass to the left. */
+static int winding_around(size_t ring, double x, double y) {
     int winding = 0;
-    const size_t first = offsets[line], count = offsets[line + 1] - first;
+    const size_t first = offsets[ring], count = offsets[ring + 1] - first;
     for (size_t i = 0; i < count; i++) {
         const float *a = points + 2 * (first + i), *b = points + 2 * (first + (i + 1) % count);
         const double ax = (double)a[0], ay = (double)a[1], bx = (double)b[0], by = (double)b[1];
@@ -76,14 +79,16 @@ static int winding_around(size_t line, double x, double y) {
     return winding;
 }
 
-/* Adds what a line, closed, has inside, by samples. The lines lie apart. */
-static void add_inside(size_t line, camber_fill_rule rule, float *rgba) {
+/* Adds what all rings have inside, by samples. */
+static void add_inside(camber_fill_rule rule, float *rgba) {
     enum { SAMPLES = 32 };
     for (size_t i = 0; i < (size_t)PIXELS * SAMPLES * SAMPLES; i++) {
         const size_t pixel = i / (SAMPLES * SAMPLES), sample = i % (SAMPLES * SAMPLES);
         const double x = (double)(pixel % SIDE_PX) + ((double)(sample % SAMPLES) + 0.5) / SAMPLES;
         const double y = (double)(pixel / SIDE_PX) + ((double)(sample / SAMPLES) + 0.5) / SAMPLES;
-        const int winding = winding_around(line, x, y);
+        int winding = 0;
+        for (size_t ring = 0; ring < RINGS; ring++)
+            winding += winding_around(ring, x, y);
         if (rule == CAMBER_FILL_EVENODD ? winding % 2 != 0 : winding != 0)
             for (size_t k = 0; k < 4; k++)
                 rgba[4 * pixel + k] += 1.0f / (SAMPLES * SAMPLES);
@@ -100,15 +105,14 @@ static bool make_truth(size_t number, float truth[2 * PIXELS]) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
     const camber_paint *paint = &rows[number].paint;
     float *rgba = calloc(PIXELS, 4 * sizeof *rgba);
-    for (size_t i = 0; i < LINES && rgba; i++) {
+    if (rgba && paint->fill)
+        add_inside(paint->fill->rule, rgba);
+    for (size_t i = 0; i < LINES && rgba && !paint->fill; i++) {
         const camber_along_desc desc = {.points = points + 2 * offsets[i],
                                         .count = offsets[i + 1] - offsets[i],
                                         .cap = rows[number].cap,
                                         .paint = paint};
-        if (paint->fill)
-            add_inside(i, paint->fill->rule, rgba);
-        else
-            camber_along_add(&desc, window, rgba);
+        camber_along_add(&desc, window, rgba);
     }
     for (size_t i = 0; i < PIXELS && rgba; i++) {
         truth[i] = rgba[4 * i];
@@ -130,7 +134,7 @@ static camber_status draw(camber_context *context, const camber_drawing_path *pa
     const camber_pass pass = {.mesh = path->mesh, .paints = paint, .paint_count = 1};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
     const camber_areas_desc areas = {
-        .points = points, .point_count = offsets[LINES], .offsets = offsets, .ring_count = LINES};
+        .points = points, .point_count = offsets[RINGS], .offsets = offsets, .ring_count = RINGS};
     camber_polylines *polylines = NULL;
     camber_status status = paint->fill ? camber_areas_create(context, &areas, &polylines)
                                        : camber_polylines_create(context, &desc, &polylines);

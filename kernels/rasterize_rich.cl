@@ -2,6 +2,7 @@
 #ifndef CAMBER_RASTERIZE_RICH_CL
 #define CAMBER_RASTERIZE_RICH_CL
 
+#include "area_inside.h"
 #include "cells_of_one.cl"
 
 #if CAMBER_RASTER_RICH

@@ -208,10 +208,11 @@ static void draw_cells(camber_tile_state *c, const float *segment, const drawn_s
 }
 
 static void draw_segment(camber_tile_state *c, const camber_twin *t, uint32_t which, camber_tile_rows where) {
+    static const float no_lengths[CAMBER_SEGMENT_ARC_LENGTHS] = {0};
     const camber_raster_stages *stages = t->stages;
     const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * which;
     const float *arc_length =
-        stages->arc_lengths ? stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)which : NULL;
+        stages->arc_lengths ? stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)which : no_lengths;
     const camber_u32 flags = CAMBER_BITS(segment[CAMBER_SEGMENT_FLAGS]);
     drawn_segment by = {.extras = {0}, .eye = {0, 0, 0, 0}};
 #if CAMBER_STROKE_PITCHED

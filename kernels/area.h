@@ -14,7 +14,7 @@
  *     e2 ---|\-/       |           so that what wind counts and what a tile counts always fit together.
  *          +-----------+
  *
- * Lanes are edges while they are added, and rows of pixels while they are summed up. All sums are whole numbers. */
+ * Lanes are edges while they are cut, and the pixels of a cell while edges change them. All sums are whole numbers. */
 #ifndef CAMBER_KERNELS_AREA_H
 #define CAMBER_KERNELS_AREA_H
 

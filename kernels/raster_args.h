@@ -60,7 +60,7 @@ typedef struct camber_spill_args {
 #define CAMBER_SPILL_BLEND_COUNTS 56 /* the byte at which they begin, behind the sets of cells with a bit a cell */
 #define CAMBER_SPILL_ROWS 30         /* the word at which the rows' words begin */
 #define CAMBER_SPILL_WINDINGS 38     /* the same: the winding of an area's rings */
-#define CAMBER_SPILL_PLACED 46       /* the same: how many of its edges the tile has */
+#define CAMBER_SPILL_PLACED 46       /* the same: 1 + how many of its edges are kept; 0: no edge came by */
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
 #define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
 

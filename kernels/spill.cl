@@ -47,10 +47,11 @@ static inline void spill_area(const camber_area_state *s, global camber_u32 *cha
 }
 
 static inline void restore_area(camber_area_state *s, global const camber_u32 *changes, global const float *behind,
-                                int first, int last, int placed_count, ulong edged) {
+                                int first, int last, camber_u32 placed_word, ulong edged) {
     global const int *turns = (global const int *)behind;
     global const float *placed = behind + CAMBER_TURN_WORDS * CAMBER_TILE_CELLS;
-    if (placed_count == 0)
+    const int placed_count = (int)placed_word - 1;
+    if (placed_count < 0)
         return;
     camber_area_begin(s);
     s->edged = edged;
@@ -74,22 +75,22 @@ static inline void spill_cells(camber_tile_state *c, global float *spill, camber
     global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
     global camber_u32 *rows = (global camber_u32 *)spill + CAMBER_SPILL_ROWS;
     global float *planes = spill + CAMBER_SPILL_WORDS;
-    const camber_u32 placed_count = c->area.has_edges ? (camber_u32)c->area.placed_count : 0u;
-    const ulong of[CAMBER_SPILL_SETS] = {c->brushed,    c->filled,     c->done,      c->touched[0],
-                                         c->touched[1], c->touched[2], c->area.edged};
+    const camber_u32 placed = c->area.has_edges ? (camber_u32)c->area.placed_count + 1u : 0u;
+    const ulong of[CAMBER_SPILL_SETS] = {
+        c->brushed, c->filled, c->done, c->touched[0], c->touched[1], c->touched[2], placed ? c->area.edged : 0ul};
     for (int j = first; j <= last; j++) {
         for (int k = 0; k < CAMBER_SPILL_SETS; k++)
             bits[CAMBER_TILE_CELLS * k + j] = (uchar)(of[k] >> (CAMBER_TILE_CELLS * j));
         vstore8(vload8((size_t)j, c->blend_count), (size_t)j, blend_count);
         rows[j] = now;
         rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS] = (camber_u32)c->winding;
-        rows[j + CAMBER_SPILL_PLACED - CAMBER_SPILL_ROWS] = placed_count;
+        rows[j + CAMBER_SPILL_PLACED - CAMBER_SPILL_ROWS] = placed;
     }
     spill_planes(planes, c->brush[0], 0, 1, c->brushed);
     spill_planes(planes, c->level[CAMBER_PICTURE][0][0], 1, 4, c->touched[CAMBER_PICTURE]);
     if (c->now.mode == CAMBER_BRUSH_UNION)
         spill_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
-    if (placed_count)
+    if (placed)
         spill_area(&c->area, (global camber_u32 *)planes + plane_at(s.sums, 0, 0) * CAMBER_LANES,
                    planes + plane_at(s.behind, 0, 0) * CAMBER_LANES, first, last);
     spill_planes(planes, c->level[CAMBER_GROUP][0][0], s.group, 4, c->touched[CAMBER_GROUP]);
@@ -132,16 +133,16 @@ static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill
     if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
     c->now = brushes[now & CAMBER_SPILL_BRUSH];
-    int placed_count = 0;
+    camber_u32 placed = 0;
     for (int j = first; j <= last; j++)
         if (rows[j] != CAMBER_SPILL_FULL) {
             c->winding = (int)rows[j + CAMBER_SPILL_WINDINGS - CAMBER_SPILL_ROWS];
-            placed_count = (int)rows[j + CAMBER_SPILL_PLACED - CAMBER_SPILL_ROWS];
+            placed = rows[j + CAMBER_SPILL_PLACED - CAMBER_SPILL_ROWS];
         }
     if (c->now.mode == CAMBER_BRUSH_UNION)
         restore_planes(planes, c->sums[0][0], s.sums, 3, c->brushed);
     restore_area(&c->area, (global const camber_u32 *)planes + plane_at(s.sums, 0, 0) * CAMBER_LANES,
-                 planes + plane_at(s.behind, 0, 0) * CAMBER_LANES, first, last, placed_count, of[6]);
+                 planes + plane_at(s.behind, 0, 0) * CAMBER_LANES, first, last, placed, of[6]);
 #if CAMBER_RASTER_RICH
     if (c->now.mode == CAMBER_BRUSH_MASKED)
         restore_planes(planes, c->mask[0], s.layer + 4, 1, c->touched[CAMBER_LAYER]);

@@ -103,26 +103,25 @@ typedef struct camber_listed_edges {
 } camber_listed_edges;
 
 /* Takes them from number `first` of a list on. Lanes behind its end are no edges. */
-CAMBER_FN void camber_take_listed(CAMBER_GLOBAL const float *segments, CAMBER_GLOBAL const camber_u32 *list,
+CAMBER_FN void camber_take_listed(CAMBER_GLOBAL const float *edges, CAMBER_GLOBAL const camber_u32 *list,
                                   camber_u32 first, camber_u32 count, camber_listed_edges *l) {
-    float words[5][CAMBER_LANES];
+    float words[4][CAMBER_LANES];
     for (camber_u32 k = 0; k < CAMBER_LANES; k++) {
         const camber_u32 which = list[first + k < count ? first + k : first];
-        CAMBER_GLOBAL const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * which;
+        CAMBER_GLOBAL const float *ends = edges + camber_edge_ends(which);
         for (int i = 0; i < 4; i++)
-            words[i][k] = segment[i];
-        words[4][k] = first + k < count ? segment[CAMBER_SEGMENT_HALF_WIDTH] : CAMBER_EDGE_PX + 1.0f;
-        l->brushes[k] = CAMBER_BITS(segment[CAMBER_SEGMENT_BRUSH]);
+            words[i][k] = ends[i];
+        l->brushes[k] = first + k < count ? CAMBER_BITS(edges[camber_edge_brush(which)]) : CAMBER_NO_EDGE;
     }
     camber_ring_edges_of(CAMBER_LOAD(0, words[0]), CAMBER_LOAD(0, words[1]), CAMBER_LOAD(0, words[2]),
                          CAMBER_LOAD(0, words[3]), &l->edges);
-    l->are_edges = CAMBER_LOAD(0, words[4]) == CAMBER_EDGE_PX;
+    l->are_edges = CAMBER_LOAD(0, l->brushes) != CAMBER_NO_EDGE;
 }
 
 /* Makes the crossings of a row of tiles of the list of segments that may be edges and cross its top. Of edges that
  * cross it in one column, only the sum is left: mostly nothing. Returns how many crossings there are, at most one a
  * segment. */
-CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER_GLOBAL const camber_u32 *list,
+CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GLOBAL const camber_u32 *list,
                                      camber_u32 edge_count, camber_tile_grid of, float top,
                                      CAMBER_GLOBAL camber_u32 *crossings) {
     int turns[CAMBER_TILES_MAX], first = CAMBER_TILES_MAX, last = -1;
@@ -132,7 +131,7 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *segments, CAMBER
         turns[i] = 0;
     for (camber_u32 at = 0; at < edge_count; at += CAMBER_LANES) {
         camber_listed_edges l;
-        camber_take_listed(segments, list, at, edge_count, &l);
+        camber_take_listed(edges, list, at, edge_count, &l);
         const camber_mask cross = l.are_edges & camber_edges_cross(&l.edges, top);
         const camber_real x = camber_edges_crossing(&l.edges, top);
         for (int k = 0; k < CAMBER_LANES; k++) {

@@ -108,29 +108,17 @@ CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_re
     edge[2] = y * scale;
 }
 
-CAMBER_FN camber_real camber_pitch_edge_length(const camber_segment *s) {
-    return (s->bx - s->ax) * s->ux + (s->by - s->ay) * s->uy;
-}
-
-/* The edge of a ring, seen from `from` to `to`: a straight line in the picture, too. What lies behind the camera is
- * lower than the picture, and changes nothing in it. An end that two edges share stays the same point. */
-CAMBER_FN void camber_pitch_see_edge(camber_eye e, const camber_segment *s, camber_real from, camber_real to,
-                                     camber_segment *footprint) {
-    const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
-    const camber_mask is_whole = to >= camber_pitch_edge_length(s);
-    camber_real x0, y0, x1, y1;
+/* The edge of a ring: a straight line in the picture, too. What lies behind the camera is lower than the picture, and
+ * changes nothing in it. An end that two edges share stays the same point. Returns whether it is seen. */
+CAMBER_FN camber_mask camber_pitch_edge_of(camber_eye e, const camber_segment *s, camber_segment *footprint) {
+    const camber_real length = (s->bx - s->ax) * s->ux + (s->by - s->ay) * s->uy;
+    camber_real from = CAMBER_REAL(0.0f), to = length, x0, y0, x1, y1;
+    camber_mask all_over;
+    const camber_mask seen = camber_pitch_clip(e, s, &from, &to, &all_over), is_whole = to >= length;
     camber_pitch_see(e, s->ax + s->ux * from, s->ay + s->uy * from, &x0, &y0);
     camber_pitch_see(e, is_whole ? s->bx : s->ax + s->ux * to, is_whole ? s->by : s->ay + s->uy * to, &x1, &y1);
-    const camber_real dx = x1 - x0, dy = y1 - y0, seen = CAMBER_SQRT(dx * dx + dy * dy);
-    const camber_real scale = one / (seen > 0.0f ? seen : one);
-    footprint->ax = e.x + x0;
-    footprint->ay = e.y + y0;
-    footprint->bx = e.x + x1;
-    footprint->by = e.y + y1;
-    footprint->ux = seen > 0.0f ? dx * scale : one;
-    footprint->uy = seen > 0.0f ? dy * scale : none;
-    footprint->half_width = CAMBER_REAL(CAMBER_EDGE_PX);
-    footprint->reach = CAMBER_REAL(CAMBER_EDGE_REACH_PX);
+    camber_edge_segment(e.x + x0, e.y + y0, e.x + x1, e.y + y1, footprint);
+    return seen;
 }
 
 /* Makes a segment's footprint, and the words of its plane. Returns whether it is seen. Nothing is seen above the
@@ -155,29 +143,9 @@ CAMBER_FN camber_mask camber_pitch_segment_of(camber_eye e, float horizon, const
     camber_real to = along_b - along_a + camber_pitch_reach(end_b, cb, sb, h);
     camber_mask all_over;
     const camber_mask seen = camber_pitch_clip(e, s, &from, &to, &all_over);
-    camber_segment line = *s, edge = *s;
-    camber_pitch_footprint(e, s, from, to, all_over, &line, &plane->ends);
-    const camber_mask is_edge = h == CAMBER_EDGE_PX;
-    if (!CAMBER_ANY(is_edge)) {
-        *footprint = line;
-        return seen & (CAMBER_MORE(line.ay, line.by) + line.reach > horizon);
-    }
-    from = none;
-    to = camber_pitch_edge_length(s);
-    const camber_mask edge_seen = camber_pitch_clip(e, s, &from, &to, &all_over);
-    camber_pitch_see_edge(e, s, from, to, &edge);
-#define CAMBER_CHOOSE(name) line.name = is_edge ? edge.name : line.name
-    CAMBER_CHOOSE(ax);
-    CAMBER_CHOOSE(ay);
-    CAMBER_CHOOSE(bx);
-    CAMBER_CHOOSE(by);
-    CAMBER_CHOOSE(ux);
-    CAMBER_CHOOSE(uy);
-    CAMBER_CHOOSE(half_width);
-    CAMBER_CHOOSE(reach);
-#undef CAMBER_CHOOSE
-    *footprint = line;
-    return is_edge ? edge_seen : (seen & (CAMBER_MORE(line.ay, line.by) + line.reach > horizon));
+    *footprint = *s;
+    camber_pitch_footprint(e, s, from, to, all_over, footprint, &plane->ends);
+    return seen & (CAMBER_MORE(footprint->ay, footprint->by) + footprint->reach > horizon);
 }
 
 #endif

@@ -15,6 +15,7 @@ typedef struct camber_tile_grid {
 typedef struct camber_setup_args {
     camber_u32 first, end, record_count; /* the range's records [first, end), and how many the part has */
     camber_u32 stride, strips, linear;   /* stride: 2 where records have arc lengths behind them */
+    camber_u32 makes;                    /* CAMBER_MAKES_... */
     camber_u32 base, first_row; /* where the range's segments begin, a multiple of 16, and its table among all rows */
     float left, top;            /* where the area begins in the picture, px */
     camber_u32 columns, rows;   /* tiles */
@@ -23,6 +24,12 @@ typedef struct camber_setup_args {
     /* The range's records at which the brush changes, and how many changes of the same input lie before the part. */
     camber_u32 first_change, change_count, changes_before;
 } camber_setup_args;
+
+/* So many records a work-item of setup takes: some, as a work-group takes a while to begin. */
+#define CAMBER_SETUP_RECORDS 128u
+#define CAMBER_MAKES_SEGMENTS 0u
+#define CAMBER_MAKES_EDGES 1u
+#define CAMBER_MAKES_SEGMENTS_AMONG_EDGES 2u
 
 /* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
 typedef struct camber_bin_args {
@@ -36,10 +43,11 @@ typedef struct camber_bin_args {
 typedef struct camber_target_args {
     float left, top; /* where the first tile lies in the picture, px */
     camber_u32 columns, stride;
-    camber_u32 first_row; /* the list of the first row of tiles; ~0: there are no areas */
-    float r, g, b, a;     /* background, premultiplied */
-    camber_u32 above;     /* rows of pixels of the target before the first tile */
-    float horizon;        /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
+    camber_u32 first_row;              /* the list of the first row of tiles; ~0: there are no areas */
+    camber_u32 first_edge, edge_count; /* no edge of a ring lies outside these segments */
+    float r, g, b, a;                  /* background, premultiplied */
+    camber_u32 above;                  /* rows of pixels of the target before the first tile */
+    float horizon; /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
     camber_eye eye;
     float sky[4];         /* the sky's colour, premultiplied */
     camber_u32 first_job; /* an argument, as PoCL builds a kernel again for an offset of its work-items */
@@ -80,14 +88,14 @@ typedef struct camber_spill_args {
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
 
 #ifdef CAMBER_DEVICE
-typedef char camber_setup_args_has_80_bytes[sizeof(camber_setup_args) == 80 ? 1 : -1];
+typedef char camber_setup_args_has_84_bytes[sizeof(camber_setup_args) == 84 ? 1 : -1];
 typedef char camber_bin_args_has_36_bytes[sizeof(camber_bin_args) == 36 ? 1 : -1];
-typedef char camber_target_args_has_80_bytes[sizeof(camber_target_args) == 80 ? 1 : -1];
+typedef char camber_target_args_has_88_bytes[sizeof(camber_target_args) == 88 ? 1 : -1];
 typedef char camber_spill_args_has_28_bytes[sizeof(camber_spill_args) == 28 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_setup_args) == 80, "setup reads 80 bytes");
+_Static_assert(sizeof(camber_setup_args) == 84, "setup reads 84 bytes");
 _Static_assert(sizeof(camber_bin_args) == 36, "bin_count and bin_scatter read 36 bytes");
-_Static_assert(sizeof(camber_target_args) == 80, "rasterize reads 80 bytes");
+_Static_assert(sizeof(camber_target_args) == 88, "rasterize reads 88 bytes");
 _Static_assert(sizeof(camber_spill_args) == 28, "rasterize reads 28 bytes");
 #endif
 

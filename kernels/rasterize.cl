@@ -1,6 +1,6 @@
 /* rasterize: draws the pixels of a tile, or of some rows of its cells, from the tile's list of segments.
  *
- * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 2], lists[starts[tiles]], brushes[brush count],
+ * Reads segments and edges, as setup writes them, starts[tiles + 2], lists[starts[tiles]], brushes[brush count],
  * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
  * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
  * planes[CAMBER_PLANE_WORDS * n]. Where there are areas it reads crossings and ends, as wind writes them. Writes
@@ -129,8 +129,8 @@ typedef struct tile_brushes {
 } tile_brushes;
 
 /* Adds the edges that wait to the area. */
-static __attribute__((noinline)) void add_edges(camber_tile_state *c, global const float *segments,
-                                                camber_tile_rows where, sixteen *b) {
+static __attribute__((noinline)) void add_edges(camber_tile_state *c, global const float *edges, camber_tile_rows where,
+                                                sixteen *b) {
     const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     for (uint k = b->count; k < SIXTEEN; k++)
         b->which[k] = b->which[0];
@@ -141,8 +141,7 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
         camber_ring_edges e;
         camber_tile_edges t;
         for (uint k = 0; k < CAMBER_LANES; k++)
-            vstore4(as_uint4(vload4(CAMBER_SEGMENT_WORDS / 4 * (size_t)b->which[CAMBER_LANES * v + k], segments)), k,
-                    ends);
+            vstore4(as_uint4(vload4(0, edges + camber_edge_ends(b->which[CAMBER_LANES * v + k]))), k, ends);
         for (size_t i = 0; i < 4; i++)
             taken[i] = CAMBER_LOAD(i, ends);
         turn_fours_over(taken, words);
@@ -156,9 +155,9 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
 
 /* Draws the segments that wait, all of the brush that is drawn now. */
 static inline void draw_waiting(camber_tile_state *c, const positions *at, global const float *segments,
-                                camber_tile_rows where, sixteen *b) {
+                                global const float *edges, camber_tile_rows where, sixteen *b) {
     if (b->count != 0 && camber_brush_is_area(&c->now))
-        add_edges(c, segments, where, b);
+        add_edges(c, edges, where, b);
     else
         draw_sixteen(c, at, segments, where, b);
 }
@@ -197,6 +196,22 @@ static inline void change_brush(camber_tile_state *c, const positions *at, tile_
 #endif
 }
 
+/* Where the words of a listed segment are looked for: mostly it is an edge if it lies among edges. */
+static inline global const float *words_of(global const float *segments, global const float *edges,
+                                           camber_target_args s, camber_u32 which) {
+    return which - s.first_edge < s.edge_count ? edges + camber_edge_ends(which)
+                                               : segments + (size_t)CAMBER_SEGMENT_WORDS * which;
+}
+
+/* Its brush. */
+static inline camber_u32 brush_of(global const float *segments, global const float *edges, camber_target_args s,
+                                  camber_u32 which) {
+    const camber_u32 brush =
+        which - s.first_edge < s.edge_count ? as_uint(edges[camber_edge_brush(which)]) : CAMBER_NO_EDGE;
+    return brush != CAMBER_NO_EDGE ? brush
+                                   : as_uint(segments[(size_t)CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
+}
+
 /* Draws the areas above a brush that cover the tile as a whole: it has none of their edges. Returns the brush that was
  * drawn last. */
 static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
@@ -216,15 +231,16 @@ static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *
 }
 
 CAMBER_KERNEL(1, rasterize,
-              (global const float *restrict segments, global const camber_u32 *restrict starts,
-               global const camber_u32 *restrict lists, global const camber_brush *restrict brushes,
-               global const camber_u32 *restrict jobs, global camber_u32 *restrict pixels, const camber_target_args s,
-               global float *restrict spill, const camber_spill_args slice, global const float *restrict arc_lengths,
+              (global const float *restrict segments, global const float *restrict edges,
+               global const camber_u32 *restrict starts, global const camber_u32 *restrict lists,
+               global const camber_brush *restrict brushes, global const camber_u32 *restrict jobs,
+               global camber_u32 *restrict pixels, const camber_target_args s, global float *restrict spill,
+               const camber_spill_args slice, global const float *restrict arc_lengths,
                global const camber_brush_ext *restrict brush_ext, global const float *restrict side_table,
                global const float *restrict planes, global const camber_u32 *restrict crossings,
                global const camber_u32 *restrict ends),
-              (segments, starts, lists, brushes, jobs, pixels, s, spill, slice, arc_lengths, brush_ext, side_table,
-               planes, crossings, ends)) {
+              (segments, edges, starts, lists, brushes, jobs, pixels, s, spill, slice, arc_lengths, brush_ext,
+               side_table, planes, crossings, ends)) {
     camber_tile_state c;
     positions at;
     sixteen b;
@@ -238,7 +254,7 @@ CAMBER_KERNEL(1, rasterize,
     camber_u32 current = ~0u;
     /* The next tile's first batch. Mostly it comes next, and its segments are scattered in memory. */
     for (camber_u32 k = starts[tile + 2]; k > starts[tile + 1] && k + AHEAD > starts[tile + 2]; k--)
-        ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k - 1]);
+        ASK_FOR(words_of(segments, edges, s, lists[k - 1]));
     b.count = 0;
     camber_tile_begin(&c, own, brushes);
     begin_positions(&at, left, top);
@@ -275,11 +291,10 @@ CAMBER_KERNEL(1, rasterize,
         }
     }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
-        global const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k];
-        ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
-        const camber_u32 brush = as_uint(segment[CAMBER_SEGMENT_BRUSH]);
+        ASK_FOR(words_of(segments, edges, s, lists[k > AHEAD ? k - AHEAD : 0]));
+        const camber_u32 brush = brush_of(segments, edges, s, lists[k]);
         if (brush != current) {
-            draw_waiting(&c, &at, segments, where, &b);
+            draw_waiting(&c, &at, segments, edges, where, &b);
             draw_areas_above(&c, &at, &from_brushes, where, &left_of, brush, current);
             if (camber_tile_is_full(&c))
                 break;
@@ -290,13 +305,13 @@ CAMBER_KERNEL(1, rasterize,
         if (camber_brush_is_area(&c.now)) {
             b.which[b.count++] = lists[k];
             if (b.count == SIXTEEN)
-                add_edges(&c, segments, where, &b);
+                add_edges(&c, edges, where, &b);
             continue;
         }
 #if CAMBER_RASTER_RICH
         const size_t which = lists[k];
         const drawn_segment from = {
-            segment,
+            segments + CAMBER_SEGMENT_WORDS * which,
             arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * which,
             side_table,
 #if CAMBER_RASTER_PITCHED
@@ -321,7 +336,7 @@ CAMBER_KERNEL(1, rasterize,
         if (camber_tile_is_full(&c))
             break;
     }
-    draw_waiting(&c, &at, segments, where, &b);
+    draw_waiting(&c, &at, segments, edges, where, &b);
     current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {

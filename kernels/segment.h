@@ -83,6 +83,21 @@ CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *change
 #define CAMBER_SEGMENT_BRUSH 15u
 #define CAMBER_SEGMENT_WORDS 16u
 
+/* The edges of rings lie apart from segments, sixteen together: first the ends of each, ax, ay, bx, by, then the
+ * brushes of all. An edge has the number of its segment, which has no words. Among edges, lines have CAMBER_NO_EDGE
+ * there. */
+#define CAMBER_SIXTEEN_EDGES_WORDS 80u
+#define CAMBER_NO_EDGE 0xffffffffu
+
+/* The word at which the ends of edge i lie, and its brush. */
+CAMBER_FN size_t camber_edge_ends(size_t i) {
+    return CAMBER_SIXTEEN_EDGES_WORDS * (i / 16u) + 4u * (i % 16u);
+}
+
+CAMBER_FN size_t camber_edge_brush(size_t i) {
+    return CAMBER_SIXTEEN_EDGES_WORDS * (i / 16u) + 64u + i % 16u;
+}
+
 typedef struct camber_segment {
     camber_real ax, ay, bx, by, ux, uy; /* A, B, and the direction from A to B */
     camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, which point along the line */
@@ -173,9 +188,8 @@ CAMBER_FN void camber_segment_of(camber_real px, camber_real py, camber_real ax,
     s->flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
 }
 
-/* Makes the edge of a ring from A to B: a segment without width, joins and sides. */
+/* The edge of a ring from A to B: a segment without width, joins and sides, of which only ends and direction count. */
 CAMBER_FN void camber_edge_segment(camber_real ax, camber_real ay, camber_real bx, camber_real by, camber_segment *s) {
-    const camber_real none = CAMBER_REAL(0.0f);
     camber_direction(bx - ax, by - ay, &s->ux, &s->uy);
     s->ax = ax;
     s->ay = ay;
@@ -183,23 +197,6 @@ CAMBER_FN void camber_edge_segment(camber_real ax, camber_real ay, camber_real b
     s->by = by;
     s->half_width = CAMBER_REAL(CAMBER_EDGE_PX);
     s->reach = CAMBER_REAL(CAMBER_EDGE_REACH_PX);
-    s->nax = s->nay = s->nbx = s->nby = s->slope = s->curve = none;
-    s->flags = (camber_words)(0u);
-}
-
-/* Makes those of segments edges that have an edge's half width. */
-CAMBER_FN void camber_segments_with_edges(camber_segment *s) {
-    const camber_mask is_edge = s->half_width == CAMBER_EDGE_PX;
-    camber_segment edge;
-    camber_edge_segment(s->ax, s->ay, s->bx, s->by, &edge);
-    s->reach = is_edge ? edge.reach : s->reach;
-    s->nax = is_edge ? edge.nax : s->nax;
-    s->nay = is_edge ? edge.nay : s->nay;
-    s->nbx = is_edge ? edge.nbx : s->nbx;
-    s->nby = is_edge ? edge.nby : s->nby;
-    s->slope = is_edge ? edge.slope : s->slope;
-    s->curve = is_edge ? edge.curve : s->curve;
-    s->flags = is_edge ? edge.flags : s->flags;
 }
 
 /* The box of tiles that a segment may touch: x and y of the first tile, then x and y of the last, a byte each. left and
@@ -227,22 +224,49 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
 
 /* ---- Tiles ---- */
 
+/* A segment as its tiles are found: A, B, its direction, half width and reach. */
+typedef struct camber_tile_line {
+    float ax, ay, bx, by, ux, uy, half_width, reach;
+} camber_tile_line;
+
+CAMBER_FN void camber_tile_line_of(CAMBER_GLOBAL const float *segment, camber_tile_line *l) {
+    l->ax = segment[CAMBER_SEGMENT_AX];
+    l->ay = segment[CAMBER_SEGMENT_AY];
+    l->bx = segment[CAMBER_SEGMENT_BX];
+    l->by = segment[CAMBER_SEGMENT_BY];
+    l->ux = segment[CAMBER_SEGMENT_UX];
+    l->uy = segment[CAMBER_SEGMENT_UY];
+    l->half_width = segment[CAMBER_SEGMENT_HALF_WIDTH];
+    l->reach = segment[CAMBER_SEGMENT_REACH];
+}
+
+/* The same of an edge, by its ends. */
+CAMBER_FN void camber_tile_line_of_edge(CAMBER_GLOBAL const float *ends, camber_tile_line *l) {
+    l->ax = ends[0];
+    l->ay = ends[1];
+    l->bx = ends[2];
+    l->by = ends[3];
+    const float dx = l->bx - l->ax, dy = l->by - l->ay, length = CAMBER_SQRT(dx * dx + dy * dy);
+    const float scale = 1.0f / (length > 0.0f ? length : 1.0f);
+    l->ux = length > 0.0f ? dx * scale : 1.0f;
+    l->uy = length > 0.0f ? dy * scale : 0.0f;
+    l->half_width = CAMBER_EDGE_PX;
+    l->reach = CAMBER_EDGE_REACH_PX;
+}
+
 /* The squares (tiles or cells) of one row of a box that a segment with its reach touches: first | last << 8. middle: y
  * of the row's middle, px; left: where the first square begins, px. */
-CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float middle, float left, camber_u32 first,
+CAMBER_FN camber_u32 camber_row_span(const camber_tile_line *l, float middle, float left, camber_u32 first,
                                      camber_u32 last, float side) {
-    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], ux = segment[CAMBER_SEGMENT_UX],
-                uy = segment[CAMBER_SEGMENT_UY];
     const float to_middle = 0.5f * side, a_square = 1.0f / side;
-    const float far_b = CAMBER_FABS(segment[CAMBER_SEGMENT_BX]) + CAMBER_FABS(segment[CAMBER_SEGMENT_BY]);
-    const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay) +
-                                 (segment[CAMBER_SEGMENT_HALF_WIDTH] == CAMBER_EDGE_PX ? far_b : 0.0f));
-    const float reach =
-        segment[CAMBER_SEGMENT_HALF_WIDTH] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
-    if (CAMBER_FABS(uy) < 1e-3f)
+    const float far_b = CAMBER_FABS(l->bx) + CAMBER_FABS(l->by);
+    const float slack =
+        1e-6f * (CAMBER_FABS(l->ax) + CAMBER_FABS(l->ay) + (l->half_width == CAMBER_EDGE_PX ? far_b : 0.0f));
+    const float reach = l->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(l->ux) + CAMBER_FABS(l->uy)) + slack;
+    if (CAMBER_FABS(l->uy) < 1e-3f)
         return first | last << 8;
-    const float scale = 1.0f / uy, across = (middle - ay) * ux;
-    const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
+    const float scale = 1.0f / l->uy, across = (middle - l->ay) * l->ux;
+    const float one = l->ax + (across - reach) * scale, other = l->ax + (across + reach) * scale;
     /* Counted from the squares' middles. */
     const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
     const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
@@ -263,11 +287,9 @@ CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
 }
 
 /* Whether the box of a segment lies in one column or in one row of tiles. */
-CAMBER_FN camber_u32 camber_segment_is_narrow(CAMBER_GLOBAL const float *segment) {
-    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], bx = segment[CAMBER_SEGMENT_BX],
-                by = segment[CAMBER_SEGMENT_BY], reach = segment[CAMBER_SEGMENT_REACH];
-    return camber_same_tile(CAMBER_LESS(ax, bx) - reach, CAMBER_MORE(ax, bx) + reach) ||
-           camber_same_tile(CAMBER_LESS(ay, by) - reach, CAMBER_MORE(ay, by) + reach);
+CAMBER_FN camber_u32 camber_line_is_narrow(const camber_tile_line *l) {
+    return camber_same_tile(CAMBER_LESS(l->ax, l->bx) - l->reach, CAMBER_MORE(l->ax, l->bx) + l->reach) ||
+           camber_same_tile(CAMBER_LESS(l->ay, l->by) - l->reach, CAMBER_MORE(l->ay, l->by) + l->reach);
 }
 
 /* The four bytes of a box: camber_segment_box. */
@@ -282,17 +304,23 @@ CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) 
 }
 
 /* The tiles of a box in row y that a segment touches: first | last << 8. A box of one column or row has all its tiles.
- * At the area's edge the box may be cut, but the span must be as in any other area. */
-CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber_u32 box, camber_u32 y,
-                                      const camber_tile_grid *of) {
+ * At the area's edge the box may be cut, but the span must be as in any other area. words: of the segment, or where it
+ * is an edge its ends. */
+CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_flag is_edge, camber_u32 box,
+                                      camber_u32 y, const camber_tile_grid *of) {
     const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
     const camber_u32 all = first | last << 8;
+    camber_tile_line line;
     if ((first == last && first - 1u < of->columns - 2u) || (top == bottom && top - 1u < of->rows - 2u))
         return all;
-    if ((first == last || top == bottom) && camber_segment_is_narrow(segment))
+    if (is_edge)
+        camber_tile_line_of_edge(words, &line);
+    else
+        camber_tile_line_of(words, &line);
+    if ((first == last || top == bottom) && camber_line_is_narrow(&line))
         return all;
     const float middle = of->top + ((float)y + 0.5f) * CAMBER_TILE_PX;
-    return camber_row_span(segment, middle, of->left, first, last, CAMBER_TILE_PX);
+    return camber_row_span(&line, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
 /* The first row of tiles whose top a segment with such a box may cross; the last is that of the box. */

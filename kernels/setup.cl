@@ -1,10 +1,11 @@
-/* setup: makes a segment of each record that ends one, and finds the box of tiles around it. A work-item takes sixteen
- * records.
+/* setup: makes a segment, or the edge of a ring, of each record that ends one, and finds the box of tiles around it. A
+ * work-item takes CAMBER_SETUP_RECORDS records.
  *
  * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count],
  * changes[first_change + change_count]. For the n records of a range, rounded up to sixteens, it writes from element
  * `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
+ *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, of records that belong to rings of areas
  *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
  *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH; 0 if the records have none
  *     planes[CAMBER_PLANE_WORDS * n], only with CAMBER_RASTER_PITCHED: the segments in their plane */
@@ -75,19 +76,19 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
         row[k] = CAMBER_LOAD(0, words[k]);
 }
 
-/* The brushes of a vector of segments that end with the records from `first` on, by those of their rows. */
-static inline camber_real take_brushes(global const camber_u32 *changes, camber_u32 first, camber_setup_args r,
-                                       camber_real of_rows) {
+/* The brushes of a vector of edges that end with the records from `first` on, by those of their rows. */
+static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, camber_setup_args r,
+                                        camber_real of_rows) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     camber_words brushes = CAMBER_AS_WORDS(of_rows) + r.changes_before;
     if (r.change_count == 0)
-        return CAMBER_AS_REAL(brushes);
+        return brushes;
     global const camber_u32 *own = changes + r.first_change;
     uint next = camber_changes_until(own, r.change_count, first);
     brushes += next;
     for (; next < r.change_count && own[next] - first < CAMBER_LANES; next++)
         brushes += CAMBER_LOAD(0, numbers) >= own[next] - first ? (camber_words)(1u) : (camber_words)(0u);
-    return CAMBER_AS_REAL(brushes);
+    return brushes;
 }
 
 #if CAMBER_RASTER_RICH
@@ -137,11 +138,12 @@ static inline void put_planes(const camber_segment *s, const camber_plane *p, gl
 }
 #endif
 
-/* Where the segments of a vector of records go. */
+/* Where the segments or edges of a vector of records go. */
 typedef struct outputs {
     global float *segments;
     global camber_u32 *boxes;
-    global float *arc_lengths, *planes;
+    global float *arc_lengths, *planes, *ends;
+    global camber_u32 *brushes; /* of edges */
 } outputs;
 
 /* A vector of records that may end segments, and those before them. */
@@ -174,36 +176,34 @@ static inline void take_ends(global const camber_u32 *records, global const floa
 #endif
 }
 
-/* Makes their segments. */
-static inline void find_segments(global const camber_u32 *records, int first, camber_setup_args r, const ends *e,
-                                 camber_segment *s) {
-    const lane_records *b = &e->b, *before = &e->before;
-    const camber_real ax = CAMBER_AS_REAL(e->is_dot ? b->x : before->x) + e->x,
-                      ay = CAMBER_AS_REAL(e->is_dot ? b->y : before->y) + e->y, bx = CAMBER_AS_REAL(b->x) + e->x,
-                      by = CAMBER_AS_REAL(b->y) + e->y;
-    /* Rings come one after the other: mostly all are edges, or none. */
-    if (CAMBER_ALL((e->row[0] == CAMBER_EDGE_PX) | (e->is_drawn == 0))) {
-        camber_edge_segment(ax, ay, bx, by, s);
-        return;
-    }
-    lane_records second, third;
-    take_records(records, first - 2, r, &second);
-    take_records(records, first - 3, r, &third);
-    const camber_mask from_third =
-        ((before->info & CAMBER_RECORD_START) != 0u) & (before->join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
-    camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e->x,
-                      CAMBER_AS_REAL(from_third ? third.y : second.y) + e->y, ax, ay, bx, by,
-                      e->is_dot ? b->join : before->join, b->join, e->row[0], r.linear, s);
-    camber_segments_with_edges(s);
+/* Where a segment begins and ends. */
+typedef struct lane_ends {
+    camber_real ax, ay, bx, by;
+} lane_ends;
+
+static inline void place_ends(const ends *e, lane_ends *l) {
+    l->ax = CAMBER_AS_REAL(e->is_dot ? e->b.x : e->before.x) + e->x;
+    l->ay = CAMBER_AS_REAL(e->is_dot ? e->b.y : e->before.y) + e->y;
+    l->bx = CAMBER_AS_REAL(e->b.x) + e->x;
+    l->by = CAMBER_AS_REAL(e->b.y) + e->y;
 }
 
 /* Makes the segments of the records from `first` on, and writes them. */
-static inline void make_segments(global const camber_u32 *records, global const float *rows,
-                                 global const camber_u32 *changes, int first, camber_setup_args r, outputs to) {
+static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
+                                 camber_setup_args r, outputs to) {
     ends e;
-    take_ends(records, rows, first, r, &e);
+    lane_records second, third;
+    lane_ends l;
     camber_segment s;
-    find_segments(records, first, r, &e, &s);
+    take_ends(records, rows, first, r, &e);
+    take_records(records, first - 2, r, &second);
+    take_records(records, first - 3, r, &third);
+    place_ends(&e, &l);
+    const camber_mask from_third =
+        ((e.before.info & CAMBER_RECORD_START) != 0u) & (e.before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
+    camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e.x,
+                      CAMBER_AS_REAL(from_third ? third.y : second.y) + e.y, l.ax, l.ay, l.bx, l.by,
+                      e.is_dot ? e.b.join : e.before.join, e.b.join, e.row[0], r.linear, &s);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
     camber_plane plane;
@@ -220,25 +220,61 @@ static inline void make_segments(global const camber_u32 *records, global const 
 #elif CAMBER_RASTER_RICH
     put_arc_lengths(records, first, r, &s, to.arc_lengths);
 #endif
-    const camber_real brushes = take_brushes(changes, (camber_u32)first, r, e.row[3]);
     camber_real words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
                              s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
                              s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
-                             brushes};
+                             e.row[3]};
     put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
+    if (r.makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES)
+        CAMBER_STORE((camber_words)(CAMBER_NO_EDGE), 0, to.brushes);
+}
+
+/* The same of edges. */
+static inline void make_edges(global const camber_u32 *records, global const float *rows,
+                              global const camber_u32 *changes, int first, camber_setup_args r, outputs to) {
+    ends e;
+    lane_ends l;
+    camber_segment s;
+    take_ends(records, rows, first, r, &e);
+    place_ends(&e, &l);
+    camber_edge_segment(l.ax, l.ay, l.bx, l.by, &s);
+#if CAMBER_RASTER_PITCHED
+    const camber_segment flat = s;
+    e.is_drawn &= camber_pitch_edge_of(r.eye, &flat, &s);
+#endif
+    const camber_words box = camber_segment_box(&s, e.is_drawn, r.left, r.top, r.columns, r.rows);
+    CAMBER_STORE(box, 0, to.boxes);
+    if (CAMBER_ALL(box == CAMBER_NO_BOX))
+        return;
+    const camber_real x0 = put_together(s.ax, s.bx, 0), y0 = put_together(s.ay, s.by, 0);
+    const camber_real x1 = put_together(s.ax, s.bx, 1), y1 = put_together(s.ay, s.by, 1);
+    CAMBER_STORE(put_together(x0, y0, 0), 0, to.ends);
+    CAMBER_STORE(put_together(x0, y0, 1), 1, to.ends);
+    CAMBER_STORE(put_together(x1, y1, 0), 2, to.ends);
+    CAMBER_STORE(put_together(x1, y1, 1), 3, to.ends);
+    CAMBER_STORE(take_brushes(changes, (camber_u32)first, r, e.row[3]), 0, to.brushes);
 }
 
 CAMBER_KERNEL(1, setup,
               (global const camber_u32 *restrict records, global const float *restrict rows,
                global float *restrict segments, global camber_u32 *restrict boxes, const camber_setup_args r,
                global float *restrict arc_lengths, global float *restrict planes,
-               global const camber_u32 *restrict changes),
-              (records, rows, segments, boxes, r, arc_lengths, planes, changes)) {
-    const uint group = (uint)CAMBER_WORK_ITEM;
-    for (uint v = 0; v < CAMBER_VECTORS; v++) {
-        const size_t at = (size_t)r.base + 16 * group + CAMBER_LANES * v;
-        const outputs to = {segments + CAMBER_SEGMENT_WORDS * at, boxes + at,
-                            arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * at, planes + CAMBER_PLANE_WORDS * at};
-        make_segments(records, rows, changes, (int)(r.first + 16 * group + CAMBER_LANES * v), r, to);
+               global const camber_u32 *restrict changes, global float *restrict edges),
+              (records, rows, segments, boxes, r, arc_lengths, planes, changes, edges)) {
+    const uint from = CAMBER_SETUP_RECORDS * (uint)CAMBER_WORK_ITEM, left = (r.end - r.first - from + 15) / 16 * 16;
+    const uint count = left < CAMBER_SETUP_RECORDS ? left : CAMBER_SETUP_RECORDS;
+    for (uint i = from; i < from + count; i += CAMBER_LANES) {
+        const size_t at = (size_t)r.base + i;
+        const int first = (int)(r.first + i);
+        const outputs to = {segments + CAMBER_SEGMENT_WORDS * at,
+                            boxes + at,
+                            arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * at,
+                            planes + CAMBER_PLANE_WORDS * at,
+                            edges + camber_edge_ends(at),
+                            (global camber_u32 *)edges + camber_edge_brush(at)};
+        if (r.makes == CAMBER_MAKES_EDGES)
+            make_edges(records, rows, changes, first, r, to);
+        else
+            make_segments(records, rows, first, r, to);
     }
 }

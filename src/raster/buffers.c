@@ -153,6 +153,8 @@ camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_sta
     camber_raster_stages made = {
         .segment_count = raster->segment_count, .tile_count = raster->tile_count, .list_count = raster->list_count};
     camber_status status = get(raster, BUFFER_SEGMENTS, 4 * CAMBER_SEGMENT_WORDS * made.segment_count, &made.segments);
+    if (status == CAMBER_OK && raster->end_edge)
+        status = get(raster, BUFFER_EDGES, 4 * CAMBER_SIXTEEN_EDGES_WORDS * (made.segment_count / 16), &made.edges);
     if (status == CAMBER_OK)
         status = get(raster, BUFFER_BOXES, 4 * made.segment_count, &made.boxes);
     if (status == CAMBER_OK && raster->variant)
@@ -170,6 +172,8 @@ camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_sta
         camber_raster_stages_free(raster->device->context, &made);
         return status;
     }
+    const size_t slice = raster->first_segment, first = raster->first_edge, end = raster->end_edge;
+    camber_raster_stages_show_edges(&made, first > slice ? first - slice : 0, end > slice ? end - slice : 0);
     *stages = made;
     return CAMBER_OK;
 }

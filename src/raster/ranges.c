@@ -1,6 +1,8 @@
 /* Lists which records of which parts are drawn. Device and twin both begin with this list. */
 #include "raster/raster.h"
 
+#include <string.h>
+
 #define BUTT_CAP                                                                                                       \
     ((uint32_t)CAMBER_KIND_CAP << CAMBER_JOIN_KIND_SHIFT | (uint32_t)CAMBER_END_BUTT << CAMBER_JOIN_END_SHIFT)
 
@@ -107,6 +109,8 @@ camber_status camber_raster_list_ranges(camber_context *context, const camber_ra
     *list = (camber_range_list){.context = context};
     for (size_t r = 0; r < scene->input_count && status == CAMBER_OK; r++)
         status = add_input(list, scene, scene->inputs + r);
+    for (size_t i = 0; i < list->count; i++)
+        list->ranges[i].among_edges = list->ranges[i].base >= list->first_edge && list->ranges[i].base < list->end_edge;
     return status;
 }
 
@@ -133,6 +137,9 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
         .stride = mesh && mesh->mesh_info.has_arc_length ? 2 : 1,
         .strips = strips,
         .linear = scene->linear,
+        .makes = range->is_area       ? CAMBER_MAKES_EDGES
+                 : range->among_edges ? CAMBER_MAKES_SEGMENTS_AMONG_EDGES
+                                      : CAMBER_MAKES_SEGMENTS,
         .base = (uint32_t)range->base,
         .first_row = (uint32_t)range->first_row,
         .left = (float)area->x,
@@ -147,8 +154,27 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
     };
 }
 
+void camber_raster_stages_show_edges(camber_raster_stages *stages, size_t first_edge, size_t end_edge) {
+    for (size_t i = first_edge; i < end_edge && i < stages->segment_count; i++) {
+        const bool is_drawn = CAMBER_BOX_FIRST_X(stages->boxes[i]) <= CAMBER_BOX_LAST_X(stages->boxes[i]);
+        const float *brush = stages->edges + camber_edge_brush(i);
+        float *words = stages->segments + CAMBER_SEGMENT_WORDS * i;
+        if (!is_drawn || camber_bits_of(*brush) == CAMBER_NO_EDGE)
+            continue;
+        memset(words, 0, CAMBER_SEGMENT_WORDS * sizeof *words);
+        memcpy(words, stages->edges + camber_edge_ends(i), 4 * sizeof *words);
+        words[CAMBER_SEGMENT_BRUSH] = *brush;
+        if (stages->arc_lengths)
+            memset(stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * i, 0,
+                   CAMBER_SEGMENT_ARC_LENGTHS * sizeof *stages->arc_lengths);
+        if (stages->planes)
+            memset(stages->planes + CAMBER_PLANE_WORDS * i, 0, CAMBER_PLANE_WORDS * sizeof *stages->planes);
+    }
+}
+
 void camber_raster_stages_free(camber_context *context, camber_raster_stages *stages) {
     camber_free(context, stages->segments);
+    camber_free(context, stages->edges);
     camber_free(context, stages->boxes);
     camber_free(context, stages->arc_lengths);
     camber_free(context, stages->planes);

@@ -85,10 +85,11 @@ static camber_status set_up(camber_raster *raster, const camber_raster_scene *sc
                             cl_mem records) {
     const camber_setup_args args = camber_raster_setup_args(scene, range, &raster->band);
     const camber_kernel_arg arguments[] = {
-        CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
-        CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES),   BUFFER(BUFFER_CHANGES)};
+        CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),    BUFFER(BUFFER_SEGMENTS),
+        BUFFER(BUFFER_BOXES),       CAMBER_ARG_VALUE(args), BUFFER(BUFFER_ARC_LENGTHS),
+        BUFFER(BUFFER_PLANES),      BUFFER(BUFFER_CHANGES), BUFFER(BUFFER_EDGES)};
     return run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments,
-               (range->end - range->first + 15) / 16);
+               (range->end - range->first + CAMBER_SETUP_RECORDS - 1) / CAMBER_SETUP_RECORDS);
 }
 
 /* The same for a part of a mesh that GL draws, too: it has the buffers back when setup is done. */
@@ -125,6 +126,13 @@ static camber_status make_segments(camber_raster *raster, const listed_scene *p)
     return status;
 }
 
+/* Finds the segments of the slice outside of which no edge of a ring lies. */
+static void find_edges(const camber_raster *raster, uint32_t *first, uint32_t *count) {
+    const size_t slice = raster->first_segment, end = raster->end_edge > slice ? raster->end_edge - slice : 0;
+    *first = raster->first_edge > slice ? (uint32_t)(raster->first_edge - slice) : 0;
+    *count = end > *first ? (uint32_t)(end - *first) : 0;
+}
+
 static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const camber_raster_area *area = &raster->band;
     const size_t lists = (raster->list_count + 15) / 16 * 16,
@@ -133,14 +141,14 @@ static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_c
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (raster->segment_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
-    const size_t slice = raster->first_segment, end = raster->end_edge > slice ? raster->end_edge - slice : 0;
-    const size_t first_edge = raster->first_edge > slice ? raster->first_edge - slice : 0;
+    uint32_t first_edge, edge_count;
+    find_edges(raster, &first_edge, &edge_count);
     return (camber_bin_args){
         (uint32_t)raster->segment_count,
         (uint32_t)a_chunk,
         (uint32_t)lists,
-        (uint32_t)first_edge,
-        (uint32_t)(end > first_edge ? end - first_edge : 0),
+        first_edge,
+        edge_count,
         {(float)area->x, (float)area->y, camber_raster_tiles(area->width), camber_raster_tiles(area->height)}};
 }
 
@@ -149,12 +157,12 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
         camber_raster_reserve(raster, BUFFER_COUNTS, 4 * (size_t)c.lists * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.lists);
-    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS),
-                                       CAMBER_ARG_VALUE(c)};
+    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_EDGES), BUFFER(BUFFER_BOXES),
+                                       BUFFER(BUFFER_COUNTS), CAMBER_ARG_VALUE(c)};
     const camber_kernel_arg total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), CAMBER_ARG_VALUE(c.lists),
                                        CAMBER_ARG_VALUE(chunk_count)};
     if (status == CAMBER_OK)
-        status = run(raster, STAGE_BIN_COUNT, count, 4, chunk_count);
+        status = run(raster, STAGE_BIN_COUNT, count, 5, chunk_count);
     if (status == CAMBER_OK)
         status = run(raster, STAGE_BIN_SCAN, total, 4, c.lists / 16);
     return status;
@@ -196,9 +204,10 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
 }
 
 static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
-    const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_STARTS),
-                                      BUFFER(BUFFER_COUNTS),   BUFFER(BUFFER_LISTS), CAMBER_ARG_VALUE(c)};
-    return run(raster, STAGE_BIN_SCATTER, fill, 6, chunk_count);
+    const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_EDGES),  BUFFER(BUFFER_BOXES),
+                                      BUFFER(BUFFER_STARTS),   BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_LISTS),
+                                      CAMBER_ARG_VALUE(c)};
+    return run(raster, STAGE_BIN_SCATTER, fill, 7, chunk_count);
 }
 
 /* Finds the windings that edges leave to the right of them. */
@@ -210,7 +219,7 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
         camber_raster_reserve(raster, BUFFER_CROSSINGS, 4 * CAMBER_CROSSING_WORDS * (edges ? edges : 1));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_ENDS, 4 * (size_t)of.rows);
-    const camber_kernel_arg wind[] = {BUFFER(BUFFER_SEGMENTS),  BUFFER(BUFFER_STARTS), BUFFER(BUFFER_LISTS),
+    const camber_kernel_arg wind[] = {BUFFER(BUFFER_EDGES),     BUFFER(BUFFER_STARTS), BUFFER(BUFFER_LISTS),
                                       BUFFER(BUFFER_CROSSINGS), BUFFER(BUFFER_ENDS),   CAMBER_ARG_VALUE(of)};
     return status == CAMBER_OK ? run(raster, STAGE_WIND, wind, sizeof wind / sizeof *wind, of.rows) : status;
 }
@@ -282,16 +291,25 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
                             .horizon = (float)scene->horizon,
                             .eye = scene->eye};
     memcpy(s.sky, scene->sky, sizeof s.sky);
+    find_edges(raster, &s.first_edge, &s.edge_count);
     camber_status status = camber_raster_reserve(raster, BUFFER_SPILL,
                                                  k.is_first && k.is_last ? 4 : 4 * raster->tile_count * k.tile_words);
     const camber_kernel_arg arguments[] = {
-        BUFFER(BUFFER_SEGMENTS),  BUFFER(BUFFER_STARTS),
-        BUFFER(BUFFER_LISTS),     BUFFER(BUFFER_BRUSHES),
-        BUFFER(BUFFER_JOBS),      CAMBER_ARG_BUFFER(raster->given ? raster->given : raster->buffers[BUFFER_PIXELS]),
-        CAMBER_ARG_VALUE(s),      BUFFER(BUFFER_SPILL),
-        CAMBER_ARG_VALUE(k),      BUFFER(BUFFER_ARC_LENGTHS),
-        BUFFER(BUFFER_BRUSH_EXT), BUFFER(BUFFER_SIDE_TABLE),
-        BUFFER(BUFFER_PLANES),    BUFFER(BUFFER_CROSSINGS),
+        BUFFER(BUFFER_SEGMENTS),
+        BUFFER(BUFFER_EDGES),
+        BUFFER(BUFFER_STARTS),
+        BUFFER(BUFFER_LISTS),
+        BUFFER(BUFFER_BRUSHES),
+        BUFFER(BUFFER_JOBS),
+        CAMBER_ARG_BUFFER(raster->given ? raster->given : raster->buffers[BUFFER_PIXELS]),
+        CAMBER_ARG_VALUE(s),
+        BUFFER(BUFFER_SPILL),
+        CAMBER_ARG_VALUE(k),
+        BUFFER(BUFFER_ARC_LENGTHS),
+        BUFFER(BUFFER_BRUSH_EXT),
+        BUFFER(BUFFER_SIDE_TABLE),
+        BUFFER(BUFFER_PLANES),
+        BUFFER(BUFFER_CROSSINGS),
         BUFFER(BUFFER_ENDS)};
     const size_t count = sizeof arguments / sizeof *arguments;
     if (status == CAMBER_OK)
@@ -339,6 +357,8 @@ static camber_status prepare(camber_raster *raster, const listed_scene *p) {
         status = camber_raster_put(raster, BUFFER_CHANGES, list->changes, list->change_count * sizeof *list->changes);
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_SEGMENTS, 4 * CAMBER_SEGMENT_WORDS * segments);
+    if (status == CAMBER_OK && list->end_edge)
+        status = camber_raster_reserve(raster, BUFFER_EDGES, 4 * CAMBER_SIXTEEN_EDGES_WORDS * (segments / 16));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_BOXES, 4 * segments);
     if (status == CAMBER_OK && raster->variant)

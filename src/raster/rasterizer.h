@@ -12,6 +12,7 @@ enum {
     BUFFER_SIDE_TABLE,
     BUFFER_CHANGES, /* of brushes, as records */
     BUFFER_SEGMENTS,
+    BUFFER_EDGES, /* of rings */
     BUFFER_BOXES,
     BUFFER_ARC_LENGTHS,
     BUFFER_PLANES,

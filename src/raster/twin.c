@@ -59,14 +59,20 @@ static void put_plane(const camber_segment *s, const camber_plane *p, float *mad
     memcpy(made, words, sizeof words);
 }
 
-/* The brush of the segment that ends with a record, by that of its row. */
+/* The brush of the edge that ends with a record, by that of its row. */
 static float brush_of(const camber_twin *t, const camber_setup_args *r, int64_t i, float of_row) {
     const uint32_t *changes = r->change_count ? t->changes + r->first_change : NULL;
     const uint32_t passed = r->changes_before + camber_changes_until(changes, r->change_count, (uint32_t)i);
     return camber_float_of(camber_bits_of(of_row) + passed);
 }
 
-/* Writes the words of the segment that ends with a record. Its box says whether there is one. */
+static void put_edge(const camber_segment *s, float brush, float *edges, size_t which) {
+    const float ends[] = {s->ax, s->ay, s->bx, s->by};
+    memcpy(edges + camber_edge_ends(which), ends, sizeof ends);
+    edges[camber_edge_brush(which)] = brush;
+}
+
+/* Writes the words of the segment, or the edge, that ends with a record. Its box says whether there is one. */
 static void put_segment(const camber_twin *t, const part_records *part, const camber_setup_args *r, int64_t i,
                         size_t segment) {
     const camber_record *records = part->records ? part->records : camber_fill_records;
@@ -80,9 +86,16 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
         t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
     camber_segment s;
-    camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear, &s);
-    camber_segments_with_edges(&s);
     bool drawn = ends && row[0] >= 0.0f;
+    if (r->makes == CAMBER_MAKES_EDGES) {
+        camber_edge_segment(a.x + x, a.y + y, b.x + x, b.y + y, &s);
+        const camber_segment flat = s;
+        drawn = drawn && (!t->scene->pitched || camber_pitch_edge_of(r->eye, &flat, &s));
+        put_edge(&s, brush_of(t, r, i, row[3]), t->stages->edges, segment);
+        t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
+        return;
+    }
+    camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear, &s);
     if (t->stages->arc_lengths)
         put_arc_length(part->arc_lengths, record_number(is_dot ? i : i - 1, r), record_number(i, r), &s,
                        t->stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * segment);
@@ -95,7 +108,9 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
             s = footprint;
         }
     }
-    put_words(&s, brush_of(t, r, i, row[3]), t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
+    put_words(&s, row[3], t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
+    if (r->makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES)
+        t->stages->edges[camber_edge_brush(segment)] = camber_float_of(CAMBER_NO_EDGE);
     t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
 }
 
@@ -163,8 +178,11 @@ static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bo
     const uint32_t box = t->stages->boxes[segment];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
     const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
+    const bool is_edge = camber_twin_is_edge(t, segment);
+    const float *words =
+        is_edge ? t->stages->edges + camber_edge_ends(segment) : t->stages->segments + CAMBER_SEGMENT_WORDS * segment;
     for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
-        const uint32_t span = camber_tile_span(t->stages->segments + CAMBER_SEGMENT_WORDS * segment, box, y, &of);
+        const uint32_t span = camber_tile_span(words, is_edge, box, y, &of);
         for (uint32_t x = span & 255u; x <= span >> 8; x++)
             add_to_list(t, segment, counts + y * t->columns + x, fill);
     }
@@ -208,6 +226,8 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
     made.tile_count = (size_t)t.columns * t.rows;
     made.list_count = made.tile_count + (t.end_edge ? t.rows : 0);
     made.segments = camber_alloc(context, made.segment_count, CAMBER_SEGMENT_WORDS * sizeof *made.segments);
+    if (t.end_edge)
+        made.edges = camber_alloc(context, made.segment_count / 16, CAMBER_SIXTEEN_EDGES_WORDS * sizeof *made.edges);
     made.boxes = camber_alloc(context, made.segment_count, sizeof *made.boxes);
     if (scene->brush_ext)
         made.arc_lengths =
@@ -216,8 +236,9 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
         made.planes = camber_alloc(context, made.segment_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
     made.starts = camber_alloc(context, made.list_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
-    if (status == CAMBER_OK && (!made.segments || !made.boxes || (scene->brush_ext && !made.arc_lengths) ||
-                                (scene->pitched && !made.planes) || !made.starts || !made.rgba))
+    if (status == CAMBER_OK &&
+        (!made.segments || (t.end_edge && !made.edges) || !made.boxes || (scene->brush_ext && !made.arc_lengths) ||
+         (scene->pitched && !made.planes) || !made.starts || !made.rgba))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
         status = make_segments(&t, &list);
@@ -230,6 +251,7 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
         camber_raster_stages_free(context, &made);
         return status;
     }
+    camber_raster_stages_show_edges(&made, t.first_edge, t.end_edge);
     *stages = made;
     return CAMBER_OK;
 }

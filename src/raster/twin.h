@@ -14,6 +14,12 @@ typedef struct camber_twin {
     size_t first_edge, end_edge; /* no edge of a ring lies outside these segments */
 } camber_twin;
 
+/* Whether a segment is the edge of a ring. */
+static inline bool camber_twin_is_edge(const camber_twin *t, size_t segment) {
+    return segment >= t->first_edge && segment < t->end_edge &&
+           camber_bits_of(t->stages->edges[camber_edge_brush(segment)]) != CAMBER_NO_EDGE;
+}
+
 /* Draws the area's tiles from the lists; the second one in a picture with a pitch. */
 camber_status camber_twin_draw(const camber_twin *twin);
 camber_status camber_twin_draw_pitched(const camber_twin *twin);

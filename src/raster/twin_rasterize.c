@@ -264,11 +264,10 @@ typedef struct drawn_tile {
     uint32_t column;
 } drawn_tile;
 
-static void add_edge(camber_tile_state *c, const float *segment, camber_tile_rows where) {
+static void add_edge(camber_tile_state *c, const float *ends, camber_tile_rows where) {
     camber_ring_edges e;
     camber_tile_edges t;
-    camber_ring_edges_of(segment[CAMBER_SEGMENT_AX], segment[CAMBER_SEGMENT_AY], segment[CAMBER_SEGMENT_BX],
-                         segment[CAMBER_SEGMENT_BY], &e);
+    camber_ring_edges_of(ends[0], ends[1], ends[2], ends[3], &e);
     camber_tile_edges_of(&e, 1, where, &t);
     camber_area_add(&c->area, &t, 1, where);
 }
@@ -330,16 +329,19 @@ static void draw_tile(drawn_tile *d, uint32_t row, camber_u32 crossing_count) {
     d->crossings.column = d->column;
     camber_tile_begin(c, ~(camber_u64)0, t->scene->brushes);
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
-        const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * stages->lists[k];
-        const uint32_t brush = camber_bits_of(segment[CAMBER_SEGMENT_BRUSH]);
+        const size_t which = stages->lists[k];
+        const bool is_edge = camber_twin_is_edge(t, which);
+        const uint32_t brush =
+            camber_bits_of(is_edge ? stages->edges[camber_edge_brush(which)]
+                                   : stages->segments[CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
         if (brush != current) {
             draw_areas_above(d, brush);
             change_brush(d, brush);
             c->winding = camber_take_winding(&d->crossings, brush);
         }
         current = brush;
-        if (camber_brush_is_area(&c->now))
-            add_edge(c, segment, d->where);
+        if (is_edge)
+            add_edge(c, stages->edges + camber_edge_ends(which), d->where);
         else
             draw_segment(c, t, stages->lists[k], d->where);
     }
@@ -356,7 +358,7 @@ static camber_u32 wind_row(const camber_twin *t, uint32_t row, camber_u32 *cross
     const uint32_t *starts = stages->starts + stages->tile_count + row;
     if (stages->list_count == stages->tile_count)
         return 0;
-    return camber_wind_row(stages->segments, stages->lists + starts[0], starts[1] - starts[0], of,
+    return camber_wind_row(stages->edges, stages->lists + starts[0], starts[1] - starts[0], of,
                            of.top + (float)(row * CAMBER_TILE_PX), crossings);
 }
 

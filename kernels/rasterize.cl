@@ -196,11 +196,15 @@ static inline void change_brush(camber_tile_state *c, const positions *at, tile_
 #endif
 }
 
-/* Where the words of a listed segment are looked for: mostly it is an edge if it lies among edges. */
-static inline global const float *words_of(global const float *segments, global const float *edges,
-                                           camber_target_args s, camber_u32 which) {
-    return which - s.first_edge < s.edge_count ? edges + camber_edge_ends(which)
-                                               : segments + (size_t)CAMBER_SEGMENT_WORDS * which;
+/* Asks for the words of a listed segment. Mostly it is an edge if it lies among edges. */
+static inline void ask_for(global const float *segments, global const float *edges, camber_target_args s,
+                           camber_u32 which) {
+    if (which - s.first_edge < s.edge_count) {
+        ASK_FOR(edges + camber_edge_brush(which));
+        ASK_FOR(edges + camber_edge_ends(which));
+    } else {
+        ASK_FOR(segments + (size_t)CAMBER_SEGMENT_WORDS * which);
+    }
 }
 
 /* Its brush. */
@@ -254,7 +258,7 @@ CAMBER_KERNEL(1, rasterize,
     camber_u32 current = ~0u;
     /* The next tile's first batch. Mostly it comes next, and its segments are scattered in memory. */
     for (camber_u32 k = starts[tile + 2]; k > starts[tile + 1] && k + AHEAD > starts[tile + 2]; k--)
-        ASK_FOR(words_of(segments, edges, s, lists[k - 1]));
+        ask_for(segments, edges, s, lists[k - 1]);
     b.count = 0;
     camber_tile_begin(&c, own, brushes);
     begin_positions(&at, left, top);
@@ -291,7 +295,7 @@ CAMBER_KERNEL(1, rasterize,
         }
     }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
-        ASK_FOR(words_of(segments, edges, s, lists[k > AHEAD ? k - AHEAD : 0]));
+        ask_for(segments, edges, s, lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 brush = brush_of(segments, edges, s, lists[k]);
         if (brush != current) {
             draw_waiting(&c, &at, segments, edges, where, &b);

@@ -298,11 +298,6 @@ CAMBER_FN camber_u32 camber_line_is_narrow(const camber_tile_line *l) {
 #define CAMBER_BOX_LAST_X(box) ((box) >> 16 & 255u)
 #define CAMBER_BOX_LAST_Y(box) ((box) >> 24)
 
-/* Whether a box is one tile, away from the area's left and right edges: camber_tile_span then is that tile. */
-CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) {
-    return box >> 16 == (box & 0xffffu) && CAMBER_BOX_FIRST_X(box) - 1u < columns - 2u;
-}
-
 /* The tiles of a box in row y that a segment touches: first | last << 8. A box of one column or row has all its tiles.
  * At the area's edge the box may be cut, but the span must be as in any other area. words: of the segment, or where it
  * is an edge its ends. */

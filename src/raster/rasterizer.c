@@ -139,7 +139,7 @@ static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_c
                  most = raster->device->info.largest_buffer_bytes / (4 * lists);
     const size_t wanted = (raster->segment_count + CHUNK - 1) / CHUNK, bound = most < CHUNKS_MAX ? most : CHUNKS_MAX;
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
-    const size_t a_chunk = count ? (raster->segment_count + count - 1) / count : 0;
+    const size_t a_chunk = count ? ((raster->segment_count + count - 1) / count + 15) / 16 * 16 : 0;
     *chunk_count = (uint32_t)count;
     uint32_t first_edge, edge_count;
     find_edges(raster, &first_edge, &edge_count);

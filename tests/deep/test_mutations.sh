@@ -302,10 +302,11 @@ mutant kite kernels/setup.cl "lines that go on to the next" 'r.strips ? STARTS :
 mutant strip kernels/setup.cl "areas: all by the first fill" 'brushes += next;' 'brushes += 0u * next;'
 mutant strip kernels/setup.cl "areas: fills that change too early" 'numbers) >= own[next] - first' \
     'numbers) < own[next] - first'
-mutant strip kernels/bin_count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
+mutant strip kernels/bins.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
+mutant strip kernels/bins.cl "boxes of two tiles without the second" 'count += b.has_last[k]' 'count += 0u * b.has_last[k]'
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
-mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
-    'lists[starts[tile + 1] - 1u - own[tile]++]'
+mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[list] + to->own[list]++]' \
+    'to->lists[to->starts[list + 1] - 1u - to->own[list]++]'
 mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++' 'k + 1u < count; k++'
 level=(--full) # vectors of 8
 mutant strip kernels/rasterize.cl "rows of cells that lie abreast, from the top" 'v * (CAMBER_LANES / CAMBER_CELL_PX)' '0 * v'

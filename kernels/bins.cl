@@ -67,9 +67,10 @@ static inline void look_at_boxes(uint16 box, camber_u32 which, int16 among_edges
                                  sixteen_boxes *b) {
     const uint16 numbers = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), one = (uint16)(1u);
     const uint16 x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
-    const int16 drawn = x0 <= x1;
-    const int16 inside = (x0 - 1u < of.columns - 2u) & (x1 - 1u < of.columns - 2u) & (y0 - 1u < of.rows - 2u) &
-                         (y1 - 1u < of.rows - 2u) & (x1 - x0 + (y1 - y0) <= 1u);
+    /* camber_tile_span: away from two sides of the area, a column of tiles or a row is all that is in the box. */
+    const int16 drawn = x0 <= x1, column = (x0 == x1) & (x0 - 1u < of.columns - 2u),
+                row = (y0 == y1) & (y0 - 1u < of.rows - 2u);
+    const int16 inside = (x1 - x0 + (y1 - y0) <= 1u) & (column | row) & ((y0 == y1) | (y0 > 0u));
     const int16 plain = drawn & inside;
     const uint16 first = y0 * of.columns + x0, last = y1 * of.columns + x1, top = of.columns * of.rows + y1;
     vstore16(first << LISTED_BITS | which + numbers, 0, b->first);
@@ -77,7 +78,7 @@ static inline void look_at_boxes(uint16 box, camber_u32 which, int16 among_edges
     vstore16(top << LISTED_BITS | which + numbers, 0, b->top);
     vstore16(as_uint16(plain) & one, 0, b->has_first);
     vstore16(as_uint16(plain & (first != last)) & one, 0, b->has_last);
-    vstore16(as_uint16(plain & among_edges & (y0 != y1)) & one, 0, b->has_top);
+    vstore16(as_uint16(plain & among_edges & ((y0 != y1) | (y0 == 0u))) & one, 0, b->has_top);
     vstore16(as_uint16(drawn & ~inside), 0, b->is_other);
 }
 

@@ -256,9 +256,11 @@ CAMBER_KERNEL(1, rasterize,
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
     const camber_tile_rows where = {left, top, first, last};
     camber_u32 current = ~0u;
-    /* The next tile's first batch. Mostly it comes next, and its segments are scattered in memory. */
+    /* The next tile's first batch, and the list behind. Mostly they come next, and segments are scattered in memory. */
     for (camber_u32 k = starts[tile + 2]; k > starts[tile + 1] && k + AHEAD > starts[tile + 2]; k--)
         ask_for(segments, edges, s, lists[k - 1]);
+    for (camber_u32 k = 0; k < 4 * AHEAD; k += 16)
+        ASK_FOR(lists + starts[tile + 2] + k);
     b.count = 0;
     camber_tile_begin(&c, own, brushes);
     begin_positions(&at, left, top);

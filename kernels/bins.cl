@@ -62,31 +62,40 @@ typedef struct sixteen_boxes {
     camber_u32 first[16], last[16], top[16], has_first[16], has_last[16], has_top[16], is_other[16];
 } sixteen_boxes;
 
-/* which: the first segment, from a list's base on. */
-static inline void look_at_boxes(uint16 box, camber_u32 which, int16 among_edges, camber_tile_grid of,
-                                 sixteen_boxes *b) {
-    const uint16 numbers = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), one = (uint16)(1u);
-    const uint16 x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
-    /* camber_tile_span: away from two sides of the area, a column of tiles or a row is all that is in the box. */
-    const int16 drawn = x0 <= x1, column = (x0 == x1) & (x0 - 1u < of.columns - 2u),
-                row = (y0 == y1) & (y0 - 1u < of.rows - 2u);
-    const int16 inside = (x1 - x0 + (y1 - y0) <= 1u) & (column | row) & ((y0 == y1) | (y0 > 0u));
-    const int16 plain = drawn & inside;
-    const uint16 first = y0 * of.columns + x0, last = y1 * of.columns + x1, top = of.columns * of.rows + y1;
-    vstore16(first << LISTED_BITS | which + numbers, 0, b->first);
-    vstore16(last << LISTED_BITS | which + numbers, 0, b->last);
-    vstore16(top << LISTED_BITS | which + numbers, 0, b->top);
-    vstore16(as_uint16(plain) & one, 0, b->has_first);
-    vstore16(as_uint16(plain & (first != last)) & one, 0, b->has_last);
-    vstore16(as_uint16(plain & among_edges & ((y0 != y1) | (y0 == 0u))) & one, 0, b->has_top);
-    vstore16(as_uint16(drawn & ~inside), 0, b->is_other);
+/* 1 where a number is below 0, and where it is not 0. No comparisons: oclgrind 21.10 gets their negation wrong. */
+#define BELOW_0(x) ((camber_u32)(x) >> 31)
+#define NOT_0(x) min(x, 1u)
+
+/* from: the first segment; base: the one from which on entries count. A loop, which the compiler makes vectors of. */
+static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from, camber_u32 base,
+                                 const camber_bin_args *c, sixteen_boxes *b) {
+    const camber_u32 columns = c->of.columns, rows = c->of.rows, edges = c->edge_count;
+#pragma clang loop vectorize_width(16)
+    for (camber_u32 k = 0; k < 16; k++) {
+        const camber_u32 box = boxes[from + k], entry = from - base + k, edge = from - c->first_edge + k;
+        const camber_u32 x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
+        const camber_u32 wide = x1 - x0, high = y1 - y0, undrawn = BELOW_0(wide), at_top = BELOW_0(y0 - 1u);
+        const camber_u32 among_edges = 1u - NOT_0(BELOW_0(edge) + BELOW_0(edges - 1u - edge));
+        /* camber_tile_span: away from two sides of the area, a column of tiles or a row is all that is in the box. */
+        const camber_u32 at_sides = BELOW_0(x0 - 1u) | BELOW_0(columns - 2u - x0);
+        const camber_u32 at_ends = at_top | BELOW_0(rows - 2u - y0);
+        const camber_u32 other =
+            NOT_0(BELOW_0(1u - wide - high) | ((wide | at_sides) & (high | at_ends)) | (high & at_top));
+        const camber_u32 plain = 1u - NOT_0(undrawn + other);
+        b->first[k] = (y0 * columns + x0) << LISTED_BITS | entry;
+        b->last[k] = (y1 * columns + x1) << LISTED_BITS | entry;
+        b->top[k] = (columns * rows + y1) << LISTED_BITS | entry;
+        b->has_first[k] = plain;
+        b->has_last[k] = plain & (wide | high);
+        b->has_top[k] = plain & among_edges & (high | at_top);
+        b->is_other[k] = 1u - NOT_0(undrawn + plain);
+    }
 }
 
 /* Puts the segments of a chunk into their lists, or counts them. */
 static __attribute__((noinline)) void bin_chunk(global const float *segments, global const float *edges,
                                                 global const camber_u32 *boxes, camber_u32 chunk,
                                                 const camber_bin_args *c, const bins *to) {
-    const uint16 numbers = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const camber_u32 from = chunk * c->a_chunk,
                      end = from + c->a_chunk < c->segment_count ? from + c->a_chunk : c->segment_count;
     listed l;
@@ -96,7 +105,7 @@ static __attribute__((noinline)) void bin_chunk(global const float *segments, gl
         sixteen_boxes b;
         if (l.count > LISTED_MOST - 3 * 16 || i - l.base > (1u << LISTED_BITS) - 16)
             put_listed(to, &l, i);
-        look_at_boxes(vload16(0, boxes + i), i - l.base, i + numbers - c->first_edge < c->edge_count, c->of, &b);
+        look_at_boxes(boxes, i, l.base, c, &b);
         camber_u32 count = l.count;
         for (camber_u32 k = 0; k < 16; k++) {
             l.entries[count] = b.first[k];

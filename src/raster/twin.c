@@ -109,7 +109,7 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
         }
     }
     put_words(&s, row[3], t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
-    if (r->makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES)
+    if (r->makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES && t->stages->edges)
         t->stages->edges[camber_edge_brush(segment)] = camber_float_of(CAMBER_NO_EDGE);
     t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
 }

@@ -486,34 +486,49 @@ static part_size subtract(part_size a, part_size b) {
     return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices, a.given - b.given};
 }
 
-/* Finds where to cut: the polylines with which the new parts begin, but for the first. Each part takes polylines until
- * its output would be too large.
- *
- *     polylines   | a | b | c | d | e |     start: what lies before the part that is being filled
- *                     cut ^       ^         before, after: what lies before and after polyline i
- */
+/* Finds the end of a new part, which takes polylines as long as its output is not too large, and one at least. start:
+ * what lies before the part; it becomes what lies before its end. What lies before a polyline is counted from the start
+ * of a chunk, which is long for lines of few points. So the end is found by halving. */
+static camber_status find_cut(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
+                              size_t first, part_size *start, size_t *cut) {
+    const size_t end = part->first_polyline + part->polyline_count;
+    part_size before_cut = *start;
+    size_t fits = first;
+    for (size_t behind = end + 1, tried = end; behind - fits > 1; tried = fits + (behind - fits) / 2) {
+        part_size before;
+        const camber_status status = size_before(mesh, part, starts, tried, &before);
+        if (status != CAMBER_OK)
+            return status;
+        const part_size taken = subtract(before, *start);
+        const bool is_alone = tried == first + 1;
+        if (is_alone && is_too_large(mesh, part, taken, ALONE))
+            return fail_alone(mesh, part, first, taken);
+        if (!is_alone && is_too_large(mesh, part, taken, TOGETHER)) {
+            behind = tried;
+            continue;
+        }
+        fits = tried;
+        before_cut = before;
+    }
+    *start = before_cut;
+    *cut = fits;
+    return CAMBER_OK;
+}
+
+/* Finds where to cut: the polylines with which the new parts begin, but for the first. */
 static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                size_t **cuts, size_t *cut_count) {
     const size_t end = part->first_polyline + part->polyline_count;
-    size_t capacity = 0, first = part->first_polyline;
-    part_size start = {0, 0, 0, 0}, before = start, after = start;
-    for (size_t i = first; i < end; i++) {
-        const camber_status status = size_before(mesh, part, starts, i + 1, &after);
-        if (status != CAMBER_OK)
+    size_t capacity = 0, cut = part->first_polyline;
+    part_size start = {0, 0, 0, 0};
+    for (;;) {
+        const camber_status status = find_cut(mesh, part, starts, cut, &start, &cut);
+        if (status != CAMBER_OK || cut == end)
             return status;
-        const part_size alone = subtract(after, before);
-        if (is_too_large(mesh, part, alone, ALONE))
-            return fail_alone(mesh, part, i, alone);
-        if (i > first && is_too_large(mesh, part, subtract(after, start), TOGETHER)) {
-            if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
-                return CAMBER_ERROR_MEMORY;
-            (*cuts)[(*cut_count)++] = i;
-            start = before;
-            first = i;
-        }
-        before = after;
+        if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
+            return CAMBER_ERROR_MEMORY;
+        (*cuts)[(*cut_count)++] = cut;
     }
-    return CAMBER_OK;
 }
 
 /* Cuts a part before each of the polylines in cuts. Buffers stay with the first of the new parts. */

@@ -3,11 +3,12 @@
  * Input: censuses, and the area that is wanted. Output: tasks, and which of them a part has. Main idea: a part of a run
  * reads what it draws, so parts are runs of a walk through the pyramid that stays in one place as long as it can.
  *
- *     wide zooms     zoom by zoom: a metatile of them has much of the data. Their parts read all of it
- *     deep zooms     each metatile, then those below it, along the Hilbert curve. So a part reads one stretch
+ *     wide zooms     a metatile of them has much of the data. Their parts read all of it, so any of them may go
+ * together deep zooms     each metatile, then those below it, along the Hilbert curve. So a part reads one stretch
  *
- * At each deep zoom a part has one stretch of the archive. Runs are cut so that the part that takes longest takes as
- * little as can be, what it reads included. */
+ * Wide tasks are packed, the largest first, each into the first part that has room; deep ones are a run that is cut. At
+ * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, what it
+ * reads included. */
 #include "tiles/schedule.h"
 
 #include "source/pmtiles.h"
@@ -15,24 +16,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The time that a picture and a tile take besides its points, in points; 2026-11-25, two cores of an AMD EPYC. */
-static const double PICTURE_COST = 12e3, TILE_COST = 1.6e3;
+/* The time that a picture and a tile take besides its points, in points. A point took 0.43 us of one processor, a tile
+ * of 256 px 0.52 ms, whatever the zoom (2026-11-26, AMD EPYC, Zen 4: three inputs, zooms 0 to 16). */
+static const double PICTURE_COST = 1e3, TILE_COST = 1.2e3;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
-/* The time to take a point from the file of features, in points that are drawn; and to pass over it. */
-static const double READ_COST = 0.15, SKIP_COST = 0.12;
-/* The time to look whether deep tiles have a point. A part that goes on from wide zooms to deep ones holds all points.
- */
-static const double LOOK_COST = 0.2;
+/* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which
+ * tiles the points lie that it holds: all of the zoom's from wide zooms on, else those that it draws. */
+static const double SKIP_COST = 0.1, LOOK_COST = 0.12;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
-/* A point takes up to so much longer where many lie in a tile; half of that where so many do (2026-11-26). */
-static const double DENSE_COST = 0.6, DENSE_POINTS = 50e3;
-/* Where more points lie in a square of 32 px they hide each other, and each takes less: as the root of their number
- * (2026-11-26, of 10 million points in one tile 0.37 us, in tiles of zoom 3 0.8). The squares are tiles of a zoom that
- * is so many deeper. */
-static const double CROWD_POINTS = 600e3;
-enum { CROWD_ZOOMS = 3 };
 enum { CUT_STEPS = 60 };
 
 static unsigned count_tiles(uint64_t tiles) {
@@ -45,9 +38,7 @@ static unsigned count_tiles(uint64_t tiles) {
 double camber_task_cost(const camber_tile_task *task) {
     if (!task->touched)
         return 0.0;
-    const double points = (double)task->points, tiles = count_tiles(task->touched), density = points / tiles;
-    const double more = DENSE_COST * density / (density + DENSE_POINTS);
-    return PICTURE_COST + points * (1.0 + more) + TILE_COST * tiles;
+    return PICTURE_COST + (double)task->points + TILE_COST * count_tiles(task->touched);
 }
 
 static camber_status add_task(camber_schedule *schedule, const camber_tile_task *task) {
@@ -203,110 +194,117 @@ void camber_schedule_free(camber_schedule *schedule) {
 
 /* ---- Parts ---- */
 
-/* A deep task: where a walk meets it that goes from a metatile to those below it. */
-typedef struct deep_task {
-    uint64_t place; /* of the first metatile below it, at the deepest level */
+/* When a task's turn comes. Of a wide task by its cost: the largest come first. Of a deep one by the place of the first
+ * metatile below it at the deepest level: a walk that goes from a metatile to those below it meets them so. */
+typedef struct turn {
+    uint64_t place;
     size_t task;
-} deep_task;
+} turn;
+
+/* The work of a part. */
+typedef struct load {
+    double cost;
+    uint32_t looked; /* a bit for each zoom of which it looks at all points that it holds */
+} load;
 
 typedef struct walk {
     const camber_schedule *schedule;
-    size_t *order; /* of the tasks: wide ones, then deep ones */
-    size_t wide;   /* so many are wide */
-    int deepest;   /* zoom */
-    double read_all, skip_all, look_all;
-    double crowd[CAMBER_LARGEST_TILE_ZOOM + 1]; /* of each zoom: what a point's time is multiplied by */
+    size_t *order;                               /* of the tasks: wide ones, then deep ones */
+    size_t wide;                                 /* so many are wide */
+    double points[CAMBER_LARGEST_TILE_ZOOM + 1]; /* of each zoom */
+    double skip_all;
+    load *loads; /* shards of them */
+    uint32_t shards;
 } walk;
 
-static int compare_deep(const void *left, const void *right) {
-    const deep_task *a = left, *b = right;
+static int compare_turns(const void *left, const void *right) {
+    const turn *a = left, *b = right;
     return a->place != b->place ? (a->place < b->place ? -1 : 1) : a->task < b->task ? -1 : a->task > b->task;
 }
 
 /* Finds out what the walk is like: the tasks come by zoom, and a deep zoom has no wide one below it. */
 static void measure(walk *w) {
     const camber_schedule *s = w->schedule;
-    double points[CAMBER_LARGEST_TILE_ZOOM + 1] = {0}, tiles[CAMBER_LARGEST_TILE_ZOOM + 1] = {0};
-    for (size_t i = 0; i < s->count; i++) {
-        points[s->tasks[i].zoom] += (double)s->tasks[i].points;
-        tiles[s->tasks[i].zoom] += count_tiles(s->tasks[i].touched);
-    }
-    for (int z = 0; z <= CAMBER_LARGEST_TILE_ZOOM; z++) {
-        const double most = z + CROWD_ZOOMS <= CAMBER_LARGEST_TILE_ZOOM ? CROWD_POINTS * tiles[z + CROWD_ZOOMS] : 0.0;
-        w->crowd[z] = most > 0.0 && points[z] > most ? sqrt(most / points[z]) : 1.0;
-    }
     for (size_t first = 0, end; first < s->count; first = end) {
-        uint64_t most = 0, all = 0;
+        double *all = w->points + s->tasks[first].zoom, most = 0.0;
         for (end = first; end < s->count && s->tasks[end].zoom == s->tasks[first].zoom; end++) {
-            all += s->tasks[end].points;
-            most = s->tasks[end].points > most ? s->tasks[end].points : most;
+            *all += (double)s->tasks[end].points;
+            most = fmax(most, (double)s->tasks[end].points);
         }
-        if ((double)most > WIDE_SHARE * (double)all)
+        if (most > WIDE_SHARE * *all)
             w->wide = end;
-        w->deepest = s->tasks[first].zoom;
-        w->read_all = READ_COST * (double)all;
-        w->skip_all = SKIP_COST * (double)all;
-        w->look_all = LOOK_COST * (double)all;
+        w->skip_all = SKIP_COST * *all;
     }
 }
 
 static camber_status order_tasks(walk *w) {
     const camber_schedule *s = w->schedule;
-    const size_t deep = s->count - w->wide;
     int deepest = 0;
-    deep_task *list = camber_alloc(s->context, deep, sizeof *list);
+    turn *list = camber_alloc(s->context, s->count, sizeof *list);
     if (!list || !(w->order = camber_alloc(s->context, s->count, sizeof *w->order))) {
         camber_free(s->context, list);
         return CAMBER_ERROR_MEMORY;
     }
     for (size_t i = w->wide; i < s->count; i++)
         deepest = s->tasks[i].level > deepest ? s->tasks[i].level : deepest;
-    for (size_t i = 0; i < deep; i++) {
-        const camber_tile_task *task = s->tasks + w->wide + i;
+    for (size_t i = 0; i < s->count; i++) {
+        const camber_tile_task *task = s->tasks + i;
         const uint64_t rank =
             camber_pmtiles_number(task->level, task->column, task->row) - camber_pmtiles_number(task->level, 0, 0);
-        list[i] = (deep_task){rank << (2 * (deepest - task->level)), w->wide + i};
+        list[i] = (turn){
+            i < w->wide ? UINT64_MAX - (uint64_t)camber_task_cost(task) : rank << (2 * (deepest - task->level)), i};
     }
-    if (deep)
-        qsort(list, deep, sizeof *list, compare_deep);
+    qsort(list, w->wide, sizeof *list, compare_turns);
+    qsort(list + w->wide, s->count - w->wide, sizeof *list, compare_turns);
     for (size_t i = 0; i < s->count; i++)
-        w->order[i] = i < w->wide ? i : list[i - w->wide].task;
+        w->order[i] = list[i].task;
     camber_free(s->context, list);
     return CAMBER_OK;
 }
 
+/* How much longer a part takes with a task. A part that has a wide task holds all points. */
+static double added_cost(const walk *w, const load *part, const camber_tile_task *task, bool holds_all) {
+    const double looks = !holds_all                       ? (double)task->points
+                         : part->looked >> task->zoom & 1 ? 0.0
+                                                          : w->points[task->zoom];
+    return camber_task_cost(task) + LOOK_COST * looks;
+}
+
 /* Fills parts, none of which takes longer than most unless it is a single task. parts gets each task's, from 1; NULL:
- * they are counted alone. Returns how many there are. */
-static uint64_t fill(const walk *w, double most, uint32_t *parts) {
-    uint64_t part = 1;
-    double sum = w->skip_all + (w->wide ? w->read_all : 0.0);
-    bool empty = true;
+ * none is wanted. Returns whether there are enough parts. */
+static bool fill(const walk *w, double most, uint32_t *parts) {
+    uint32_t count = 0;
+    bool holds_all = false; /* the last part */
     for (size_t i = 0; i < w->schedule->count; i++) {
         const camber_tile_task *task = w->schedule->tasks + w->order[i];
-        const double reads = i >= w->wide && task->zoom == w->deepest ? READ_COST * (double)task->points : 0.0;
-        const double cost = w->crowd[task->zoom] * camber_task_cost(task) + reads;
-        if (i == w->wide && !empty)
-            sum += w->look_all;
-        if (sum + cost > most && !empty) {
-            part++;
-            sum = w->skip_all + (i < w->wide ? w->read_all : 0.0);
+        uint32_t at = i < w->wide || count == 0 ? 0 : count - 1;
+        while (at < count && w->loads[at].cost + added_cost(w, w->loads + at, task, holds_all) > most)
+            at++;
+        if (at == count) {
+            if (count == w->shards)
+                return false;
+            holds_all = i < w->wide;
+            w->loads[count++] = (load){.cost = w->skip_all};
         }
-        empty = false;
-        sum += cost;
+        w->loads[at].cost += added_cost(w, w->loads + at, task, holds_all);
+        w->loads[at].looked |= UINT32_C(1) << task->zoom;
         if (parts)
-            parts[w->order[i]] = (uint32_t)part;
+            parts[w->order[i]] = at + 1;
     }
-    return part;
+    return true;
 }
 
 /* Finds the least time that the longest part takes. */
-static double find_most(const walk *w, uint32_t shards) {
-    double low = 0.0, high = w->read_all + w->skip_all + w->look_all;
+static double find_most(const walk *w) {
+    double low = 0.0, high = w->skip_all;
+    for (int z = 0; z <= CAMBER_LARGEST_TILE_ZOOM; z++)
+        high += LOOK_COST * w->points[z];
     for (size_t i = 0; i < w->schedule->count; i++)
-        high += (1.0 + READ_COST) * camber_task_cost(w->schedule->tasks + i);
+        high += camber_task_cost(w->schedule->tasks + i);
+    high *= 2.0; /* so one part is enough, however sums are rounded */
     for (int i = 0; i < CUT_STEPS; i++) {
         const double middle = 0.5 * (low + high);
-        if (fill(w, middle, NULL) <= shards)
+        if (fill(w, middle, NULL))
             high = middle;
         else
             low = middle;
@@ -327,19 +325,21 @@ static void keep_part(camber_schedule *schedule, const uint32_t *parts, uint32_t
 }
 
 camber_status camber_schedule_choose(camber_schedule *schedule, uint32_t shard, uint32_t shards) {
-    walk w = {.schedule = schedule};
+    walk w = {.schedule = schedule, .shards = shards};
     if (shards <= 1 || schedule->count == 0) {
         keep_part(schedule, NULL, shard);
         return CAMBER_OK;
     }
     measure(&w);
     uint32_t *parts = camber_alloc(schedule->context, schedule->count, sizeof *parts);
-    const camber_status status = parts ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
+    w.loads = camber_alloc(schedule->context, shards, sizeof *w.loads);
+    const camber_status status = parts && w.loads ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK) {
-        (void)fill(&w, find_most(&w, shards), parts);
+        (void)fill(&w, find_most(&w), parts);
         keep_part(schedule, parts, shard);
     }
     camber_free(schedule->context, w.order);
+    camber_free(schedule->context, w.loads);
     camber_free(schedule->context, parts);
     return status;
 }

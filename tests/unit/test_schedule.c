@@ -1,4 +1,4 @@
-/* Parts of a schedule: each task is in one, and where points hide each other a part takes more of them. */
+/* Parts of a schedule: each task is in one, and none takes much longer than the others. */
 #include "tiles/schedule.h"
 
 #include <setjmp.h>
@@ -29,6 +29,7 @@ static void make(camber_context *context, camber_schedule *schedule) {
 
 static void test_parts(void **state) {
     uint32_t parts[TASKS] = {0};
+    double most = 0.0, all = 0.0;
     camber_context *context;
     (void)state;
     assert_int_equal(camber_context_create(NULL, &context), CAMBER_OK);
@@ -38,6 +39,8 @@ static void test_parts(void **state) {
         make(context, &part);
         assert_int_equal(camber_schedule_choose(&part, shard, SHARDS), CAMBER_OK);
         assert_true(part.count > 0);
+        all += part.cost;
+        most = part.cost > most ? part.cost : most;
         for (size_t i = 0, at = 0; i < part.count; i++, at++) {
             while (at < TASKS && memcmp(whole.tasks + at, part.tasks + i, sizeof *part.tasks) != 0)
                 at++;
@@ -50,8 +53,7 @@ static void test_parts(void **state) {
     }
     for (int i = 0; i < TASKS; i++)
         assert_int_not_equal(parts[i], 0);
-    assert_int_equal(parts[0], parts[1]); /* all points in a few pixels */
-    assert_int_not_equal(parts[2], parts[3]);
+    assert_true(most < 1.15 * all / SHARDS);
     camber_context_destroy(context);
 }
 

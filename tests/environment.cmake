@@ -1,5 +1,6 @@
 # Every test of this directory gets one cache for all, kernels that were compiled before the first of them, a count of
-# those that are compiled all the same, and what the sanitizers are told.
+# those that are compiled all the same, and what the sanitizers are told. And it gets processors, of which ./dev counts
+# halves: one that waits for others most of the time gets a half, one that has bounds of time has asked for more.
 set(CAMBER_TEST_CACHE ${CMAKE_BINARY_DIR}/cache CACHE PATH "Where tests keep what they compile")
 set(CAMBER_TEST_KERNELS ${CMAKE_BINARY_DIR}/src/camber-kernels CACHE PATH "Kernels that are compiled before the tests")
 file(MAKE_DIRECTORY ${CAMBER_TEST_CACHE}/pocl)
@@ -15,6 +16,12 @@ foreach(test IN LISTS all)
     set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT ASAN_OPTIONS=use_sigaltstack=0
                  LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/fixtures/lsan.supp:print_suppressions=0:use_tls=0
                  UBSAN_OPTIONS=print_stacktrace=1)
+  endif()
+  get_test_property(${test} PROCESSORS halves)
+  if(test MATCHES "^(sanitize_soak|test_(serve_outside|slurm|proxies|viewer_window))$")
+    set_tests_properties(${test} PROPERTIES PROCESSORS 1)
+  elseif(NOT halves)
+    set_tests_properties(${test} PROPERTIES PROCESSORS 2)
   endif()
   get_test_property(${test} LABELS label)
   if(NOT CAMBER_SANITIZE AND NOT label MATCHES "unit|deep|fuzz|faults|recipes" AND NOT test MATCHES "^(kernels|compilations)$")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests under AddressSanitizer and UBSan: test_sanitize.sh build SOURCE FOLDER [CMAKE ARGS...], then run FOLDER K/N:
-# every N-th test, from the K-th on
+# every N-th test, from the K-th on, or run FOLDER soak_serve: that one, which takes its time however fast it is.
 set -eu
 verb=$1
 shift
@@ -22,6 +22,10 @@ run)
     folder=$1/share-${2%/*}
     mkdir -p "$folder"
     echo 'subdirs("..")' >"$folder/CTestTestfile.cmake"
-    ctest --test-dir "$folder" --output-on-failure -I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^test_kernels$'
+    case $2 in
+    */*) chosen=(-I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^(test_kernels|soak_serve)$') ;;
+    *) chosen=(-R "^$2\$") ;;
+    esac
+    ctest --test-dir "$folder" --output-on-failure "${chosen[@]}"
     ;;
 esac

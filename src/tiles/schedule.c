@@ -217,8 +217,8 @@ typedef struct walk {
     size_t wide;                                 /* so many are wide */
     double points[CAMBER_LARGEST_TILE_ZOOM + 1]; /* of each zoom */
     double skip_all;
-    load *loads; /* shards of them */
-    uint32_t shards;
+    load *loads;     /* shards of them */
+    uint32_t shards; /* no more than tasks */
 } walk;
 
 static int compare_turns(const void *left, const void *right) {
@@ -329,14 +329,14 @@ static void keep_part(camber_schedule *schedule, const uint32_t *parts, uint32_t
 }
 
 camber_status camber_schedule_choose(camber_schedule *schedule, uint32_t shard, uint32_t shards) {
-    walk w = {.schedule = schedule, .shards = shards};
+    walk w = {.schedule = schedule, .shards = shards < schedule->count ? shards : (uint32_t)schedule->count};
     if (shards <= 1 || schedule->count == 0) {
         keep_part(schedule, NULL, shard);
         return CAMBER_OK;
     }
     measure(&w);
     uint32_t *parts = camber_alloc(schedule->context, schedule->count, sizeof *parts);
-    w.loads = camber_alloc(schedule->context, shards, sizeof *w.loads);
+    w.loads = camber_alloc(schedule->context, w.shards, sizeof *w.loads);
     const camber_status status = parts && w.loads ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK) {
         (void)fill(&w, find_most(&w), parts);

@@ -57,7 +57,25 @@ static void test_parts(void **state) {
     camber_context_destroy(context);
 }
 
+/* More parts than tasks: each has one at most, and parts without any take no memory. */
+static void test_many_parts(void **state) {
+    size_t tasks = 0;
+    camber_context *context;
+    (void)state;
+    assert_int_equal(camber_context_create(NULL, &context), CAMBER_OK);
+    for (uint32_t shard = 1; shard <= TASKS + 1; shard++) {
+        camber_schedule part;
+        make(context, &part);
+        assert_int_equal(camber_schedule_choose(&part, shard, UINT32_MAX), CAMBER_OK);
+        assert_true(part.count <= 1);
+        tasks += part.count;
+        camber_schedule_free(&part);
+    }
+    assert_int_equal(tasks, TASKS);
+    camber_context_destroy(context);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts), cmocka_unit_test(test_many_parts)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

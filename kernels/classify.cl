@@ -96,8 +96,7 @@ CAMBER_KERNEL(LANES, classify,
         const camber_u32 is_dot = ends == (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
         const camber_u32 is_cap = ends != 0u && (point & CAMBER_POINT_RING) == 0u;
         const camber_u32 line_ends = camber_line_ends(info_before[i - 1], info_after[i + 1]);
-        const camber_u32 stub =
-            CAMBER_METHOD == CAMBER_STRIP ? camber_stub_pack(line_ends, row.cap, half_shorter[n]) : 0u;
+        const camber_u32 stub = CAMBER_METHOD == CAMBER_STRIP ? camber_stub_pack(row.cap, half_shorter[n]) : 0u;
         const camber_u32 join = camber_join_word(turn, &row, CAMBER_METHOD) | line_ends | stub;
         const camber_u32 word = is_cap ? camber_cap_word(row.cap, is_dot) : join;
         joins[i] = point & CAMBER_POINT_REAL ? word : 0u;

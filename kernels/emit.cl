@@ -188,11 +188,10 @@ static inline void put_join(global camber_u32 *indices, camber_u32 record, cambe
 
 /* A point's record and indices; gives how many indices. */
 static inline size_t put_point(global const float *x, global const float *y, global const camber_u32 *info,
-                               global const camber_u32 *joins, size_t i, global camber_u32 *records,
-                               global camber_u32 *index) {
+                               global const camber_row *rows, global const camber_u32 *joins, size_t i,
+                               global camber_u32 *records, global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
-    const camber_u32 before = joins[i - 1], end = joins[join & CAMBER_JOIN_BEFORE_LAST ? i + 1 : i - 1];
-    const camber_u32 cap = camber_join_end(end) == CAMBER_ENDS_BUTT ? CAMBER_CAPS_BUTT : CAMBER_CAPS_ROUND;
+    const camber_u32 before = joins[i - 1], cap = rows[point >> CAMBER_POINT_ROW_SHIFT].cap;
     /* A record a slot, sentinels too: a ring's are where its seam's neighbours lie. */
     put_record(records, i - 1, x[i], y[i],
                camber_record_join(
@@ -226,7 +225,7 @@ CAMBER_KERNEL(LANES, emit,
     const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
     size_t at = (size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16);
     for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i++) {
-        at += put_point(x, y, info, joins, i, records, indices + at);
+        at += put_point(x, y, info, rows, joins, i, records, indices + at);
 #if CAMBER_HAS_ARC_LENGTH
         put_arc_lengths(records + 2 * CAMBER_RECORD_WORDS * (i - 1), 1, arc_lengths, i - 1);
 #endif

@@ -93,12 +93,12 @@ CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
     return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
 }
 
-/* The stub of a join word. line_ends: camber_line_ends; cap: of the line, camber_cap. */
-CAMBER_FN camber_u32 camber_stub_pack(camber_u32 line_ends, camber_u32 cap, float half_shorter) {
+/* The stub of a join word. cap: of the line, camber_cap. */
+CAMBER_FN camber_u32 camber_stub_pack(camber_u32 cap, float half_shorter) {
     const float longest = 0.5f * CAMBER_STUB_PX, bounded = half_shorter < longest ? half_shorter : longest;
     const camber_u32 stub =
         1u + CAMBER_CAST(camber_u32, bounded * (CAMBER_CAST(float, CAMBER_STUB_MOST - 1u) / longest));
-    return line_ends != 0u && cap == CAMBER_CAPS_BUTT ? stub << CAMBER_JOIN_STUB_SHIFT : 0u;
+    return cap == CAMBER_CAPS_BUTT ? stub << CAMBER_JOIN_STUB_SHIFT : 0u;
 }
 
 /* camber_end past a cap: round 0, butt 1, square 2. */
@@ -231,8 +231,8 @@ CAMBER_FN camber_u32 camber_edge_is_shared(camber_u32 join, camber_u32 last, flo
 
 /* The join word of kite's and fan's records. cap: of the line. */
 CAMBER_FN camber_u32 camber_record_join(camber_u32 join, camber_u32 cap, float half_shorter) {
-    const camber_u32 ends = join & (CAMBER_JOIN_AFTER_FIRST | CAMBER_JOIN_BEFORE_LAST);
-    return (join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT)) | camber_stub_pack(ends, cap, half_shorter);
+    const camber_u32 stub = camber_join_kind(join) < CAMBER_KIND_CUT ? 0u : camber_stub_pack(cap, half_shorter);
+    return (join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT)) | stub;
 }
 
 /* The corner that a body begins with on a side. Cut bodies have it in common with the end before: those of kites the

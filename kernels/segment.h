@@ -121,9 +121,10 @@ CAMBER_FN camber_words camber_end_flags(camber_words end) {
 CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber_real length, camber_real c,
                                      camber_real s, camber_real half_width, camber_mask *own) {
     const camber_words none = (camber_words)(0u), end = camber_segment_end(join);
-    const camber_mask butt = soon & (CAMBER_JOIN_STUB(join) != 0u);
-    *own = (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & camber_owner_side(soon, butt, c, s, half_width);
-    return end | camber_flat_join(join, butt, *own, length) |
+    const camber_mask butt = soon & (CAMBER_JOIN_STUB(join) != 0u), opens = camber_opens(join, length, half_width);
+    const camber_mask keeps = opens & camber_is_longer(join, length) & (half_width > CAMBER_WIDE_PX);
+    *own = (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & camber_owner_side(soon | keeps, butt, c, s, half_width);
+    return end | camber_flat_join(join, butt, *own, opens, length) |
            (soon ? (camber_words)(1u << CAMBER_END_LAST_SHIFT) : none);
 }
 

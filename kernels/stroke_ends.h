@@ -22,6 +22,7 @@
 #define CAMBER_NEVER_PX 1e6f /* past an end by more px than any pixel lies there */
 #define CAMBER_ALWAYS_PX (-1e30f)
 #define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
+#define CAMBER_WIDE_PX 4.0f  /* in lines of a larger half width, what short pieces leave open is seen most */
 #define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
 #define CAMBER_LARGEST_TURN 32767.0f /* what tan(turn / 4) = 1 is stored as */
 
@@ -84,6 +85,22 @@ CAMBER_FN void camber_half_turn(camber_real q, CAMBER_OUT(camber_real) c, CAMBER
     CAMBER_AT(s) = 2.0f * q * scale;
 }
 
+/* A join has the length of the shorter of its segments in units of this, and 1 more: its stub. */
+#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 126.0f)
+
+/* Whether the other segment of a join is the shorter one, whose length its stub says. length: of the segment itself. */
+CAMBER_FN camber_mask camber_is_longer(camber_words join, camber_real length) {
+    return length > (CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) + 1.0f) * CAMBER_STUB_UNIT_PX;
+}
+
+/* Whether the segments of a join are so short that nothing may cover what one of a length leaves past the bisector: the
+ * other one is a stub, or in a wide line either. In thin lines that is too little to be seen. */
+CAMBER_FN camber_mask camber_opens(camber_words join, camber_real length, camber_real half_width) {
+    const camber_words most = CAMBER_WORD(CAMBER_STUB_MOST - 1u);
+    const camber_mask longer = CAMBER_BOTH(half_width > CAMBER_TIPS_PX, camber_is_longer(join, length));
+    return CAMBER_BOTH(CAMBER_JOIN_STUB(join) - 1u < most, CAMBER_EITHER(half_width > CAMBER_WIDE_PX, longer));
+}
+
 /* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
  * bisector on the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their
  * edges would be drawn twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it.
@@ -96,16 +113,16 @@ CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_mask butt,
     return half_width * CAMBER_FABS(s) > bound * c;
 }
 
-/* A join that is flat has the length of the stub behind it in units of this, and 1 more. */
-#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 126.0f)
-
-/* The bits of an end that say where a join before a butt cap is flat: camber_end_inside. A segment that is no longer
- * than the stub does not know the other one's length: it is taken for a long one. butt: the line ends with the next
- * segment, in a butt cap; own: camber_owner_side; length: of the segment itself. */
-CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, camber_mask own, camber_real length) {
-    const camber_words stub = CAMBER_JOIN_STUB(join), none = CAMBER_WORD(0u), most = CAMBER_WORD(CAMBER_STUB_MOST);
-    const camber_words behind = length > (CAMBER_TO_REAL(stub) + 1.0f) * CAMBER_STUB_UNIT_PX ? stub : most;
-    return CAMBER_BOTH(butt, CAMBER_EITHER(own, behind < most)) ? behind << CAMBER_END_FLAT_SHIFT : none;
+/* The bits of an end that say where a join is flat: camber_cut_end. Before a butt cap the next segment may be too short
+ * to cover what lies past the body on its inner side; beside a stub, too. A segment that is no longer than the stub
+ * does not know the other one's length: it is taken for a long one. butt: the line ends with the next segment, in a
+ * butt cap; own: camber_owner_side; opens: camber_opens; length: of the segment itself. */
+CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, camber_mask own, camber_mask opens,
+                                        camber_real length) {
+    const camber_words none = CAMBER_WORD(0u), most = CAMBER_WORD(CAMBER_STUB_MOST);
+    const camber_words behind = CAMBER_BOTH(butt, camber_is_longer(join, length)) ? CAMBER_JOIN_STUB(join) : most;
+    const camber_mask open = CAMBER_BOTH(own, CAMBER_EITHER(butt, opens));
+    return CAMBER_EITHER(behind < most, open) ? behind << CAMBER_END_FLAT_SHIFT : none;
 }
 
 /* The tangent of half a turn, as images bend at joins; 0 where the line goes straight on. */

@@ -124,14 +124,18 @@ CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
 }
 
 /* The share of a pixel inside a flat end. The turned cap is cut as an edge across the segment is. */
-CAMBER_FN camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
+CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
     camber_flat_end f;
     if (!camber_is_flat_join(p, out_of))
         return camber_cut_along(p, at, out_of > 0.0f ? p->flat_b - at->past_b : p->flat_a - at->past_a);
     camber_find_flat_end(p, at, out_of, CAMBER_REF(f));
-    const camber_real body = camber_cut_along(p, at, f.body), cap = camber_cut_along(p, at, f.cap);
-    const camber_real outside = camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
-    return f.behind ? body : 1.0f - outside;
+    const camber_real body = camber_cut_along(p, at, f.body);
+    camber_real before = CAMBER_REAL(1.0f);
+    if ((out_of > 0.0f ? p->flat_b : p->flat_a) < CAMBER_STUB_PX - 0.5f * CAMBER_STUB_UNIT_PX) {
+        const camber_real cap = camber_cut_along(p, at, f.cap);
+        before -= camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
+    }
+    return f.behind ? body : before;
 }
 
 /* The part of an area that flat ends leave: one, or both of a short segment. */

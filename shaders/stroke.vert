@@ -239,8 +239,10 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
 vec2 flat_and_owner(uint join, uint soon, vec2 turn, float len, float half_width) {
     bool is_bounded = METHOD == 2 || kind_of(join) <= CAMBER_KIND_CUT;
     bool ends_soon = (join & soon) != 0u, butt = METHOD != 2 && ends_soon && CAMBER_JOIN_STUB(join) != 0u;
-    bool own = !is_bounded && camber_owner_side(ends_soon, butt, turn.x, turn.y, half_width);
-    uint stub = camber_flat_join(join, butt, own, len);
+    bool opens = METHOD != 2 && camber_opens(join, len, half_width);
+    bool keeps = opens && camber_is_longer(join, len) && half_width > CAMBER_WIDE_PX;
+    bool own = !is_bounded && camber_owner_side(ends_soon || keeps, butt, turn.x, turn.y, half_width);
+    uint stub = camber_flat_join(join, butt, own, opens, len);
     return vec2(camber_flat_end_from(end_of(join) | stub, half_width), camber_owner_from(is_bounded, own, stub != 0u));
 }
 #endif

@@ -94,7 +94,7 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
         return camber_cap_word(row->cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
     const camber_u32 line_ends = camber_line_ends(p->info[slot - 1], p->info[slot + 1]);
     const camber_u32 join = camber_join_word(turn, row, t->method) | line_ends;
-    return t->method == CAMBER_STRIP ? join | camber_stub_pack(line_ends, row->cap, turn.half_shorter) : join;
+    return t->method == CAMBER_STRIP ? join | camber_stub_pack(row->cap, turn.half_shorter) : join;
 }
 
 /* ---- strip ---- */

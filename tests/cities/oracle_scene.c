@@ -318,7 +318,7 @@ int main(void) {
         bounds most[3];    /* at 8, 3 and 1 px */
     } scenes[] = {
         {"nyc", "nyc.osm.pbf", 34, {{0.7, 0.45, 1.4}, {0.9, 0.4, 1.4}, {0.7, 0.55, 1.55}}},
-        {"porto", "porto_portugal.osm.pbf", 30, {{1.05, 0.65, 1.43}, {1.1, 0.7, 1.4}, {1.15, 0.8, 1.43}}},
+        {"porto", "porto_portugal.osm.pbf", 30, {{1.0, 0.55, 1.44}, {1.1, 0.7, 1.4}, {1.15, 0.8, 1.43}}},
     };
     static const double widths_px[3] = {8, 3, 1};
     const char *folder = getenv("CAMBER_DATA");

@@ -143,24 +143,32 @@ static void check_word(const sample *s, camber_row row, camber_u32 method) {
         assert_int_equal(triangles, !miter && t > 120 * PI / 180 ? 4 : 2);
 }
 
-/* A join beside a butt cap tells how long the shorter segment is, and each segment takes the other for it. */
+/* A join of a line with butt caps tells how long the shorter segment is. Before a cap each segment takes the other for
+ * it. Elsewhere one that goes on beside a stub ends in an edge: in wide lines either, in thin ones none. */
 static void test_stubs(void **state) {
     (void)state;
-    const camber_u32 ends[] = {CAMBER_JOIN_BEFORE_LAST, CAMBER_JOIN_AFTER_FIRST};
+    const float thin = CAMBER_TIPS_PX, usual = CAMBER_WIDE_PX, wide = CAMBER_WIDE_PX + 1;
     for (int i = 0; i <= 400; i++) {
         const float length = (float)i * 0.005f, longer = length + 1.0f;
-        const camber_u32 word = camber_stub_pack(ends[i % 2], CAMBER_CAPS_BUTT, 0.5f * length);
-        assert_int_equal(camber_stub_pack(0, CAMBER_CAPS_BUTT, 0.5f * length), 0);
-        assert_int_equal(camber_stub_pack(ends[i % 2], CAMBER_CAPS_ROUND, 0.5f * length), 0);
-        assert_int_equal(camber_flat_join(word, 0, 1, longer), 0);
-        const camber_u32 flat = CAMBER_END_FLAT(camber_flat_join(word, 1, 0, longer));
-        if (length >= CAMBER_STUB_PX)
-            assert_int_equal(flat, 0);
-        else
+        const camber_u32 word = camber_stub_pack(CAMBER_CAPS_BUTT, 0.5f * length);
+        const bool stub = length < CAMBER_STUB_PX;
+        assert_int_equal(camber_stub_pack(CAMBER_CAPS_ROUND, 0.5f * length), 0);
+        assert_int_equal(camber_opens(word, longer, thin), 0);
+        assert_int_equal(camber_opens(word, longer, usual), stub);
+        assert_int_equal(camber_opens(word, length, usual), 0);
+        assert_int_equal(camber_opens(word, length, wide), stub);
+        assert_int_equal(camber_opens(0, longer, wide), 0);
+        assert_int_equal(camber_flat_join(word, 0, 0, 1, longer), 0);
+        assert_int_equal(camber_flat_join(word, 0, 1, 0, longer), 0);
+        assert_int_equal(CAMBER_END_FLAT(camber_flat_join(word, 0, 1, 1, longer)), CAMBER_STUB_MOST);
+        const camber_u32 flat = CAMBER_END_FLAT(camber_flat_join(word, 1, 0, 1, longer));
+        if (stub)
             assert_near(((double)flat - 1) * CAMBER_STUB_UNIT_PX, length, (double)CAMBER_STUB_UNIT_PX);
+        else
+            assert_int_equal(flat, 0);
         /* A segment that is no longer than the stub is it. */
-        assert_int_equal(camber_flat_join(word, 1, 0, length), 0);
-        assert_int_equal(CAMBER_END_FLAT(camber_flat_join(word, 1, 1, length)), CAMBER_STUB_MOST);
+        assert_int_equal(camber_flat_join(word, 1, 0, 1, length), 0);
+        assert_int_equal(CAMBER_END_FLAT(camber_flat_join(word, 1, 1, 0, length)), CAMBER_STUB_MOST);
     }
 }
 

@@ -274,14 +274,31 @@ CAMBER_FN int camber_edge_column(const camber_tile_edge *e, float y) {
     return x > 0.0f ? (x < (float)CAMBER_TILE_PX ? (int)(x * (1.0f / CAMBER_CELL_PX)) : CAMBER_TILE_CELLS) : 0;
 }
 
+/* Columns of cells; the last lies before the first where there are none. */
+typedef struct camber_cell_columns {
+    int first, last;
+} camber_cell_columns;
+
+/* Those that an edge passes in a row of cells. */
+CAMBER_FN void camber_edge_columns(const camber_tile_edge *e, int row, camber_cell_columns *columns) {
+    const float top = (float)(CAMBER_CELL_PX * row), bottom = top + CAMBER_CELL_PX;
+    columns->first = 0;
+    columns->last = -1;
+    if (e->y1 <= top || e->y0 >= bottom)
+        return;
+    const int upper = camber_edge_column(e, top), lower = camber_edge_column(e, bottom);
+    columns->first = CAMBER_LESS(upper, lower);
+    columns->last = CAMBER_LESS(CAMBER_MORE(upper, lower), CAMBER_TILE_CELLS - 1);
+}
+
 /* A row of cells is about to be changed: without edges so far, it has no changes. */
 CAMBER_FN void camber_area_take_row(camber_area_state *s, int row) {
     if (s->edged >> (CAMBER_TILE_CELLS * row) & 255u)
         return;
-    for (int x = 0; x <= CAMBER_TILE_CELLS; x++)
+    for (int x = 0; x <= CAMBER_OWN_SIDE; x++)
         for (int k = 0; k < 2; k++)
             for (int v = 0; v < CAMBER_VECTORS; v++)
-                s->changes[row][x][k][v] = CAMBER_WORD(0u);
+                s->changes[CAMBER_OWN_ROW(row)][x][k][v] = CAMBER_WORD(0u);
 }
 
 /* A brush has no edges yet. */
@@ -291,7 +308,7 @@ CAMBER_FN void camber_area_begin(camber_area_state *s) {
             s->turns[row][x] = 0;
     s->has_edges = 1;
     s->edged = 0;
-    s->placed_count = 0;
+    s->placed_count = s->kept_count = 0;
 }
 
 /* The tops of the pixels of a vector of a cell, px from the tile's top. */
@@ -313,7 +330,8 @@ CAMBER_FN void camber_area_turn(camber_area_state *s, float y, float times, camb
             s->edged |= (camber_u64)1 << (CAMBER_TILE_CELLS * row);
             for (int v = 0; v < CAMBER_VECTORS; v++) {
                 const camber_real rows = camber_between(camber_area_tops(row, v) + (1.0f - y), 0.0f, 1.0f);
-                s->changes[row][0][CAMBER_AREA_ON][v] += CAMBER_ROUNDED_WORDS(times * (float)CAMBER_AREA_ONE * rows);
+                s->changes[CAMBER_OWN_ROW(row)][0][CAMBER_AREA_ON][v] +=
+                    CAMBER_ROUNDED_WORDS(times * (float)CAMBER_AREA_ONE * rows);
             }
         }
         row++;
@@ -363,23 +381,36 @@ CAMBER_FN camber_real camber_of_pixels(const camber_real *all, const camber_real
 #endif
 }
 
-/* Adds edge k of a vector to the columns [from, to] of a row of cells, and to all that is right of them. */
-CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row, int from, int to) {
-    const int end = to < CAMBER_TILE_CELLS ? to + 1 : CAMBER_TILE_CELLS;
+/* How much of the pieces' rows lies left of the right sides of the pixels in a column of cells. */
+CAMBER_FN camber_real camber_edge_pieces_until(const camber_edge_pieces *p, float rise, int column, int v) {
+    return camber_edge_pieces_left_of(p + v, rise, (float)(CAMBER_CELL_PX * column + 1) + camber_columns_of_cell(v));
+}
+
+/* Adds edge k of a vector to the columns of a row of cells, and to all that is right of them. What lies left of the
+ * columns that are drawn changes the first of those. */
+CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row,
+                                   const camber_cell_columns *at, camber_tile_rows where) {
+    const int past = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS,
+              stop = CAMBER_LAST_COLUMN(where) + 1;
+    const int first = CAMBER_MORE(at->first, CAMBER_FIRST_COLUMN(where)), end = CAMBER_LESS(past, stop);
+    const int on = CAMBER_MORE(past, CAMBER_FIRST_COLUMN(where));
     const float rise = camber_lane_of(&t->rise, k);
     camber_edge_pieces p[CAMBER_VECTORS];
     camber_real before[CAMBER_VECTORS], all[CAMBER_VECTORS];
     for (int v = 0; v < CAMBER_VECTORS; v++) {
         camber_edge_pieces_of(t, k, camber_area_tops(row, v), p + v);
-        s->changes[row][end][CAMBER_AREA_ON][v] += CAMBER_ROUNDED_WORDS(p[v].height);
-        before[v] = CAMBER_REAL(0.0f);
+        if (on <= stop)
+            s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(on, where)][CAMBER_AREA_ON][v] +=
+                CAMBER_ROUNDED_WORDS(p[v].height);
     }
-    for (int x = from; x < end; x++) {
+    for (int v = 0; v < CAMBER_VECTORS; v++)
+        before[v] = first > at->first ? camber_edge_pieces_until(p, rise, first - 1, v) : CAMBER_REAL(0.0f);
+    for (int x = first; x < end; x++) {
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            all[v] =
-                camber_edge_pieces_left_of(p + v, rise, (float)(CAMBER_CELL_PX * x + 1) + camber_columns_of_cell(v));
+            all[v] = camber_edge_pieces_until(p, rise, x, v);
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            s->changes[row][x][CAMBER_AREA_HERE][v] += CAMBER_ROUNDED_WORDS(camber_of_pixels(all, before, v));
+            s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(x, where)][CAMBER_AREA_HERE][v] +=
+                CAMBER_ROUNDED_WORDS(camber_of_pixels(all, before, v));
         for (int v = 0; v < CAMBER_VECTORS; v++)
             before[v] = all[v];
     }
@@ -399,7 +430,7 @@ CAMBER_FN void camber_area_mark_flat(camber_area_state *s, const camber_tile_edg
 
 /* Adds edge k of a vector to the cells that it passes, and turns the corners right of where it crosses tops of cells.
  */
-CAMBER_FN void camber_area_add_edge(camber_area_state *s, const camber_tile_edges *t, int k) {
+CAMBER_FN void camber_area_add_edge(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
     const int first = camber_integer_of(&t->first, k), last = camber_integer_of(&t->last, k);
     const int above = camber_integer_of(&t->above, k), below = camber_integer_of(&t->below, k);
     const int down = (int)camber_lane_of(&t->in.down, k);
@@ -408,37 +439,64 @@ CAMBER_FN void camber_area_add_edge(camber_area_state *s, const camber_tile_edge
         s->turns[first][upper + 1] += down;
     for (int row = first; row <= last; row++) {
         const int lower = camber_integer_of(t->columns + row + 1, k);
-        const int from = CAMBER_LESS(upper, lower), to = CAMBER_MORE(upper, lower);
+        const camber_cell_columns at = {CAMBER_LESS(upper, lower), CAMBER_MORE(upper, lower)};
         if (row < below && lower < CAMBER_TILE_CELLS)
             s->turns[row + 1][lower + 1] += down;
         upper = lower;
-        if (from == CAMBER_TILE_CELLS)
+        if (at.first == CAMBER_TILE_CELLS)
             continue;
         camber_area_take_row(s, row);
-        s->edged |= ((((camber_u64)2 << to) - ((camber_u64)1 << from)) & 255u) << (CAMBER_TILE_CELLS * row);
-        camber_area_add_row(s, t, k, row, from, to);
+        s->edged |= ((((camber_u64)2 << at.last) - ((camber_u64)1 << at.first)) & 255u) << (CAMBER_TILE_CELLS * row);
+        camber_area_add_row(s, t, k, row, &at, where);
     }
 }
 
+CAMBER_FN void camber_placed_edge_of(const camber_area_state *s, int k, camber_tile_edge *e) {
+    e->x0 = s->placed[0][k];
+    e->y0 = s->placed[1][k];
+    e->y1 = s->placed[2][k];
+    e->slope = s->placed[3][k];
+    e->down = s->placed[4][k] > 0.0f ? 1 : -1;
+}
+
+/* Whether the edge behind those that are kept is kept, too. A work-item that draws a cell keeps those that pass it. */
+CAMBER_FN int camber_area_keeps(const camber_area_state *s, camber_tile_rows where) {
+#if CAMBER_OWN_SIDE == 1
+    camber_tile_edge e;
+    camber_placed_edge_of(s, s->kept_count, &e);
+    camber_cell_columns at;
+    camber_edge_columns(&e, where.first, &at);
+    return where.column >= at.first && where.column <= at.last;
+#else
+    (void)s;
+    (void)where;
+    return 1;
+#endif
+}
+
 /* Keeps the first `count` edges of a vector, in case that areas overlap. */
-CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *t, int count) {
+CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *t, int count, camber_tile_rows where) {
     const camber_real one = CAMBER_REAL(1.0f), way = t->turn == 0.0f         ? one
                                                      : t->turn == t->in.down ? CAMBER_REAL(CAMBER_PLACED_LEAVES)
                                                                              : CAMBER_REAL(CAMBER_PLACED_ENTERS);
     const camber_real words[CAMBER_PLACED_WORDS] = {t->in.x0, t->in.y0, t->in.y1, t->slope, way * t->in.down};
     const int all_matter = CAMBER_ALL(t->matters | (camber_numbers(0) >= (float)count));
-    if (all_matter && s->placed_count + count <= CAMBER_PLACED_MOST) {
+    if (CAMBER_OWN_SIDE != 1 && all_matter && s->placed_count + count <= CAMBER_PLACED_MOST) {
         for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
             CAMBER_STORE(words[i], 0, s->placed[i] + s->placed_count);
         s->placed_count += count;
+        s->kept_count = s->placed_count;
         return;
     }
     for (int k = 0; k < count && s->placed_count <= CAMBER_PLACED_MOST; k++) {
         if (!camber_integer_of(&t->matters, k))
             continue;
-        for (int i = 0; i < CAMBER_PLACED_WORDS && s->placed_count < CAMBER_PLACED_MOST; i++)
-            s->placed[i][s->placed_count] = camber_lane_of(words + i, k);
         s->placed_count++;
+        if (s->kept_count == CAMBER_KEPT_MOST)
+            continue;
+        for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
+            s->placed[i][s->kept_count] = camber_lane_of(words + i, k);
+        s->kept_count += camber_area_keeps(s, where);
     }
 }
 
@@ -451,11 +509,11 @@ CAMBER_FN void camber_area_add(camber_area_state *s, const camber_tile_edges *t,
         if (turn != 0.0f)
             camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
         if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k))
-            camber_area_add_edge(s, t, k);
+            camber_area_add_edge(s, t, k, where);
         else if (camber_integer_of(&t->flat, k))
             camber_area_mark_flat(s, t, k, where);
     }
-    camber_area_place(s, t, count);
+    camber_area_place(s, t, count, where);
 }
 
 #endif

@@ -19,8 +19,6 @@
 #define CAMBER_AREA_SLACK (CAMBER_AREA_ONE / 1024)
 /* An area that is less than this is nothing, and one that is less than this short of a pixel is all of it. */
 #define CAMBER_AREA_LEAST 1e-5f
-/* A cell that more edges pass keeps its sums, and so does a tile with more than CAMBER_PLACED_MOST of one brush. */
-#define CAMBER_OVERLAP_EDGES 64
 
 /* How much of pixels is inside, by the sums of their windings. */
 CAMBER_FN camber_mask camber_area_inside(camber_mask sum, camber_u32 mode) {
@@ -56,26 +54,16 @@ typedef struct camber_row_lists {
     camber_u16 edges[CAMBER_TILE_CELLS][CAMBER_OVERLAP_EDGES];
 } camber_row_lists;
 
-CAMBER_FN void camber_placed_edge_of(const camber_area_state *s, int k, camber_tile_edge *e) {
-    e->x0 = s->placed[0][k];
-    e->y0 = s->placed[1][k];
-    e->y1 = s->placed[2][k];
-    e->slope = s->placed[3][k];
-    e->down = s->placed[4][k] > 0.0f ? 1 : -1;
-}
-
 /* Lists the edges of those cells of a row, a bit each. */
 CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 cells, camber_row_lists *lists) {
-    const float top = (float)(CAMBER_CELL_PX * row), bottom = top + CAMBER_CELL_PX;
     for (int x = 0; x < CAMBER_TILE_CELLS; x++)
         lists->counts[x] = 0;
-    for (int k = 0; k < s->placed_count; k++) {
+    for (int k = 0; k < s->kept_count; k++) {
         camber_tile_edge e;
-        if (s->placed[2][k] <= top || s->placed[1][k] >= bottom)
-            continue;
         camber_placed_edge_of(s, k, &e);
-        const int upper = camber_edge_column(&e, top), lower = camber_edge_column(&e, bottom);
-        for (int x = CAMBER_LESS(upper, lower); x <= CAMBER_MORE(upper, lower) && x < CAMBER_TILE_CELLS; x++) {
+        camber_cell_columns columns;
+        camber_edge_columns(&e, row, &columns);
+        for (int x = columns.first; x <= columns.last; x++) {
             if (!(cells >> x & 1u))
                 continue;
             if (lists->counts[x] < CAMBER_OVERLAP_EDGES)
@@ -183,9 +171,9 @@ CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin,
     }
 }
 
-/* Takes what is too much from the sums of a row of a cell's pixels, which become what is inside. */
-CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_cell *o, int row, float sign) {
-    const int i = CAMBER_TILE_CELLS * o->row + o->column, first = CAMBER_CELL_PX * row;
+/* Takes what is too much from the sums of a row of pixels of cell i, which become what is inside. */
+CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_cell *o, int i, int row, float sign) {
+    const int first = CAMBER_CELL_PX * row;
     const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
     float *inside = (float *)c->sums[i][CAMBER_AREA_INSIDE];
     camber_real much[CAMBER_VECTORS][CAMBER_CELL_PX], of_column[CAMBER_VECTORS];
@@ -203,7 +191,7 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
 }
 
 /* Finds what is inside of the pixels of cells of a row in which rings may overlap. Their sums have been found. */
-CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells) {
+CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells, camber_tile_rows where) {
     const camber_area_state *s = &c->area;
     camber_row_lists lists;
     camber_piled_cell o;
@@ -213,16 +201,17 @@ CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u
     camber_list_row(s, row, cells, &lists);
     o.row = row;
     for (o.column = 0; o.column < CAMBER_TILE_CELLS; o.column++) {
-        const float *sums = (const float *)c->sums[CAMBER_TILE_CELLS * row + o.column][CAMBER_AREA_SUM];
         float all = 0.0f;
         winding += s->turns[row][o.column];
         if (!(cells >> o.column & 1u) || lists.counts[o.column] > CAMBER_OVERLAP_EDGES)
             continue;
+        const int i = CAMBER_OWN_CELL(row, o.column, where);
+        const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
         for (int k = 0; k < CAMBER_CELL_PX * CAMBER_CELL_PX; k++)
             all += sums[k];
         camber_piled_cell_of(s, &lists, winding, &o);
         for (int y = 0; y < CAMBER_CELL_PX; y++)
-            camber_piled_cell_end(c, &o, y, all < 0.0f ? -1.0f : 1.0f);
+            camber_piled_cell_end(c, &o, i, y, all < 0.0f ? -1.0f : 1.0f);
     }
 }
 
@@ -278,7 +267,8 @@ CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_ma
 
 /* Adds up what the edges of a row of cells change, from left to right, and finds what is inside. A cell that no edge
  * passes is all inside or all outside, as one of its pixels is. */
-CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_area_cells *found) {
+CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_tile_rows where,
+                                    camber_area_cells *found) {
     const int *turns_above = c->area.turns[row], *turns_below = c->area.turns[row + 1];
     int top = c->winding + turns_above[0], bottom = c->winding + turns_below[0];
     camber_corners left = {CAMBER_LESS(top, bottom), CAMBER_MORE(top, bottom)};
@@ -287,26 +277,29 @@ CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hi
     camber_u32 overlaps = 0;
     for (int v = 0; v < CAMBER_VECTORS; v++)
         on[v] = CAMBER_WORD((camber_u32)top * CAMBER_AREA_ONE);
-    for (int x = 0; x < CAMBER_TILE_CELLS; x++) {
-        const int i = CAMBER_TILE_CELLS * row + x;
+    for (int x = 0; x <= CAMBER_LAST_COLUMN(where); x++) {
+        const int i = CAMBER_OWN_CELL(row, x, where);
         top += turns_above[x + 1];
         bottom += turns_below[x + 1];
         const camber_corners right = {CAMBER_LESS(top, bottom), CAMBER_MORE(top, bottom)};
         const camber_corners of = {CAMBER_LESS(left.least, right.least), CAMBER_MORE(left.most, right.most)};
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
-            on[v] += c->area.changes[row][x][CAMBER_AREA_ON][v];
-            sums[v] = CAMBER_AS_INTEGERS(on[v] + c->area.changes[row][x][CAMBER_AREA_HERE][v]);
-        }
         left = right;
+        if (x < CAMBER_FIRST_COLUMN(where))
+            continue;
+        for (int v = 0; v < CAMBER_VECTORS; v++) {
+            const camber_words *changes = &c->area.changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(x, where)][0][0];
+            on[v] += changes[CAMBER_VECTORS * CAMBER_AREA_ON + v];
+            sums[v] = CAMBER_AS_INTEGERS(on[v] + changes[CAMBER_VECTORS * CAMBER_AREA_HERE + v]);
+        }
         if (hidden >> i & 1)
             continue;
-        if (c->area.edged >> i & 1)
+        if (c->area.edged >> (CAMBER_TILE_CELLS * row + x) & 1)
             overlaps |= camber_area_find_cell(c, i, sums, of, found) ? 1u << x : 0u;
         else if (camber_winding_is_inside((camber_integer_of(sums, 0) + CAMBER_AREA_ONE / 2) >> 16, c->now.mode))
             found->whole |= (camber_u64)1 << i;
     }
     if (overlaps)
-        camber_area_find_overlaps(c, row, overlaps);
+        camber_area_find_overlaps(c, row, overlaps, where);
 }
 
 /* Finds the cells that have something inside of the brush's rings, and ends the rings. What is inside of those of which
@@ -315,12 +308,11 @@ CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, ca
     const camber_u64 hidden = c->done | c->filled, edged = c->area.has_edges ? c->area.edged : 0;
     found->whole = found->partial = 0;
     for (int row = where.first; row <= where.last; row++) {
-        const camber_u64 cells = (camber_u64)255 << (CAMBER_TILE_CELLS * row);
         const int winding = c->winding + (c->area.has_edges ? c->area.turns[row][0] : 0);
-        if (edged & cells)
-            camber_area_find_row(c, row, hidden, found);
+        if (edged >> (CAMBER_TILE_CELLS * row) & 255)
+            camber_area_find_row(c, row, hidden, where, found);
         else if (camber_winding_is_inside(winding, c->now.mode))
-            found->whole |= cells & ~hidden;
+            found->whole |= CAMBER_OWN_CELLS_OF(row) & ~hidden;
     }
     c->area.has_edges = 0;
     c->winding = 0;

@@ -12,21 +12,44 @@
 /* A vector has CAMBER_LANES of the sixteen pixels of a cell, row by row, or of sixteen segments. */
 #define CAMBER_VECTORS (16 / CAMBER_LANES)
 
+/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. What is kept of rows and columns of
+ * cells lies at CAMBER_OWN_ROW and CAMBER_OWN_COLUMN, and what is kept of a cell at CAMBER_OWN_CELL. */
+#if defined(CAMBER_DEVICE) && CAMBER_LANES == 1
+#define CAMBER_OWN_SIDE 1
+#define CAMBER_OWN_ROW(row) 0
+#define CAMBER_OWN_COLUMN(x, where) ((x) - (where).column)
+#define CAMBER_FIRST_COLUMN(where) ((where).column)
+#define CAMBER_LAST_COLUMN(where) ((where).column)
+#else
+#define CAMBER_OWN_SIDE CAMBER_TILE_CELLS
+#define CAMBER_OWN_ROW(row) (row)
+#define CAMBER_OWN_COLUMN(x, where) ((void)(where), (x))
+#define CAMBER_FIRST_COLUMN(where) ((void)(where), 0)
+#define CAMBER_LAST_COLUMN(where) ((void)(where), CAMBER_TILE_CELLS - 1)
+#endif
+#define CAMBER_OWN_CELLS (CAMBER_OWN_SIDE * CAMBER_OWN_SIDE)
+#define CAMBER_OWN_CELL(row, x, where) (CAMBER_OWN_SIDE * CAMBER_OWN_ROW(row) + CAMBER_OWN_COLUMN(x, where))
+/* The cells of a row, a bit each. */
+#define CAMBER_OWN_CELLS_OF(row) ((camber_u64)((1 << CAMBER_OWN_SIDE) - 1) << (CAMBER_OWN_SIDE * CAMBER_OWN_ROW(row)))
+
 /* Rows of cells [first, last] of a tile, and where the tile lies in the picture, px. */
 typedef struct camber_tile_rows {
     float left, top;
     int first, last;
+#if CAMBER_OWN_SIDE == 1
+    int column; /* of the one cell */
+#endif
 } camber_tile_rows;
 
 /* The columns and rows of the pixels of a vector of a cell. */
-#ifdef CAMBER_DEVICE
+#if CAMBER_HAS_VECTORS
 constant float COLUMNS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 constant float ROWS[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 constant float NUMBERS[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 #endif
 
 CAMBER_FN camber_real camber_columns_of_cell(int v) {
-#ifdef CAMBER_DEVICE
+#if CAMBER_HAS_VECTORS
     return CAMBER_LOAD((size_t)v, COLUMNS);
 #else
     return (float)(v % CAMBER_CELL_PX);
@@ -34,7 +57,7 @@ CAMBER_FN camber_real camber_columns_of_cell(int v) {
 }
 
 CAMBER_FN camber_real camber_rows_of_cell(int v) {
-#ifdef CAMBER_DEVICE
+#if CAMBER_HAS_VECTORS
     return CAMBER_LOAD((size_t)v, ROWS);
 #else
     return (float)(v / CAMBER_CELL_PX);
@@ -43,7 +66,7 @@ CAMBER_FN camber_real camber_rows_of_cell(int v) {
 
 /* The numbers from 0 to 15 of a vector. */
 CAMBER_FN camber_real camber_numbers(int v) {
-#ifdef CAMBER_DEVICE
+#if CAMBER_HAS_VECTORS
     return CAMBER_LOAD((size_t)v, NUMBERS);
 #else
     return (float)v;

@@ -88,7 +88,7 @@ CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *side_table, cambe
 /* For each pixel, the texel at a word of the side table and the one to its right. */
 CAMBER_FN void camber_texels_at(CAMBER_GLOBAL const float *side_table, camber_words at, camber_words *left,
                                 camber_words *right) {
-#ifdef CAMBER_DEVICE
+#if CAMBER_HAS_VECTORS
     camber_u32 places[CAMBER_LANES], from[CAMBER_LANES], to[CAMBER_LANES];
     CAMBER_STORE(at, 0, places);
     for (int k = 0; k < CAMBER_LANES; k++) {

@@ -1,19 +1,24 @@
 /* The vectors that the rasterizer computes with: types and conversions that depend on how many lanes a vector has.
  *
- * CAMBER_LANES is 1 in C and in shaders, as the twin takes one segment or pixel at a time. On a device it is 8 or 16 (4
- * works, too): its build says so. A formula over camber_real, camber_words and camber_mask has the same bits in each
- * lane, whatever their number. Where a formula takes lanes together, as the largest of them, it has to say whose they
- * are. */
+ * CAMBER_LANES is 1 in C, in shaders and on GPUs: one segment or pixel is taken at a time. On a CPU's device it is 8 or
+ * 16 (4 works, too): its build says so. A formula over camber_real, camber_words and camber_mask has the same bits in
+ * each lane, whatever their number. Where a formula takes lanes together, as the largest of them, it has to say whose
+ * they are. */
 #ifndef CAMBER_KERNELS_LANES_H
 #define CAMBER_KERNELS_LANES_H
 
 #include "layout.h"
 
-#ifdef CAMBER_DEVICE
-
-#ifndef CAMBER_LANES
+#if defined(CAMBER_DEVICE) && !defined(CAMBER_LANES)
 #define CAMBER_LANES 16
 #endif
+#if defined(CAMBER_DEVICE) && CAMBER_LANES > 1
+#define CAMBER_HAS_VECTORS 1
+#else
+#define CAMBER_HAS_VECTORS 0
+#endif
+
+#if CAMBER_HAS_VECTORS
 
 /* The name of a vector type or of its conversion: CAMBER_OF_LANES(float) is float16 where there are 16 lanes. */
 #define CAMBER_PASTE_LANES(name, lanes) name##lanes
@@ -57,13 +62,19 @@ typedef CAMBER_OF_LANES(ulong) camber_long_words;
 
 #else
 
+#ifndef CAMBER_DEVICE
 #undef CAMBER_LANES
 #define CAMBER_LANES 1
+#endif
 
 typedef float camber_real;
 typedef camber_u32 camber_words;
 typedef int camber_mask; /* 1 or 0 */
 
+#ifdef CAMBER_DEVICE
+#define camber_bits_of(value) as_uint(value)
+#define camber_float_of(bits) as_float(bits)
+#else
 CAMBER_FN camber_u32 camber_bits_of(float value) {
     union {
         float value;
@@ -79,6 +90,7 @@ CAMBER_FN float camber_float_of(camber_u32 bits) {
     } word = {bits};
     return word.value;
 }
+#endif
 
 #define CAMBER_TO_REAL(x) ((float)(x))
 #define CAMBER_TO_WORDS(x) ((camber_u32)(x))
@@ -119,7 +131,7 @@ CAMBER_FN int camber_integer_of(const camber_mask *vector, int k) {
 }
 #endif
 
-#ifdef CAMBER_DEVICE
+#if CAMBER_HAS_VECTORS
 /* Whether any lane, and whether all lanes of a mask are set. PoCL's any and all look at one lane after the other. */
 #if CAMBER_LANES == 16
 #define CAMBER_HALF_OF(mask, operator) ((mask).lo operator(mask).hi)

@@ -10,3 +10,5 @@
 #include "wind.cl"
 
 #include "rasterize.cl"
+
+#include "rasterize_one.cl"

@@ -26,7 +26,7 @@ typedef struct camber_setup_args {
 } camber_setup_args;
 
 /* So many records a work-item of setup takes: some, as a work-group takes a while to begin. */
-#define CAMBER_SETUP_RECORDS 128u
+#define CAMBER_SETUP_RECORDS(lanes) ((lanes) == 1u ? 16u : 128u)
 #define CAMBER_MAKES_SEGMENTS 0u
 #define CAMBER_MAKES_EDGES 1u
 #define CAMBER_MAKES_SEGMENTS_AMONG_EDGES 2u
@@ -54,23 +54,32 @@ typedef struct camber_target_args {
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state. That is seven sets of cells and a count of each cell, words for each row of cells, and planes from
- * word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture. Behind
- * them lie what a brush of areas has turned, and its edges so far. */
+ * spills its state: some words for each cell, and then planes of sixteen floats for each cell, of which the first are
+ * the brush and the picture. Behind them lie what a brush of areas has turned, and its edges so far. */
 typedef struct camber_spill_args {
     camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
     camber_u32 tile_words;
     camber_u32 sums, group, layer, behind; /* the first plane of sums, of a group, of a layer, and behind all */
 } camber_spill_args;
 
-#define CAMBER_SPILL_WORDS 56
-#define CAMBER_SPILL_SETS 7
-#define CAMBER_SPILL_BLEND_COUNTS 56 /* the byte at which they begin, behind the sets of cells with a bit a cell */
-#define CAMBER_SPILL_ROWS 30         /* the word at which the rows' words begin */
-#define CAMBER_SPILL_WINDINGS 38     /* the same: the winding of an area's rings */
-#define CAMBER_SPILL_PLACED 46       /* the same: 1 + how many of its edges are kept; 0: no edge came by */
+/* The words of a cell: in which sets it is, how many segments were drawn into it, and which cells of its row edges
+ * pass; the brush, and which levels are open; the winding of an area's rings; 0 where no edge of it came by, else 1 +
+ * how many did, and in the upper half how many are kept. */
+#define CAMBER_SPILL_STATE 0
+#define CAMBER_SPILL_NOW 1
+#define CAMBER_SPILL_WINDING 2
+#define CAMBER_SPILL_PLACED 3
+#define CAMBER_SPILL_CELL_WORDS 4
+#define CAMBER_SPILL_SETS 6
+#define CAMBER_SPILL_BRUSHED 1u
+#define CAMBER_SPILL_TOUCHED(level) (8u << (level))
+#define CAMBER_SPILL_COUNT_SHIFT 8
+#define CAMBER_SPILL_EDGED_SHIFT 16
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
-#define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
+#define CAMBER_SPILL_FULL 0x3ffffffeu /* in place of a brush: nothing below shows through the cell */
+
+/* Planes at most: of the brush and the picture, of sums, of a group, of a layer, and of masks. */
+#define CAMBER_SPILL_PLANES 17u
 
 /* An edge of an area as a tile keeps it: where it begins, where it ends, how steep it is, and the way it goes: 1 down
  * the ring, -1 up, and times these where it enters the tile through its left side, and where it leaves it there. Of one
@@ -82,6 +91,10 @@ typedef struct camber_spill_args {
 /* How a brush turns at the top and the bottom of a row of cells, as a spill has it; behind all rows' lie the edges. */
 #define CAMBER_TURN_WORDS 18
 #define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
+/* A cell that more edges pass keeps its sums where areas overlap, and so does a tile with more than CAMBER_PLACED_MOST
+ * of one brush. Where a work-item draws one cell, each has its own turns and edges, one more than that at most. */
+#define CAMBER_OVERLAP_EDGES 64
+#define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 
 /* rasterize: a job is two words, the tile, and the first and the last row of its cells to draw. */
 #define CAMBER_JOB_WORDS 2

@@ -8,10 +8,11 @@
  *
  * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
  * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */
-#include "area_inside.h"
+#include "spill.cl"
+
+#if CAMBER_LANES > 1 /* rasterize_one.cl has it for one lane */
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
-#include "spill.cl"
 
 /* A list's segments are scattered in memory. Where the compiler is known to be clang, those of the next batch are
  * prefetched while one is drawn. And pixels go past the caches: nobody reads them before all tiles are drawn. */
@@ -288,7 +289,7 @@ CAMBER_KERNEL(1, rasterize,
     if (!slice.is_first) {
         if (!slice.is_last && starts[tile] == starts[tile + 1] && left_of.first == left_of.end)
             return;
-        current = restore_cells(&c, own_spill, brushes, slice, first, last);
+        current = restore_cells(&c, own_spill, brushes, slice, where);
         if (current != ~0u && current != CAMBER_SPILL_FULL) {
 #if CAMBER_RASTER_RICH
             camber_tile_use_ext(&c, brush_ext[current]);
@@ -347,7 +348,7 @@ CAMBER_KERNEL(1, rasterize,
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;
-        spill_cells(&c, own_spill, slice, first, last, (current & CAMBER_SPILL_BRUSH) | open);
+        spill_cells(&c, own_spill, slice, where, (current & CAMBER_SPILL_BRUSH) | open);
         return;
     }
     end_area(&c, &at, &from_brushes, where);
@@ -355,9 +356,11 @@ CAMBER_KERNEL(1, rasterize,
     if (!slice.is_last) {
         camber_tile_close_brush(&c);
         c.done = ~0ul;
-        spill_cells(&c, own_spill, slice, first, last, CAMBER_SPILL_FULL);
+        spill_cells(&c, own_spill, slice, where, CAMBER_SPILL_FULL);
         return;
     }
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,
                 top, first, last);
 }
+
+#endif

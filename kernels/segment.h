@@ -19,10 +19,6 @@
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* where less than this shows through, what lies below is not drawn */
 #define CAMBER_FILL_PX 1e6f /* a fill is a line along y = 0 that is this long to either side, and this half width */
 
-/* The most bytes that a tile spills between slices: seventeen planes of its pixels, four of edges, and a few
- * words. */
-#define CAMBER_SPILL_BYTES (21 * 4096 + 224)
-
 /* The box of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu
 

@@ -1,5 +1,5 @@
 /* setup: makes a segment, or the edge of a ring, of each record that ends one, and finds the box of tiles around it. A
- * work-item takes CAMBER_SETUP_RECORDS records.
+ * work-item takes 128 records, and on a GPU 16.
  *
  * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count],
  * changes[first_change + change_count]. For the n records of a range, rounded up to sixteens, it writes from element
@@ -261,8 +261,9 @@ CAMBER_KERNEL(1, setup,
                global float *restrict arc_lengths, global float *restrict planes,
                global const camber_u32 *restrict changes, global float *restrict edges),
               (records, rows, segments, boxes, r, arc_lengths, planes, changes, edges)) {
-    const uint from = CAMBER_SETUP_RECORDS * (uint)CAMBER_WORK_ITEM, left = (r.end - r.first - from + 15) / 16 * 16;
-    const uint count = left < CAMBER_SETUP_RECORDS ? left : CAMBER_SETUP_RECORDS;
+    const uint most = CAMBER_SETUP_RECORDS(CAMBER_LANES), from = most * (uint)CAMBER_WORK_ITEM,
+               left = (r.end - r.first - from + 15) / 16 * 16;
+    const uint count = left < most ? left : most;
     for (uint i = from; i < from + count; i += CAMBER_LANES) {
         const size_t at = (size_t)r.base + i;
         const int first = (int)(r.first + i);

@@ -28,7 +28,7 @@
 #include "stroke_setup.inl"
 
 /* stroke_setup.inl for a vector of segments, or of edges as several pixels see them. */
-#if defined(CAMBER_DEVICE)
+#if CAMBER_HAS_VECTORS
 #undef CAMBER_COEF
 #undef CAMBER_COEF_WORDS
 #undef CAMBER_COEF_MASK

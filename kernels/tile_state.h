@@ -35,18 +35,21 @@ typedef uint16_t camber_u16;
 /* Areas and windings of a brush of areas are whole numbers of such parts of a pixel: sums of them have no order, and
  * edges that run to and fro add up to nothing. */
 #define CAMBER_AREA_ONE 65536
+/* How many edges of a brush are kept. */
+#define CAMBER_KEPT_MOST (CAMBER_OWN_SIDE == 1 ? CAMBER_OVERLAP_EDGES + 1 : CAMBER_PLACED_MOST)
 /* A brush of areas: how its edges change a tile (area.h). */
 typedef struct camber_area_state {
     /* The edges of a cell change its pixels, and all edges left of a cell change it and those right of it: how much
      * more they are wound around. The last column lies right of the tile. */
-    camber_words changes[CAMBER_TILE_CELLS][CAMBER_TILE_CELLS + 1][2][CAMBER_VECTORS];
+    camber_words changes[CAMBER_OWN_SIDE][CAMBER_OWN_SIDE + 1][2][CAMBER_VECTORS];
     /* Just below the tops of rows of cells, and the tile's lower end: how many times more the rings wind around a
      * cell's left end, and all right of it, than around what lies left of that. */
     int turns[CAMBER_TILE_CELLS + 1][CAMBER_TILE_CELLS + 1];
     camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
     int has_edges;    /* else nothing else is set */
-    int placed_count; /* more than CAMBER_PLACED_MOST: not all are here */
-    float placed[CAMBER_PLACED_WORDS][CAMBER_PLACED_MOST + CAMBER_LANES];
+    int placed_count; /* of the tile */
+    int kept_count;   /* those that are here: a cell's own alone, or all unless they are more than CAMBER_PLACED_MOST */
+    float placed[CAMBER_PLACED_WORDS][CAMBER_KEPT_MOST + CAMBER_LANES];
 } camber_area_state;
 
 #define CAMBER_AREA_HERE 0
@@ -56,24 +59,24 @@ typedef struct camber_area_state {
 
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
-    camber_real brush[CAMBER_CELLS][CAMBER_VECTORS]; /* let through */
+    camber_real brush[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* let through */
     /* A union's, of areas and of normals. An area's: what is inside of the pixels, and the sums of their windings. */
-    camber_real sums[CAMBER_CELLS][3][CAMBER_VECTORS];
+    camber_real sums[CAMBER_OWN_CELLS][3][CAMBER_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
-    camber_real level[CAMBER_LEVELS][CAMBER_CELLS][4][CAMBER_VECTORS];
+    camber_real level[CAMBER_LEVELS][CAMBER_OWN_CELLS][4][CAMBER_VECTORS];
     camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; a bit each */
     camber_u64 done;                            /* cells in which nothing below shows */
     camber_u64 filled;                          /* cells in which no more of the same brush shows */
     camber_u64 whole; /* cells that the brush covers and lets nothing through: of one colour */
     int is_open[CAMBER_LEVELS];
-    int winding;                         /* of the brush's rings around the tile's top left corner */
-    camber_u8 blend_count[CAMBER_CELLS]; /* segments that have been drawn into the cell */
+    int winding;                             /* of the brush's rings around the tile's top left corner */
+    camber_u8 blend_count[CAMBER_OWN_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
     camber_area_state area;
 #if CAMBER_HAS_MASKS
     camber_brush_ext brush_ext; /* the same brush's extension */
     float layer_alpha;          /* of a masked layer's colour, which covers as if it were opaque; else 1 */
-    camber_real mask[CAMBER_CELLS][CAMBER_VECTORS]; /* of a masked layer: its alpha; its level has what it covers */
+    camber_real mask[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* of a masked layer: its alpha; its level has what it covers */
 #endif
 } camber_tile_state;
 
@@ -105,7 +108,7 @@ CAMBER_FN int camber_tile_level(const camber_tile_state *c) {
 
 /* cells: those that are drawn. first: the brush that no segment has drawn by yet. */
 CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_GLOBAL const camber_brush *first) {
-    for (int i = 0; i < CAMBER_CELLS; i++)
+    for (int i = 0; i < CAMBER_OWN_CELLS; i++)
         c->blend_count[i] = 0;
     c->brushed = c->filled = c->whole = 0;
     c->area.has_edges = 0;

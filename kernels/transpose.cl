@@ -6,7 +6,9 @@
 
 /* The lanes of two vectors in turn: of their lower or of their upper halves. */
 static inline camber_real put_together(camber_real a, camber_real b, int upper) {
-#if CAMBER_LANES == 16
+#if CAMBER_LANES == 1
+    return upper ? b : a;
+#elif CAMBER_LANES == 16
     return upper ? (float16)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, a.sf,
                              b.sf)
                  : (float16)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7,
@@ -35,7 +37,10 @@ static inline void turn_over(camber_real *words) {
 
 /* Four vectors with four words of each lane in turn become four vectors of a word each. */
 static inline void turn_fours_over(const camber_words *v, camber_words *words) {
-#if CAMBER_LANES == 16
+#if CAMBER_LANES == 1
+    for (int k = 0; k < 4; k++)
+        words[k] = v[k];
+#elif CAMBER_LANES == 16
     words[0] = (uint16)(v[0].s048c, v[1].s048c, v[2].s048c, v[3].s048c);
     words[1] = (uint16)(v[0].s159d, v[1].s159d, v[2].s159d, v[3].s159d);
     words[2] = (uint16)(v[0].s26ae, v[1].s26ae, v[2].s26ae, v[3].s26ae);

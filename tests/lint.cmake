@@ -72,9 +72,15 @@ set(build_plain -pedantic)
 set(build_cpu -DCAMBER_POINT_CHUNK=256 -DCAMBER_HAS_ARC_LENGTH=1 -UCAMBER_METHOD -DCAMBER_METHOD=1 -DCAMBER_RASTER_RICH=1)
 set(build_pitched -pedantic -DCAMBER_PITCHED=1 -DCAMBER_RASTER_RICH=1 -DCAMBER_RASTER_PITCHED=1)
 set(build_fan -pedantic -UCAMBER_METHOD -DCAMBER_METHOD=2)
+set(build_gpu -pedantic -DCAMBER_LANES=1)
+set(build_gpu_pitched ${build_gpu} -DCAMBER_RASTER_RICH=1 -DCAMBER_RASTER_PITCHED=1)
 foreach(kernel IN LISTS kernels)
   get_filename_component(name ${kernel} NAME_WE)
-  foreach(build plain cpu pitched fan)
+  set(builds plain cpu pitched fan)
+  if(name STREQUAL "raster") # with one lane, as a whole: other files are for vectors
+    list(APPEND builds gpu gpu_pitched)
+  endif()
+  foreach(build IN LISTS builds)
     lint_step(kernel_${name}_${build}
       COMMAND ${CLANG} ${kernel_flags} -fsyntax-only ${lint_warnings} -Wno-unused-function -Wno-unused-parameter
               -Wno-ignored-pragmas -Wno-missing-field-initializers ${build_${build}} ${kernel}

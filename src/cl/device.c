@@ -247,13 +247,13 @@ enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 /* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
-/* Lanes that are as wide as the device's vectors. */
+/* Lanes that are as wide as the device's vectors. GPUs have none: each work-item takes a pixel at a time. */
 static camber_status native_lanes(const camber_device *device, unsigned *lanes) {
     cl_uint floats = 0;
     const cl_int code = clGetDeviceInfo(device->id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof floats, &floats, NULL);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clGetDeviceInfo", code);
-    *lanes = floats >= 16 ? 16 : 8;
+    *lanes = device->info.type != CAMBER_DEVICE_TYPE_CPU ? 1 : floats >= 16 ? 16 : 8;
     return CAMBER_OK;
 }
 
@@ -263,9 +263,9 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
                            "a work-group of %u points; it must be 64, 128, 256, or 0 for 256", size);
-    if (desc->lanes != 0 && desc->lanes != 8 && desc->lanes != 16)
+    if (desc->lanes != 0 && desc->lanes != 1 && desc->lanes != 8 && desc->lanes != 16)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
-                           "vectors of %u lanes; it must be 8, 16, or 0 for the device's own width", desc->lanes);
+                           "vectors of %u lanes; it must be 1, 8, 16, or 0 for the device's own width", desc->lanes);
     if (desc->largest_buffer_bytes != 0 && desc->largest_buffer_bytes < LEAST_BUFFER_BYTES)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
                            "a largest buffer of %llu bytes; it must be %d or more, or 0 for the device's own limit",

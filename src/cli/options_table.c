@@ -189,7 +189,7 @@ const camber_option_spec camber_option_specs[] = {
     {"junit", 0, CAMBER_OPTION_FILE, VALIDATE, FIELD(junit), "FILE", "write the results as JUnit XML"},
     {"pictures", 0, CAMBER_OPTION_FOLDER, VALIDATE, FIELD(pictures), "FOLDER", "write a PNG of each failure"},
     {"full", 0, CAMBER_OPTION_FLAG, VALIDATE, FIELD(full), NULL,
-     "also draw with every method, join and cap, and with vectors of 8 and 16; three minutes"},
+     "also draw with every method, join and cap, and with 1, 8 and 16 lanes; three minutes"},
     {"windows", 0, CAMBER_OPTION_COUNT, VALIDATE, FIELD(windows), "N",
      "windows of each picture to compare with exact coverage (24)", 8, 100000},
     {"json", 0, CAMBER_OPTION_FLAG, TALKING, FIELD(json), NULL, "print one JSON object to standard output"},

@@ -158,7 +158,7 @@ static void say_what_was_left(const run *r) {
         (camber_clock_ms() - r->session->start_ms) / 1e3, results->failed, results->skipped,
         r->session->options->full
             ? ""
-            : "; --full draws by every method, with every join and cap on each back end, and with vectors of 8 and 16");
+            : "; --full draws by every method, with every join and cap on each back end, and with 1, 8 and 16 lanes");
 }
 
 int camber_verb_validate(camber_session *session) {

@@ -1,6 +1,8 @@
 /* The rasterizer's buffers on the device: how many bytes they hold, and what is written to them and read back. */
 #include "raster/rasterizer.h"
 
+#include "kernels/cells.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -64,7 +66,10 @@ uint64_t camber_raster_most_segment_bytes(const camber_raster *raster) {
 }
 
 uint32_t camber_raster_widest(const camber_raster *raster) {
-    const uint64_t tiles = camber_raster_most_bytes(raster) / CAMBER_SPILL_BYTES,
+    const uint64_t planes = CAMBER_SPILL_PLANES * CAMBER_TILE_PX * CAMBER_TILE_PX,
+                   cells = CAMBER_SPILL_CELL_WORDS * CAMBER_CELLS;
+    const uint64_t a_tile = 4 * (cells + planes + camber_raster_area_words(raster));
+    const uint64_t tiles = camber_raster_most_bytes(raster) / a_tile,
                    widest = tiles < CAMBER_TILES_MAX ? tiles : CAMBER_TILES_MAX;
     return CAMBER_TILE_PX * (widest ? (uint32_t)widest : 1);
 }

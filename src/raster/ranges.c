@@ -14,8 +14,8 @@ const camber_record camber_fill_records[CAMBER_FILL_RECORDS] = {
 
 /* How many records of a part lie before a polyline's. A strip has two indices for each record, kite and fan a record
  * for each slot. */
-static camber_status first_record(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
-                                  size_t *record) {
+static camber_status find_record(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
+                                 size_t *record) {
     uint64_t index = 0;
     *record = 0;
     if (polyline == part->first_polyline)
@@ -27,6 +27,22 @@ static camber_status first_record(const camber_mesh *mesh, const camber_mesh_par
         return camber_part_slot(mesh, part, polyline, record);
     const camber_status status = camber_part_first_index(mesh, part, polyline, &index);
     *record = (size_t)index / 2;
+    return status;
+}
+
+/* The same. A range mostly begins where the one before ends, and looking waits for the device. */
+static camber_status first_record(camber_range_list *list, const camber_mesh *mesh, const camber_mesh_part *part,
+                                  size_t polyline, size_t *record) {
+    if (list->last_part == part && list->last_polyline == polyline) {
+        *record = list->last_record;
+        return CAMBER_OK;
+    }
+    const camber_status status = find_record(mesh, part, polyline, record);
+    if (status == CAMBER_OK) {
+        list->last_part = part;
+        list->last_polyline = polyline;
+        list->last_record = *record;
+    }
     return status;
 }
 
@@ -63,9 +79,9 @@ static camber_status add_polylines(camber_range_list *list, camber_record_range 
     const bool whole = from == part->first_polyline && to == part->first_polyline + part->polyline_count;
     camber_status status = whole && range.change_count == 0 ? CAMBER_OK : camber_part_ensure_made(range.mesh, part);
     if (status == CAMBER_OK)
-        status = first_record(range.mesh, part, from, &range.first);
+        status = first_record(list, range.mesh, part, from, &range.first);
     if (status == CAMBER_OK)
-        status = first_record(range.mesh, part, to, &range.end);
+        status = first_record(list, range.mesh, part, to, &range.end);
     if (status != CAMBER_OK || range.first >= range.end)
         return status;
     status = add_changes(list, &range, polylines);

@@ -133,6 +133,8 @@ typedef struct camber_range_list {
     camber_record_range *ranges;
     uint32_t *changes; /* of brushes: records of a part, those of a range ascending */
     size_t count, capacity, segment_count, change_count, change_capacity;
+    const camber_mesh_part *last_part; /* the polyline whose first record was looked for last, and that record */
+    size_t last_polyline, last_record;
     size_t first_edge, end_edge; /* no edge of a ring lies outside these segments; 0 and 0: there are no areas */
 } camber_range_list;
 

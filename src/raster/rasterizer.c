@@ -12,11 +12,12 @@
 
 #include <string.h>
 
-/* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A tile with more segments
- * than HEAVY is drawn by as many work-items as it has rows of cells: each walks the list until its row is full. Edges
- * are walked to their end. So where there are any, such a tile must also have more than one in SHARES of what each of
- * the device's processors draws. */
-enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048, SHARES = 8 };
+/* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A GPU has more chunks, as it
+ * wants many work-items. On a CPU a tile with more segments than HEAVY is drawn by as many work-items as it has rows of
+ * cells: each walks the list until its row is full. Edges are walked to their end. So where there are any, such a tile
+ * must also have more than one in SHARES of what each of the device's processors draws, and be drawn in one slice: its
+ * rows share the edges that they spill. */
+enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 1024, GPU_CHUNKS_MAX = 512, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
@@ -48,13 +49,14 @@ static camber_status settle(camber_raster *raster) {
     return status;
 }
 
-/* Starts a stage's kernel for so many jobs: a work-group of one work-item for each. */
+/* Starts a stage's kernel for so many jobs: a work-group of one work-item for each, or of one for each cell. */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
+    const size_t a_job = stage == STAGE_RASTERIZE && camber_raster_draws_cells(raster) ? CAMBER_CELLS : 1;
     const cl_kernel kernels[STAGES] = {raster->program->setup,    raster->program->bin_count,
                                        raster->program->bin_scan, raster->program->bin_scatter,
                                        raster->program->wind,     raster->program->rasterize};
-    const camber_launch launch = {stage_name(stage), kernels[stage], args, arg_count, job_count, 1};
+    const camber_launch launch = {stage_name(stage), kernels[stage], args, arg_count, a_job * job_count, a_job};
     cl_event event = NULL;
     if (job_count == 0)
         return CAMBER_OK;
@@ -83,13 +85,14 @@ static bool cut_range(const camber_raster *raster, camber_record_range *range) {
 /* Starts setup for a range whose records lie in a buffer. */
 static camber_status set_up(camber_raster *raster, const camber_raster_scene *scene, const camber_record_range *range,
                             cl_mem records) {
+    const size_t a_job = CAMBER_SETUP_RECORDS(raster->device->lanes);
     const camber_setup_args args = camber_raster_setup_args(scene, range, &raster->band);
     const camber_kernel_arg arguments[] = {
         CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),    BUFFER(BUFFER_SEGMENTS),
         BUFFER(BUFFER_BOXES),       CAMBER_ARG_VALUE(args), BUFFER(BUFFER_ARC_LENGTHS),
         BUFFER(BUFFER_PLANES),      BUFFER(BUFFER_CHANGES), BUFFER(BUFFER_EDGES)};
     return run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments,
-               (range->end - range->first + CAMBER_SETUP_RECORDS - 1) / CAMBER_SETUP_RECORDS);
+               (range->end - range->first + a_job - 1) / a_job);
 }
 
 /* The same for a part of a mesh that GL draws, too: it has the buffers back when setup is done. */
@@ -117,7 +120,7 @@ static camber_status make_segments(camber_raster *raster, const listed_scene *p)
         status = part ? camber_part_ensure_made(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
-        if (part && mesh->ops != &camber_buffer_plain)
+        if (part && !mesh->ops->is_copied)
             status = set_up_shared(raster, scene, &range);
         else
             status = set_up(raster, scene, &range,
@@ -137,7 +140,9 @@ static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_c
     const camber_raster_area *area = &raster->band;
     const size_t lists = (raster->list_count + 15) / 16 * 16,
                  most = raster->device->info.largest_buffer_bytes / (4 * lists);
-    const size_t wanted = (raster->segment_count + CHUNK - 1) / CHUNK, bound = most < CHUNKS_MAX ? most : CHUNKS_MAX;
+    const size_t least = camber_raster_draws_cells(raster) ? GPU_CHUNK : CHUNK;
+    const size_t chunks_max = camber_raster_draws_cells(raster) ? GPU_CHUNKS_MAX : CHUNKS_MAX;
+    const size_t wanted = (raster->segment_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? ((raster->segment_count + count - 1) / count + 15) / 16 * 16 : 0;
     *chunk_count = (uint32_t)count;
@@ -224,23 +229,25 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
     return status == CAMBER_OK ? run(raster, STAGE_WIND, wind, sizeof wind / sizeof *wind, of.rows) : status;
 }
 
-static bool is_heavy(const camber_raster *raster, size_t tile) {
+static bool is_heavy(const camber_raster *raster, camber_spill_args k, size_t tile) {
     const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
-    return count > HEAVY && (raster->end_edge == 0 || SHARES * units * count > raster->starts[raster->tile_count]);
+    return count > HEAVY && !camber_raster_draws_cells(raster) &&
+           (raster->end_edge == 0 ||
+            (k.is_first && k.is_last && SHARES * units * count > raster->starts[raster->tile_count]));
 }
 
 /* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. */
-static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_t *job_count) {
+static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
     for (size_t i = 0; i < tiles; i++)
-        heavy += is_heavy(raster, i);
+        heavy += is_heavy(raster, k, i);
     const size_t count = tiles + heavy * (CAMBER_TILE_CELLS - 1);
     if (!camber_grow(raster->device->context, &raster->jobs, &raster->job_capacity, count, 2 * sizeof *raster->jobs))
         return CAMBER_ERROR_MEMORY;
     size_t by_rows = 0, whole = heavy * CAMBER_TILE_CELLS;
     for (size_t i = 0; i < tiles; i++) {
-        const bool by_row = is_heavy(raster, i);
+        const bool by_row = is_heavy(raster, k, i);
         for (uint32_t row = 0; by_row && row < CAMBER_TILE_CELLS; row++) {
             raster->jobs[CAMBER_JOB_WORDS * by_rows] = (uint32_t)i;
             raster->jobs[CAMBER_JOB_WORDS * by_rows++ + 1] = CAMBER_JOB_ROWS(row, row);
@@ -257,7 +264,7 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
 
 /* Lays out the planes of a spill: five for the brush and the picture, three for unions or two for areas, four for the
  * group and for the layer, and one for masks. */
-static camber_spill_args plan_spill(const camber_raster_scene *scene) {
+static camber_spill_args plan_spill(const camber_raster *raster, const camber_raster_scene *scene) {
     bool unions = false, areas = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
         unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION;
@@ -270,7 +277,8 @@ static camber_spill_args plan_spill(const camber_raster_scene *scene) {
     k.group = k.sums + (unions ? 3 : areas ? 2 : 0);
     k.layer = k.group + (groups ? 4 : 0);
     k.behind = k.layer + (layers ? 4 : 0) + (masks ? 1 : 0);
-    k.tile_words = CAMBER_SPILL_WORDS + k.behind * PLANE_WORDS + (areas ? CAMBER_AREA_WORDS : 0);
+    k.tile_words = CAMBER_SPILL_CELL_WORDS * CAMBER_CELLS + k.behind * PLANE_WORDS;
+    k.tile_words += areas ? camber_raster_area_words(raster) : 0;
     return k;
 }
 
@@ -381,7 +389,7 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
         return status;
     size_t heavy, jobs;
     raster->slice_count++;
-    status = list_jobs(raster, &heavy, &jobs);
+    status = list_jobs(raster, k, &heavy, &jobs);
     if (status == CAMBER_OK)
         status = scatter_segments(raster, c, chunk_count);
     if (status == CAMBER_OK)
@@ -393,7 +401,7 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
  * halves the band, or halves the slice. */
 static camber_status draw_band(camber_raster *raster, const listed_scene *p, bool *fits) {
     size_t most = segments_at_once(raster), left = p->list.segment_count;
-    camber_spill_args k = plan_spill(p->scene);
+    camber_spill_args k = plan_spill(raster, p->scene);
     camber_status status = CAMBER_OK;
     raster->tile_count = (size_t)raster->columns * camber_raster_tiles(raster->band.height);
     raster->list_count = raster->tile_count + (raster->end_edge ? camber_raster_tiles(raster->band.height) : 0);
@@ -417,7 +425,7 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
 /* How many rows of tiles a band has: all of the area, or as many as can be spilled between slices. */
 static uint32_t rows_at_once(const camber_raster *raster, const listed_scene *p) {
     const uint32_t rows = camber_raster_tiles(raster->area.height);
-    const uint64_t row_bytes = 4 * (uint64_t)plan_spill(p->scene).tile_words * raster->columns;
+    const uint64_t row_bytes = 4 * (uint64_t)plan_spill(raster, p->scene).tile_words * raster->columns;
     const uint64_t most = camber_raster_most_bytes(raster) / row_bytes;
     if (p->list.segment_count <= segments_at_once(raster) || most >= rows)
         return rows;

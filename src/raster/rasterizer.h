@@ -60,6 +60,16 @@ struct camber_raster {
     double ms[STAGES];
 };
 
+/* Whether a work-item of rasterize draws one cell of a tile, as on GPUs. */
+static inline bool camber_raster_draws_cells(const camber_raster *raster) {
+    return raster->device->lanes == 1;
+}
+
+/* The words that a tile spills of a brush of areas. */
+static inline uint32_t camber_raster_area_words(const camber_raster *raster) {
+    return camber_raster_draws_cells(raster) ? CAMBER_CELL_AREA_WORDS : CAMBER_AREA_WORDS;
+}
+
 /* The bytes that lists and spills may each take, and segments. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster);
 uint64_t camber_raster_most_segment_bytes(const camber_raster *raster);

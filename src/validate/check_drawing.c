@@ -243,7 +243,9 @@ static camber_status check_methods(camber_validation *v, const camber_subject *s
 static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
                                  const char *name, size_t n) {
     camber_device *device = checked->groups[n].device;
-    kernels on = {.name = name, .how = checked->groups[n].lanes == 8 ? ", with 8 lanes" : ", with 16 lanes"};
+    char how[32];
+    snprintf(how, sizeof how, ", with lanes: %u", checked->groups[n].lanes);
+    kernels on = {.name = name, .how = how};
     camber_status made = camber_renderer_create(device, NULL, NULL, &on.path.renderer);
     if (made == CAMBER_OK)
         made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);

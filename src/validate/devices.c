@@ -9,7 +9,7 @@
 static const camber_sharing sharings[CAMBER_CHECKED_PATHS] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY,
                                                               CAMBER_SHARING_COPY};
 
-static const uint32_t group_sizes[CAMBER_CHECKED_GROUPS] = {64, 128};
+static const uint32_t group_sizes[CAMBER_CHECKED_GROUPS] = {64, 128, 256}, lanes[CAMBER_CHECKED_GROUPS] = {8, 16, 1};
 
 /* The message of a failed call becomes the reason of a skip. */
 static void skip(camber_validation *v, camber_check check, camber_status status) {
@@ -126,7 +126,7 @@ static camber_status open_plain(camber_validation *v, camber_checked_device *che
     camber_status status = open_alone(v, &desc, &checked->device, &checked->mesh);
     for (size_t i = 0; i < CAMBER_CHECKED_GROUPS && status == CAMBER_OK; i++) {
         desc.work_group_size = checked->groups[i].size = group_sizes[i];
-        desc.lanes = checked->groups[i].lanes = i % 2 ? 16 : 8;
+        desc.lanes = checked->groups[i].lanes = lanes[i];
         status = open_alone(v, &desc, &checked->groups[i].device, &checked->groups[i].mesh);
     }
     return status;

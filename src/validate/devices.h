@@ -6,7 +6,7 @@
 #include "validate/fixture.h"
 #include "validate/validation.h"
 
-enum { CAMBER_CHECKED_PATHS = 3, CAMBER_CHECKED_GROUPS = 2 };
+enum { CAMBER_CHECKED_PATHS = 3, CAMBER_CHECKED_GROUPS = 3 };
 
 /* A path on which a mesh reaches what draws it. */
 struct camber_drawing_path {
@@ -33,7 +33,7 @@ struct camber_checked_device {
         uint32_t size, lanes;
         camber_device *device;
         camber_mesh *mesh;
-    } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes, and vectors of each width */
+    } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes and lanes */
     camber_checked_drawer drawers[CAMBER_FIXTURE_DRAWERS]; /* drawer_count */
     size_t drawer_count;
     /* By camber_method: meshes of the subject at hand differ from the twin's, and are not drawn. */

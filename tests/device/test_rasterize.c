@@ -394,6 +394,7 @@ static void compare_lanes(const fixture *e, uint32_t lanes) {
 static void test_lanes(void **state) {
     const fixture *e = *state;
     compare_lanes(e, e->on.device->lanes == 16 ? 8 : 16);
+    compare_lanes(e, 1);
 }
 
 /* Kernels as they are built for a GPU draw the same picture. */

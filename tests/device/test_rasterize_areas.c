@@ -97,11 +97,24 @@ static camber_renderer *drawer(const fixture *f) {
     return f->on.renderer[CAMBER_FIXTURE_OPENCL];
 }
 
+/* Opens a device and what draws with it. */
+static fixture open_other(const fixture *f, const camber_device_desc *desc) {
+    fixture other = {.context = f->context};
+    assert_int_equal(camber_device_create(f->context, desc, &other.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(other.on.device, NULL, NULL, &other.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    return other;
+}
+
+static void close_other(fixture *other) {
+    camber_renderer_destroy(drawer(other));
+    camber_device_destroy(other->on.device);
+}
+
 /* ---- Device and twin ---- */
 
 /* Areas by both rules, lines over some of them, and areas again; all rows of a mesh, in a group and straight. */
-static void test_twin(void **state) {
-    const fixture *f = *state;
+static void compare_with_twin(const fixture *f) {
     static const camber_brush_ext nothing[4];
     static const double pitches[] = {0, 1, 30, 60, 85};
     for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -135,6 +148,18 @@ static void test_twin(void **state) {
         camber_mesh_destroy(mesh);
         rings_free(&r);
     }
+}
+
+static void test_twin(void **state) {
+    compare_with_twin(*state);
+}
+
+/* Kernels as a GPU runs them: a work-item takes a cell. */
+static void test_cells(void **state) {
+    const camber_device_desc desc = {.lanes = 1};
+    fixture other = open_other(*state, &desc);
+    compare_with_twin(&other);
+    close_other(&other);
 }
 
 /* ---- Pictures ---- */
@@ -292,21 +317,20 @@ static void test_cut_pictures(void **state) {
         picture_assert_same(&whole, &p);
         picture_free(&p);
     }
-    static const uint64_t largest[] = {1024 * 1024, 300 * 1024, 140 * 1024};
+    static const camber_device_desc small_ones[] = {{.largest_buffer_bytes = 1024 * 1024},
+                                                    {.largest_buffer_bytes = 300 * 1024},
+                                                    {.largest_buffer_bytes = 140 * 1024},
+                                                    {.largest_buffer_bytes = 300 * 1024, .lanes = 1},
+                                                    {.largest_buffer_bytes = 200 * 1024, .lanes = 1}};
     uint32_t most = 0;
-    for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
-        const camber_device_desc desc = {.largest_buffer_bytes = largest[i]};
-        fixture small = {.context = f->context};
-        assert_int_equal(camber_device_create(f->context, &desc, &small.on.device), CAMBER_OK);
-        assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
-                         CAMBER_OK);
+    for (size_t i = 0; i < sizeof small_ones / sizeof *small_ones; i++) {
+        fixture small = open_other(f, small_ones + i);
         picture p = draw_rings(&small, &r, &BLACK, 0);
         const uint32_t slices = camber_raster_slice_count(drawer(&small)->raster);
         most = slices > most ? slices : most;
         picture_assert_same(&whole, &p);
         picture_free(&p);
-        camber_renderer_destroy(drawer(&small));
-        camber_device_destroy(small.on.device);
+        close_other(&small);
     }
     printf("# %u slices at most\n", most);
     assert_true(most > 3);
@@ -427,18 +451,14 @@ static void test_order(void **state) {
         camber_mesh_destroy(mesh);
     }
     const camber_device_desc desc = {.largest_buffer_bytes = 300 * 1024};
-    fixture small = {.context = f->context};
-    assert_int_equal(camber_device_create(f->context, &desc, &small.on.device), CAMBER_OK);
-    assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
-                     CAMBER_OK);
+    fixture small = open_other(f, &desc);
     mesh = many_rows(&small, drawer(&small), &r, CAMBER_METHOD_STRIP, 0);
     picture p = draw_passes(drawer(&small), mesh, paints, 0, 0);
     assert_true(mesh->part_count > 1 && camber_raster_slice_count(drawer(&small)->raster) > 1);
     picture_assert_same(&all, &p);
     picture_free(&p);
     camber_mesh_destroy(mesh);
-    camber_renderer_destroy(drawer(&small));
-    camber_device_destroy(small.on.device);
+    close_other(&small);
     picture_free(&all);
     rings_free(&r);
 }
@@ -749,11 +769,12 @@ static void test_input(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),          cmocka_unit_test(test_truth),    cmocka_unit_test(test_seams),
-        cmocka_unit_test(test_cut_pictures),  cmocka_unit_test(test_cameras),  cmocka_unit_test(test_pitched_field),
-        cmocka_unit_test(test_input),         cmocka_unit_test(test_gl),       cmocka_unit_test(test_order),
-        cmocka_unit_test(test_like_fills),    cmocka_unit_test(test_changes),  cmocka_unit_test(test_many_fills),
-        cmocka_unit_test(test_lines_between), cmocka_unit_test(test_gl_fills), cmocka_unit_test(test_network_fills),
+        cmocka_unit_test(test_twin),          cmocka_unit_test(test_cells),         cmocka_unit_test(test_truth),
+        cmocka_unit_test(test_seams),         cmocka_unit_test(test_cut_pictures),  cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_pitched_field), cmocka_unit_test(test_input),         cmocka_unit_test(test_gl),
+        cmocka_unit_test(test_order),         cmocka_unit_test(test_like_fills),    cmocka_unit_test(test_changes),
+        cmocka_unit_test(test_many_fills),    cmocka_unit_test(test_lines_between), cmocka_unit_test(test_gl_fills),
+        cmocka_unit_test(test_network_fills),
     };
     return FIXTURE_CL_RUN(tests);
 }

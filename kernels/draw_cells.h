@@ -1,0 +1,369 @@
+/* Draws a tile, or one cell of it, a segment and a pixel at a time: rasterize on GPUs, and the CPU twin.
+ *
+ * Input: the tile's list of segments, from its end, and all that these are drawn from. Output: a tile's state. On a
+ * CPU's device rasterize draws sixteen segments and pixels side by side (rasterize.cl). What becomes of a pixel is in
+ * tile_state.h for all of them. */
+#ifndef CAMBER_KERNELS_DRAW_CELLS_H
+#define CAMBER_KERNELS_DRAW_CELLS_H
+
+#include "area_inside.h"
+
+/* Where everything is that a tile is drawn from. */
+typedef struct camber_draw_source {
+    CAMBER_GLOBAL const float *segments, *edges, *arc_lengths, *planes, *side_table;
+    CAMBER_GLOBAL const camber_brush *brushes;
+    CAMBER_GLOBAL const camber_brush_ext *brush_ext; /* NULL: no brush has features */
+    CAMBER_GLOBAL const camber_u32 *lists;
+    camber_u32 first_edge, edge_count; /* no edge of a ring lies outside these segments */
+    camber_eye eye;                    /* 0 in a picture from above */
+} camber_draw_source;
+
+/* Functions that GPUs' compilers shall not put into each place that calls them, which takes them a minute. */
+#ifdef CAMBER_DEVICE
+#define CAMBER_APART static __attribute__((noinline))
+#else
+#define CAMBER_APART CAMBER_FN
+#endif
+
+/* A tile that is drawn. */
+typedef struct camber_drawn_tile {
+    camber_draw_source from;
+    camber_crossings_left left; /* of its row, those that no brush has taken */
+    camber_tile_rows where;
+    camber_u32 brush; /* that is drawn now; ~0: none yet */
+} camber_drawn_tile;
+
+/* A segment with all that it is drawn from. */
+typedef struct camber_drawn_segment {
+    camber_edge edge;
+#if !CAMBER_STROKE_PITCHED
+    camber_cell_bounds bounds; /* of the edge */
+#endif
+    camber_eye eye;
+#if CAMBER_HAS_MASKS
+    camber_extras extras; /* all 0 if the brush has no features */
+    camber_image_sampler image;
+    int is_fill;
+#endif
+} camber_drawn_segment;
+
+#if CAMBER_HAS_MASKS
+#define CAMBER_FEATURES_OF(t) ((t)->extras.features)
+#else
+#define CAMBER_FEATURES_OF(t) 0u
+#endif
+
+/* A cell of a tile: its number among those that are drawn, and where its first pixel lies in the picture, with a pitch
+ * from the picture's middle. */
+typedef struct camber_cell_place {
+    int number;
+    float x, y;
+} camber_cell_place;
+
+CAMBER_FN camber_cell_place camber_place_of(camber_tile_rows where, camber_eye eye, int row, int column) {
+    const float x = where.left + 0.5f + (float)(CAMBER_CELL_PX * column);
+    const float y = where.top + 0.5f + (float)(CAMBER_CELL_PX * row);
+    const camber_cell_place place = {CAMBER_OWN_CELL(row, column, where), x - eye.x, y - eye.y};
+    return place;
+}
+
+CAMBER_FN float camber_pixel_x(camber_cell_place one, int i) {
+    return one.x + (float)(i % CAMBER_CELL_PX);
+}
+
+CAMBER_FN float camber_pixel_y(camber_cell_place one, int i) {
+    return one.y + (float)(i / CAMBER_CELL_PX);
+}
+
+/* ---- Cells ---- */
+
+/* How a cell lies to a segment, CAMBER_CELL_*, by its middle. range: where along the line it lies, px. */
+CAMBER_FN camber_u32 camber_segment_meets(const camber_drawn_segment *t, float x, float y, float range[2]) {
+    const camber_edge *p = &t->edge;
+    camber_cell_masks m;
+#if CAMBER_STROKE_PITCHED
+    camber_cell_masks_of(p, x, y, &m);
+#else
+    camber_cell_masks_of(p, &t->bounds, x, y, &m);
+#endif
+    const camber_u32 far = m.full ? CAMBER_CELL_FULL : CAMBER_CELL_PARTIAL;
+#if CAMBER_STROKE_PITCHED
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    return !m.partial ? CAMBER_CELL_OUTSIDE : m.near_end || CAMBER_FEATURES_OF(t) ? CAMBER_CELL_NEAR_END : far;
+#else
+    const camber_u32 meets = !m.partial ? CAMBER_CELL_OUTSIDE : m.near_end ? CAMBER_CELL_NEAR_END : far;
+    (void)range;
+#if CAMBER_HAS_MASKS
+    if (t->extras.features) {
+        camber_pixel middle;
+        camber_look(p, x, y, &middle);
+        camber_extras_range(p, &t->extras, middle.x, range, range + 1);
+        return camber_extras_cell(p, &t->extras, meets, middle.x, middle.y);
+    }
+#endif
+    return meets;
+#endif
+}
+
+/* The area of a pixel at x, y. at: with a pitch a union's normal needs what the area is made from. */
+CAMBER_FN float camber_drawn_area(const camber_drawn_segment *t, camber_u32 meets, int is_union, float x, float y,
+                                  camber_pixel *at) {
+    const int with_all = CAMBER_STROKE_PITCHED & is_union;
+    camber_look(&t->edge, x, y, at);
+#if CAMBER_HAS_MASKS
+    if (t->extras.features && meets != CAMBER_CELL_FULL)
+        return camber_stroke_area(&t->edge, &t->extras, t->extras.features, at, meets == CAMBER_CELL_PARTIAL);
+    at->along = camber_extras_along(&t->edge, &t->extras, at->x);
+#endif
+    if (meets == CAMBER_CELL_FULL)
+        return 1.0f;
+    if (meets == CAMBER_CELL_NEAR_END || with_all)
+        return camber_edge_area(&t->edge, at);
+    return camber_edge_side(&t->edge, x, y);
+}
+
+/* The pixels of a cell as the segment sees them, and their areas. */
+typedef struct camber_cell_pixels {
+    camber_pixel at[CAMBER_VECTORS];
+    float area[CAMBER_VECTORS];
+} camber_cell_pixels;
+
+/* Adds the areas of a cell's pixels to the brush. */
+CAMBER_FN void camber_put_pixels(camber_tile_state *c, const camber_drawn_segment *t, int number, camber_u32 meets,
+                                 const camber_cell_pixels *pixels) {
+    const int near_end = CAMBER_STROKE_PITCHED | (meets == CAMBER_CELL_NEAR_END);
+    for (int i = 0; i < CAMBER_VECTORS; i++) {
+        const camber_pixel *at = pixels->at + i;
+        int thick = t->edge.half_width > CAMBER_UNION_PX;
+        float nx, ny;
+        if (c->now.mode != CAMBER_BRUSH_UNION) {
+            camber_tile_put_over(c, number, i, pixels->area[i]);
+            continue;
+        }
+        if (near_end)
+            thick = camber_edge_normal(&t->edge, at, &nx, &ny);
+        else
+            camber_side_normal(&t->edge, at->y, &nx, &ny);
+        camber_tile_put_union(c, number, i, pixels->area[i], thick, nx, ny);
+    }
+    camber_tile_count(c, number);
+}
+
+#if CAMBER_HAS_MASKS
+/* The colour of a pixel: of a ramp, and of an image along the line. range: where along the line the cell lies. */
+CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pixel *at, const float range[2],
+                                  float color[4]) {
+    color[0] = color[1] = color[2] = color[3] = 1.0f;
+    if (t->extras.features & CAMBER_FEATURE_RAMP)
+        camber_ramp_over(&t->edge, &t->extras, at, range[0], range[1], color);
+    if (t->extras.features & CAMBER_FEATURE_IMAGE) {
+        camber_image_spot spot;
+        float rgba[4];
+        camber_line_spot(&t->edge, at, &spot);
+        camber_line_image(&t->image, &spot, rgba);
+        for (int k = 0; k < 4; k++)
+            color[k] *= rgba[k];
+    }
+}
+
+/* Puts colours that change from pixel to pixel under what a cell has. */
+CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segment *t, int number,
+                                 const camber_cell_pixels *pixels, float range[2]) {
+#if CAMBER_STROKE_PITCHED
+    for (int i = 0; i < CAMBER_VECTORS; i++) {
+        const camber_pixel *at = pixels->at + i;
+        const float reach = camber_extent_along(&t->edge, at);
+        range[0] = CAMBER_LESS(range[0], at->along - reach);
+        range[1] = CAMBER_MORE(range[1], at->along + reach);
+    }
+#endif
+    camber_tile_take_level(c, camber_tile_level(c), number);
+    for (int i = 0; i < CAMBER_VECTORS; i++) {
+        float color[4];
+        camber_drawn_color(t, pixels->at + i, range, color);
+        camber_tile_put_colors(c, number, i, pixels->area[i], color);
+    }
+}
+
+/* Fills a cell with images: all of it, or the areas of its pixels. */
+CAMBER_FN void camber_put_images(camber_tile_state *c, const camber_drawn_segment *t, camber_cell_place one,
+                                 const float *areas) {
+    camber_tile_take_level(c, camber_tile_level(c), one.number);
+    for (int i = 0; i < CAMBER_VECTORS; i++) {
+        const float x = camber_pixel_x(one, i), y = camber_pixel_y(one, i);
+        camber_image_spot spot = {x, y, 0.0f, 0.0f, 0.0f};
+        float color[4];
+#if CAMBER_STROKE_PITCHED
+        camber_plane_spot(t->eye, x, y, &spot);
+#endif
+        camber_fill_image(&t->image, &spot, color);
+        camber_tile_put_colors(c, one.number, i, areas ? areas[i] : 1.0f, color);
+    }
+    camber_tile_count_colors(c, one.number, !areas);
+}
+#endif
+
+CAMBER_FN void camber_draw_cell(camber_tile_state *c, const camber_drawn_segment *t, camber_cell_place one) {
+    const int is_union = c->now.mode == CAMBER_BRUSH_UNION;
+    const float to_middle = 0.5f * (CAMBER_CELL_PX - 1);
+    float range[2] = {0.0f, 0.0f};
+    const camber_u32 meets = camber_segment_meets(t, one.x + to_middle, one.y + to_middle, range);
+    const int has_colors = CAMBER_HAS(CAMBER_FEATURES_OF(t), CAMBER_FEATURES_COLORS);
+    camber_cell_pixels pixels;
+    if (meets == CAMBER_CELL_OUTSIDE)
+        return;
+#if CAMBER_HAS_MASKS
+    if (t->is_fill && t->extras.features & CAMBER_FEATURE_IMAGE) {
+        camber_put_images(c, t, one, 0);
+        return;
+    }
+#endif
+    if (!has_colors)
+        camber_tile_take_cells(c, (camber_u64)1 << one.number);
+    if (!has_colors && meets == CAMBER_CELL_FULL) {
+        camber_tile_put_whole(c, one.number);
+        return;
+    }
+    for (int i = 0; i < CAMBER_VECTORS; i++)
+        pixels.area[i] =
+            camber_drawn_area(t, meets, is_union, camber_pixel_x(one, i), camber_pixel_y(one, i), pixels.at + i);
+#if CAMBER_HAS_MASKS
+    if (has_colors) {
+        camber_put_colors(c, t, one.number, &pixels, range);
+        camber_tile_count_colors(c, one.number, meets == CAMBER_CELL_FULL);
+        return;
+    }
+#endif
+    camber_put_pixels(c, t, one.number, meets, &pixels);
+}
+
+/* ---- Segments ---- */
+
+CAMBER_FN void camber_begin_segment(const camber_draw_source *from, const camber_tile_state *c, size_t which,
+                                    camber_drawn_segment *t) {
+    CAMBER_GLOBAL const float *segment = from->segments + CAMBER_SEGMENT_WORDS * which;
+    const camber_u32 flags = CAMBER_BITS(segment[CAMBER_SEGMENT_FLAGS]);
+    t->eye = from->eye;
+#if CAMBER_STROKE_PITCHED
+    camber_edge_of(from->eye, segment, from->planes + CAMBER_PLANE_WORDS * which, flags, &t->edge);
+#else
+    camber_edge_of(segment, flags, &t->edge);
+    camber_cell_bounds_of(&t->edge, &t->bounds);
+#endif
+#if CAMBER_HAS_MASKS
+    CAMBER_GLOBAL const float *arc_length = from->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * which;
+    const camber_extras none = {0};
+    t->is_fill = t->edge.half_width >= CAMBER_FILL_PX;
+    t->extras = none;
+    if (c->brush_ext.features)
+        camber_extras_of(&c->brush_ext, arc_length, from->side_table, &t->extras);
+    if (t->extras.features & CAMBER_FEATURE_IMAGE)
+        camber_image_line_of(from->side_table, 4u * c->brush_ext.image, arc_length, &t->edge, &t->image);
+#else
+    (void)c;
+#endif
+}
+
+/* Draws the cells that a segment may touch. */
+CAMBER_FN void camber_draw_segment(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
+    camber_drawn_segment t;
+    camber_footprint footprint;
+    camber_cell_boxes box;
+    int is_begun = 0;
+    camber_footprint_of(d->from.segments + CAMBER_SEGMENT_WORDS * which, &footprint);
+    camber_cell_boxes_of(&footprint, d->where, 1, &box);
+    const int left = CAMBER_MORE(box.x, CAMBER_FIRST_COLUMN(d->where)),
+              right = CAMBER_LESS(box.x + box.columns - 1, CAMBER_LAST_COLUMN(d->where));
+    for (int j = box.y; j < box.y + box.rows; j++)
+        for (int k = left; k <= right; k++) {
+            const camber_cell_place one = camber_place_of(d->where, d->from.eye, j, k);
+            if ((c->done | c->filled) >> one.number & 1)
+                continue;
+            if (!is_begun)
+                camber_begin_segment(&d->from, c, which, &t);
+            is_begun = 1;
+            camber_draw_cell(c, &t, one);
+        }
+}
+
+/* ---- Areas ---- */
+
+CAMBER_APART void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
+    CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
+    camber_ring_edges e;
+    camber_tile_edges t;
+    camber_ring_edges_of(ends[0], ends[1], ends[2], ends[3], &e);
+    camber_tile_edges_of(&e, 1, d->where, &t);
+    camber_area_add(&c->area, &t, 1, d->where);
+}
+
+/* Draws the area whose edges have been added. */
+CAMBER_APART void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
+    if (!camber_brush_is_area(&c->now))
+        return;
+#if CAMBER_HAS_MASKS
+    if (c->brush_ext.features & CAMBER_FEATURE_IMAGE) {
+        camber_drawn_segment by;
+        camber_area_cells found;
+        by.eye = d->from.eye;
+        camber_area_find(c, d->where, &found);
+        camber_image_sampler_of(d->from.side_table, 4u * c->brush_ext.image, &by.image);
+        for (int j = d->where.first; j <= d->where.last; j++)
+            for (int k = CAMBER_FIRST_COLUMN(d->where); k <= CAMBER_LAST_COLUMN(d->where); k++) {
+                const camber_cell_place one = camber_place_of(d->where, by.eye, j, k);
+                if ((found.partial | found.whole) >> one.number & 1)
+                    camber_put_images(c, &by, one,
+                                      found.whole >> one.number & 1 ? 0 : c->sums[one.number][CAMBER_AREA_INSIDE]);
+            }
+        return;
+    }
+#endif
+    camber_area_draw(c, d->where);
+}
+
+/* ---- Tiles ---- */
+
+CAMBER_APART void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
+    camber_end_area(c, d);
+    camber_tile_change_brush(c, d->from.brushes[brush]);
+#if CAMBER_HAS_MASKS
+    camber_brush_ext none = {0};
+    camber_tile_use_ext(c, d->from.brush_ext ? d->from.brush_ext[brush] : none);
+#endif
+    d->brush = brush;
+}
+
+/* Draws the areas above a brush of which the tile has no edges. */
+CAMBER_FN void camber_draw_areas_above(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
+    for (camber_u32 next = camber_next_area(&d->left); next > brush; next = camber_next_area(&d->left)) {
+        const int winding = camber_take_winding(&d->left, next);
+        if (winding == 0)
+            continue;
+        camber_draw_with(c, d, next);
+        c->winding = winding;
+    }
+}
+
+/* Draws entry k of the lists. */
+CAMBER_FN void camber_draw_listed(camber_tile_state *c, camber_drawn_tile *d, camber_u32 k) {
+    const camber_draw_source *from = &d->from;
+    const size_t which = from->lists[k];
+    camber_u32 brush = (camber_u32)which - from->first_edge < from->edge_count
+                           ? CAMBER_BITS(from->edges[camber_edge_brush(which)])
+                           : CAMBER_NO_EDGE;
+    const int is_edge = brush != CAMBER_NO_EDGE;
+    if (!is_edge)
+        brush = CAMBER_BITS(from->segments[CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
+    if (brush != d->brush) {
+        camber_draw_areas_above(c, d, brush);
+        camber_draw_with(c, d, brush);
+        c->winding = camber_take_winding(&d->left, brush);
+    }
+    if (is_edge)
+        camber_add_ring_edge(c, d, which);
+    else
+        camber_draw_segment(c, d, which);
+}
+
+#endif

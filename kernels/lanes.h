@@ -1,9 +1,8 @@
 /* The vectors that the rasterizer computes with: types and conversions that depend on how many lanes a vector has.
  *
  * CAMBER_LANES is 1 in C, in shaders and on GPUs: one segment or pixel is taken at a time. On a CPU's device it is 8 or
- * 16 (4 works, too): its build says so. A formula over camber_real, camber_words and camber_mask has the same bits in
- * each lane, whatever their number. Where a formula takes lanes together, as the largest of them, it has to say whose
- * they are. */
+ * 16: its build says so. A formula over camber_real, camber_words and camber_mask has the same bits in each lane,
+ * whatever their number. Where a formula takes lanes together, as the largest of them, it has to say whose they are. */
 #ifndef CAMBER_KERNELS_LANES_H
 #define CAMBER_KERNELS_LANES_H
 

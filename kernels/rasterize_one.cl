@@ -27,7 +27,8 @@ static inline void write_cell(camber_tile_state *c, camber_tile_rows where, glob
 static inline void draw_entries(camber_tile_state *c, camber_drawn_tile *d, camber_u32 first, camber_u32 end) {
     for (camber_u32 k = end; k-- > first && !camber_tile_is_full(c);)
         camber_draw_listed(c, d, k);
-    camber_draw_areas_above(c, d, 0u);
+    if (!camber_tile_is_full(c))
+        camber_draw_areas_above(c, d, 0u);
 }
 
 CAMBER_KERNEL(CAMBER_CELLS, rasterize,
@@ -55,6 +56,10 @@ CAMBER_KERNEL(CAMBER_CELLS, rasterize,
                            ~0u};
     global float *own_spill = spill + (size_t)tile * slice.tile_words;
     camber_tile_begin(&c, 1, brushes);
+#if CAMBER_RASTER_PITCHED
+    if (d.where.top + (float)(CAMBER_CELL_PX * (cell_row + 1)) <= s.horizon) /* a cell above the horizon is done */
+        c.done = ~0ul;
+#endif
     if (s.first_row != ~0u) {
         d.left.first = starts[s.first_row + row] - starts[s.first_row];
         d.left.end = ends[row];

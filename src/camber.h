@@ -282,7 +282,7 @@ typedef struct camber_device_desc {
      * 0 (recommended): chosen for the device. */
     uint32_t work_group_size;
     /* Lanes of the vectors that OpenCL draws with: 1, 8 or 16. It affects speed only; the output is the same bytes.
-     * 0 (recommended): as wide as a CPU's own vectors of floats, and 1 on a GPU. */
+     * 0 (recommended): as wide as a CPU's own vectors of floats, and 1 on other devices. */
     uint32_t lanes;
     /* No buffer is made larger than this, which is at least 4096. A mesh that needs more is made in parts of whole
      * polylines; it is read and drawn the same. 0, or more than the device allows: the device's own limit, below 2^31

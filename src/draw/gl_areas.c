@@ -26,7 +26,7 @@ static camber_status upload(camber_renderer *renderer, const camber_raster_area 
         gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, staging);
         gl->BufferData(GL_PIXEL_UNPACK_BUFFER, (GLsizeiptr)(pixels.row_bytes * block->height), pixels.rgba,
                        GL_STREAM_DRAW);
-        first = (const uint8_t *)(uintptr_t)(first - pixels.rgba);
+        first = staging ? (const uint8_t *)(uintptr_t)(first - pixels.rgba) : first;
     }
     gl->BindTexture(GL_TEXTURE_2D, renderer->gl.targets[CAMBER_TARGET_LAYER].texture);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)(pixels.row_bytes / 4));

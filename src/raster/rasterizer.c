@@ -139,7 +139,7 @@ static void find_edges(const camber_raster *raster, uint32_t *first, uint32_t *c
 static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const camber_raster_area *area = &raster->band;
     const size_t lists = (raster->list_count + 15) / 16 * 16,
-                 most = raster->device->info.largest_buffer_bytes / (4 * lists);
+                 most = (size_t)(camber_raster_most_bytes(raster) / (4 * lists));
     const size_t least = camber_raster_draws_cells(raster) ? GPU_CHUNK : CHUNK;
     const size_t chunks_max = camber_raster_draws_cells(raster) ? GPU_CHUNKS_MAX : CHUNKS_MAX;
     const size_t wanted = (raster->segment_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
@@ -231,15 +231,18 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
 
 static bool is_heavy(const camber_raster *raster, camber_spill_args k, size_t tile) {
     const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
-    return count > HEAVY && !camber_raster_draws_cells(raster) &&
-           (raster->end_edge == 0 ||
-            (k.is_first && k.is_last && SHARES * units * count > raster->starts[raster->tile_count]));
+    return count > HEAVY && (raster->end_edge == 0 ||
+                             (k.is_first && k.is_last && SHARES * units * count > raster->starts[raster->tile_count]));
 }
 
 /* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. */
 static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
+    *heavy_count = 0;
+    *job_count = tiles;
+    if (camber_raster_draws_cells(raster)) /* its work-items need no list to find their tiles */
+        return CAMBER_OK;
     for (size_t i = 0; i < tiles; i++)
         heavy += is_heavy(raster, k, i);
     const size_t count = tiles + heavy * (CAMBER_TILE_CELLS - 1);

@@ -3,8 +3,8 @@
  * Input: censuses, and the area that is wanted. Output: tasks, and which of them a part has. Main idea: a part of a run
  * reads what it draws, so parts are runs of a walk through the pyramid that stays in one place as long as it can.
  *
- *     wide zooms     a metatile of them has much of the data. Their parts read all of it, so any of them may go
- * together deep zooms     each metatile, then those below it, along the Hilbert curve. So a part reads one stretch
+ * Of a wide zoom a metatile has much of the data: its parts read all of it, so any of them may go together. Of deep
+ * zooms each metatile comes before those below it, along the Hilbert curve: so a part reads one stretch.
  *
  * Wide tasks are packed, the largest first, each into the first part that has room; deep ones are a run that is cut. At
  * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, what it
@@ -20,7 +20,7 @@
  * of 256 px 0.52 ms, whatever the zoom (2026-11-26, AMD EPYC, Zen 4: three inputs, zooms 0 to 16). */
 static const double PICTURE_COST = 1e3, TILE_COST = 1.2e3;
 /* A picture of more points than this is drawn in bands where it is large, and its lines are tessellated for each: a
- * point takes up to 2.4 times as long (30 million points, zoom 3). */
+ * point takes twice as long (30 million points, zoom 3; 2026-11-26, 52ee0d9). */
 static const double BANDED_POINTS = 4e6, BANDED = 2.0;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
@@ -29,7 +29,7 @@ static const size_t MOST_KEPT = (size_t)1 << 22;
 static const double SKIP_COST = 0.1, LOOK_COST = 0.12;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
-enum { CUT_STEPS = 60 };
+enum { CUT_STEPS = 24 }; /* to less than a millionth of all */
 
 static unsigned count_tiles(uint64_t tiles) {
     unsigned count = 0;

@@ -35,7 +35,7 @@ typedef struct camber_validation_desc {
     camber_backend backend;       /* the only one of GL. AUTO: all */
     camber_rasterizer rasterizer; /* the only kind that draws. AUTO: both */
     int method;                   /* the only one. -1: all */
-    bool full; /* by every method, with every join and cap on each back end, and with vectors of each width */
+    bool full; /* by every method, with every join and cap on each back end, and with 1, 8 and 16 lanes */
     camber_coverage coverage;
     uint32_t windows; /* of each picture, that are held against the oracle */
 } camber_validation_desc;

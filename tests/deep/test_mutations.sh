@@ -341,8 +341,8 @@ mutant strip kernels/stroke.h "half the width, of lines wider than a pixel" 'p->
 mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
 mutant strip kernels/stroke_flat.h "a cut on the wrong side" 'CAMBER_BOTH(at->fb >= CAMBER_TIE(at)' \
     'CAMBER_BOTH(at->fb < CAMBER_TIE(at)'
-mutant strip kernels/stroke_flat.h "flat joins: the cap turned to the other side" 'past * f->cosine - at->y' \
-    'past * f->cosine + at->y'
+mutant strip kernels/stroke_flat.h "flat joins: bodies that end on the wrong side" 'f.behind ? body : before' \
+    'f.behind ? before : body'
 mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'

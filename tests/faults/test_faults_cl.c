@@ -581,7 +581,7 @@ static void refuse_some(stage_set *s, sheet *of, bool forever) {
 /* As a whole, in slices and areas of what small buffers hold, and with the kernels built. */
 static void test_covered(void **state) {
     (void)state;
-    const camber_device_desc small = {.largest_buffer_bytes = 66000};
+    const camber_device_desc small = {.largest_buffer_bytes = 67000};
     stage_set s;
     sheet whole;
     open_set(&s, false, CAMBER_METHOD_STRIP);

@@ -178,7 +178,8 @@ camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_sta
         return status;
     }
     const size_t slice = raster->first_segment, first = raster->first_edge, end = raster->end_edge;
-    camber_raster_stages_show_edges(&made, first > slice ? first - slice : 0, end > slice ? end - slice : 0);
+    camber_raster_stages_show_edges(raster->device->context, &made, first > slice ? first - slice : 0,
+                                    end > slice ? end - slice : 0);
     *stages = made;
     return CAMBER_OK;
 }

@@ -170,7 +170,8 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
     };
 }
 
-void camber_raster_stages_show_edges(camber_raster_stages *stages, size_t first_edge, size_t end_edge) {
+void camber_raster_stages_show_edges(camber_context *context, camber_raster_stages *stages, size_t first_edge,
+                                     size_t end_edge) {
     for (size_t i = first_edge; i < end_edge && i < stages->segment_count; i++) {
         const bool is_drawn = CAMBER_BOX_FIRST_X(stages->boxes[i]) <= CAMBER_BOX_LAST_X(stages->boxes[i]);
         const float *brush = stages->edges + camber_edge_brush(i);
@@ -186,6 +187,8 @@ void camber_raster_stages_show_edges(camber_raster_stages *stages, size_t first_
         if (stages->planes)
             memset(stages->planes + CAMBER_PLANE_WORDS * i, 0, CAMBER_PLANE_WORDS * sizeof *stages->planes);
     }
+    camber_free(context, stages->edges);
+    stages->edges = NULL;
 }
 
 void camber_raster_stages_free(camber_context *context, camber_raster_stages *stages) {

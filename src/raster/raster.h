@@ -93,7 +93,7 @@ uint32_t camber_raster_slice_count(const camber_raster *raster);
 
 typedef struct camber_raster_stages {
     float *segments;    /* segment_count times CAMBER_SEGMENT_WORDS. Of an edge: its ends and its brush, else 0 */
-    float *edges;       /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: there are no areas */
+    float *edges;       /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: there are no areas, or they were shown as segments */
     uint32_t *boxes;    /* segment_count */
     float *arc_lengths; /* segment_count times CAMBER_SEGMENT_ARC_LENGTHS. NULL: a plain scene */
     float *planes;      /* segment_count times CAMBER_PLANE_WORDS. NULL: no pitch */
@@ -141,8 +141,9 @@ typedef struct camber_range_list {
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_range_list *list);
 void camber_raster_free_ranges(camber_range_list *list);
-/* Writes the words of edges, [first_edge, end_edge) at most, to the segments. */
-void camber_raster_stages_show_edges(camber_raster_stages *stages, size_t first_edge, size_t end_edge);
+/* Moves the edges, [first_edge, end_edge) at most, to the segments, and frees what held them. */
+void camber_raster_stages_show_edges(camber_context *context, camber_raster_stages *stages, size_t first_edge,
+                                     size_t end_edge);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
                                            const camber_raster_area *area);
 enum { CAMBER_FILL_RECORDS = 2 };

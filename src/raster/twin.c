@@ -251,7 +251,7 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
         camber_raster_stages_free(context, &made);
         return status;
     }
-    camber_raster_stages_show_edges(&made, t.first_edge, t.end_edge);
+    camber_raster_stages_show_edges(context, &made, t.first_edge, t.end_edge);
     *stages = made;
     return CAMBER_OK;
 }

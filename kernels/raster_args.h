@@ -54,10 +54,11 @@ typedef struct camber_target_args {
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state: some words for each cell, and then planes of sixteen floats for each cell, of which the first are
- * the brush and the picture. Behind them lie what a brush of areas has turned, and its edges so far. */
+ * spills its state, once it has one: some words for each cell, and then planes of sixteen floats for each cell, of
+ * which the first are the brush and the picture. Behind them lie what a brush of areas has turned, and its edges so
+ * far. */
 typedef struct camber_spill_args {
-    camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
+    camber_u32 is_last; /* the slice that is drawn last: pixels are written */
     camber_u32 tile_words;
     camber_u32 sums, group, layer, behind; /* the first plane of sums, of a group, of a layer, and behind all */
 } camber_spill_args;
@@ -96,20 +97,22 @@ typedef struct camber_spill_args {
 #define CAMBER_OVERLAP_EDGES 64
 #define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 
-/* rasterize: a job is two words, the tile, and the first and the last row of its cells to draw. */
-#define CAMBER_JOB_WORDS 2
+/* rasterize: a job is three words, the tile, the first and the last row of its cells to draw, and where among the spills
+ * the tile has its own; a tile of which nothing was drawn yet has nothing there. */
+#define CAMBER_JOB_WORDS 3
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
+#define CAMBER_JOB_BEGINS 0x80000000u
 
 #ifdef CAMBER_DEVICE
 typedef char camber_setup_args_has_84_bytes[sizeof(camber_setup_args) == 84 ? 1 : -1];
 typedef char camber_bin_args_has_36_bytes[sizeof(camber_bin_args) == 36 ? 1 : -1];
 typedef char camber_target_args_has_88_bytes[sizeof(camber_target_args) == 88 ? 1 : -1];
-typedef char camber_spill_args_has_28_bytes[sizeof(camber_spill_args) == 28 ? 1 : -1];
+typedef char camber_spill_args_has_24_bytes[sizeof(camber_spill_args) == 24 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_setup_args) == 84, "setup reads 84 bytes");
 _Static_assert(sizeof(camber_bin_args) == 36, "bin_count and bin_scatter read 36 bytes");
 _Static_assert(sizeof(camber_target_args) == 88, "rasterize reads 88 bytes");
-_Static_assert(sizeof(camber_spill_args) == 28, "rasterize reads 28 bytes");
+_Static_assert(sizeof(camber_spill_args) == 24, "rasterize reads 24 bytes");
 #endif
 
 #endif

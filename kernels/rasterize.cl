@@ -250,8 +250,8 @@ CAMBER_KERNEL(1, rasterize,
     positions at;
     sixteen b;
     const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
-    const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], column = (camber_u32)tile % s.columns,
-                     row = (camber_u32)tile / s.columns;
+    const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], spilled = jobs[CAMBER_JOB_WORDS * job + 2],
+                     column = (camber_u32)tile % s.columns, row = (camber_u32)tile / s.columns;
     const int first = (int)(cells & 255u), last = (int)(cells >> 8);
     const float left = s.left + (float)(column * CAMBER_TILE_PX), top = s.top + (float)(row * CAMBER_TILE_PX);
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
@@ -270,7 +270,7 @@ CAMBER_KERNEL(1, rasterize,
         if (top + (float)(CAMBER_CELL_PX * (j + 1)) <= s.horizon)
             c.done |= 255ul << (CAMBER_TILE_CELLS * j);
 #endif
-    global float *own_spill = spill + tile * slice.tile_words;
+    global float *own_spill = spill + (size_t)(spilled & ~CAMBER_JOB_BEGINS) * slice.tile_words;
     tile_brushes from_brushes = {
         brushes,
 #if CAMBER_RASTER_RICH
@@ -286,9 +286,7 @@ CAMBER_KERNEL(1, rasterize,
         left_of.first = starts[s.first_row + row] - starts[s.first_row];
         left_of.end = ends[row];
     }
-    if (!slice.is_first) {
-        if (!slice.is_last && starts[tile] == starts[tile + 1] && left_of.first == left_of.end)
-            return;
+    if (!(spilled & CAMBER_JOB_BEGINS)) {
         current = restore_cells(&c, own_spill, brushes, slice, where);
         if (current != ~0u && current != CAMBER_SPILL_FULL) {
 #if CAMBER_RASTER_RICH

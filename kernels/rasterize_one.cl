@@ -1,6 +1,6 @@
 /* rasterize where a device has no vectors, as GPUs have none: a work-item takes one cell of a tile, and a pixel at a
- * time. A work-group is a tile, so that its work-items walk the same list. rasterize.cl says what is read and written;
- * no job is. */
+ * time. A work-group is a job, a whole tile, so that its work-items walk the same list. rasterize.cl says what is read
+ * and written. */
 #include "spill.cl"
 
 #if CAMBER_LANES == 1
@@ -43,8 +43,8 @@ CAMBER_KERNEL(CAMBER_CELLS, rasterize,
               (segments, edges, starts, lists, brushes, jobs, pixels, s, spill, slice, arc_lengths, brush_ext,
                side_table, planes, crossings, ends)) {
     camber_tile_state c;
-    const camber_u32 tile = (camber_u32)CAMBER_WORK_ITEM / CAMBER_CELLS,
-                     cell = (camber_u32)CAMBER_WORK_ITEM % CAMBER_CELLS;
+    global const camber_u32 *job = jobs + CAMBER_JOB_WORDS * (CAMBER_WORK_ITEM / CAMBER_CELLS);
+    const camber_u32 tile = job[0], spilled = job[2], cell = (camber_u32)CAMBER_WORK_ITEM % CAMBER_CELLS;
     const camber_u32 column = tile % s.columns, row = tile / s.columns;
     const int cell_row = (int)cell / CAMBER_TILE_CELLS, cell_column = (int)cell % CAMBER_TILE_CELLS;
     const camber_eye flat = {0.0f, 0.0f, 0.0f, 0.0f};
@@ -54,7 +54,7 @@ CAMBER_KERNEL(CAMBER_CELLS, rasterize,
                            {s.left + (float)(column * CAMBER_TILE_PX), s.top + (float)(row * CAMBER_TILE_PX), cell_row,
                             cell_row, cell_column},
                            ~0u};
-    global float *own_spill = spill + (size_t)tile * slice.tile_words;
+    global float *own_spill = spill + (size_t)(spilled & ~CAMBER_JOB_BEGINS) * slice.tile_words;
     camber_tile_begin(&c, 1, brushes);
 #if CAMBER_RASTER_PITCHED
     if (d.where.top + (float)(CAMBER_CELL_PX * (cell_row + 1)) <= s.horizon) /* a cell above the horizon is done */
@@ -64,9 +64,7 @@ CAMBER_KERNEL(CAMBER_CELLS, rasterize,
         d.left.first = starts[s.first_row + row] - starts[s.first_row];
         d.left.end = ends[row];
     }
-    if (!slice.is_first) {
-        if (!slice.is_last && starts[tile] == starts[tile + 1] && d.left.first == d.left.end)
-            return;
+    if (!(spilled & CAMBER_JOB_BEGINS)) {
         d.brush = restore_cells(&c, own_spill, brushes, slice, d.where);
         if (d.brush != ~0u && d.brush != CAMBER_SPILL_FULL) {
 #if CAMBER_RASTER_RICH

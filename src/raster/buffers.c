@@ -30,6 +30,7 @@ void camber_raster_destroy(camber_raster *raster) {
         camber_release_buffer(raster->device, &raster->buffers[i]);
     camber_drawing_close(raster->device, &raster->memory);
     camber_free(raster->device->context, raster->jobs);
+    camber_free(raster->device->context, raster->spills);
     camber_free(raster->device->context, raster->starts);
     camber_free(raster->device->context, raster);
 }

@@ -229,40 +229,86 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
     return status == CAMBER_OK ? run(raster, STAGE_WIND, wind, sizeof wind / sizeof *wind, of.rows) : status;
 }
 
-static bool is_heavy(const camber_raster *raster, camber_spill_args k, size_t tile) {
-    const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
-    return count > HEAVY && (raster->end_edge == 0 ||
-                             (k.is_first && k.is_last && SHARES * units * count > raster->starts[raster->tile_count]));
+/* Whether the slice draws anything of a tile: segments of its own, or areas whose edges cross its row of tiles. */
+static bool has_work(const camber_raster *raster, size_t tile) {
+    const uint32_t *lists = raster->starts, *rows = lists + raster->tile_count + tile / raster->columns;
+    return lists[tile + 1] > lists[tile] || (raster->list_count > raster->tile_count && rows[1] > rows[0]);
 }
 
-/* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. */
+/* The most tiles that can be spilled: as many as memory allows, and at least a row of them. */
+static size_t most_spills(const camber_raster *raster, camber_spill_args k) {
+    const size_t most = (size_t)(camber_raster_most_bytes(raster) / (4 * (uint64_t)k.tile_words));
+    return most > raster->columns ? most : raster->columns;
+}
+
+/* No tile of the band has a spill yet. */
+static camber_status begin_spills(camber_raster *raster) {
+    const size_t tiles = raster->tile_count;
+    if (!camber_grow(raster->device->context, &raster->spills, &raster->spill_capacity, tiles, sizeof *raster->spills))
+        return CAMBER_ERROR_MEMORY;
+    memset(raster->spills, 255, tiles * sizeof *raster->spills);
+    raster->spill_count = 0;
+    return CAMBER_OK;
+}
+
+/* Gives a spill to each tile that the slice is the first to draw; the last spills none. *fits is false if there are too
+ * many, which those of one row of tiles never are. */
+static camber_status place_spills(camber_raster *raster, camber_spill_args k, bool *fits) {
+    const size_t most = most_spills(raster, k), tiles = raster->tile_count;
+    raster->spills_before = raster->spill_count;
+    for (size_t i = 0; i < tiles && !k.is_last; i++) {
+        if (raster->spills[i] != UINT32_MAX || !has_work(raster, i))
+            continue;
+        *fits = raster->spill_count < most;
+        if (!*fits)
+            return CAMBER_OK;
+        raster->spills[i] = (uint32_t)raster->spill_count++;
+    }
+    return camber_raster_reserve(
+        raster, BUFFER_SPILL,
+        k.is_last && raster->spill_count == 0 ? 4 : 4 * (tiles < most ? tiles : most) * k.tile_words);
+}
+
+static bool is_heavy(const camber_raster *raster, camber_spill_args k, size_t tile) {
+    const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
+    const bool at_once = k.is_last && raster->spill_count == 0;
+    return count > HEAVY && !camber_raster_draws_cells(raster) &&
+           (raster->end_edge == 0 || (at_once && SHARES * units * count > raster->starts[raster->tile_count]));
+}
+
+static void put_job(camber_raster *raster, size_t job, size_t tile, uint32_t rows) {
+    const uint32_t spill = raster->spills[tile];
+    uint32_t *words = raster->jobs + CAMBER_JOB_WORDS * job;
+    words[0] = (uint32_t)tile;
+    words[1] = rows;
+    words[2] = spill == UINT32_MAX              ? CAMBER_JOB_BEGINS
+               : spill >= raster->spills_before ? spill | CAMBER_JOB_BEGINS
+                                                : spill;
+}
+
+/* Lists the jobs of tiles that the slice draws; the last draws all. First come heavy tiles, one job for each row of
+ * cells, then whole tiles. */
 static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
-    *heavy_count = 0;
-    *job_count = tiles;
-    if (camber_raster_draws_cells(raster)) /* its work-items need no list to find their tiles */
-        return CAMBER_OK;
     for (size_t i = 0; i < tiles; i++)
         heavy += is_heavy(raster, k, i);
-    const size_t count = tiles + heavy * (CAMBER_TILE_CELLS - 1);
-    if (!camber_grow(raster->device->context, &raster->jobs, &raster->job_capacity, count, 2 * sizeof *raster->jobs))
-        return CAMBER_ERROR_MEMORY;
     size_t by_rows = 0, whole = heavy * CAMBER_TILE_CELLS;
+    if (!camber_grow(raster->device->context, &raster->jobs, &raster->job_capacity, tiles + whole,
+                     CAMBER_JOB_WORDS * sizeof *raster->jobs))
+        return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < tiles; i++) {
         const bool by_row = is_heavy(raster, k, i);
-        for (uint32_t row = 0; by_row && row < CAMBER_TILE_CELLS; row++) {
-            raster->jobs[CAMBER_JOB_WORDS * by_rows] = (uint32_t)i;
-            raster->jobs[CAMBER_JOB_WORDS * by_rows++ + 1] = CAMBER_JOB_ROWS(row, row);
-        }
-        if (!by_row) {
-            raster->jobs[CAMBER_JOB_WORDS * whole] = (uint32_t)i;
-            raster->jobs[CAMBER_JOB_WORDS * whole++ + 1] = CAMBER_JOB_ROWS(0, CAMBER_TILE_CELLS - 1);
-        }
+        for (uint32_t row = 0; by_row && row < CAMBER_TILE_CELLS; row++)
+            put_job(raster, by_rows++, i, CAMBER_JOB_ROWS(row, row));
+        if (!by_row && (k.is_last || has_work(raster, i)))
+            put_job(raster, whole++, i, CAMBER_JOB_ROWS(0, CAMBER_TILE_CELLS - 1));
     }
     *heavy_count = by_rows;
-    *job_count = count;
-    return camber_raster_put(raster, BUFFER_JOBS, raster->jobs, 2 * count * sizeof *raster->jobs);
+    *job_count = whole;
+    if (whole == 0)
+        return CAMBER_OK;
+    return camber_raster_put(raster, BUFFER_JOBS, raster->jobs, CAMBER_JOB_WORDS * whole * sizeof *raster->jobs);
 }
 
 /* Lays out the planes of a spill: five for the brush and the picture, three for unions or two for areas, four for the
@@ -303,8 +349,6 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
                             .eye = scene->eye};
     memcpy(s.sky, scene->sky, sizeof s.sky);
     find_edges(raster, &s.first_edge, &s.edge_count);
-    camber_status status = camber_raster_reserve(raster, BUFFER_SPILL,
-                                                 k.is_first && k.is_last ? 4 : 4 * raster->tile_count * k.tile_words);
     const camber_kernel_arg arguments[] = {
         BUFFER(BUFFER_SEGMENTS),
         BUFFER(BUFFER_EDGES),
@@ -323,8 +367,7 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
         BUFFER(BUFFER_CROSSINGS),
         BUFFER(BUFFER_ENDS)};
     const size_t count = sizeof arguments / sizeof *arguments;
-    if (status == CAMBER_OK)
-        status = run(raster, STAGE_RASTERIZE, arguments, count, heavy);
+    camber_status status = run(raster, STAGE_RASTERIZE, arguments, count, heavy);
     s.first_job = (uint32_t)heavy;
     if (status == CAMBER_OK)
         status = run(raster, STAGE_RASTERIZE, arguments, count, jobs - heavy);
@@ -379,7 +422,7 @@ static camber_status prepare(camber_raster *raster, const listed_scene *p) {
     return status;
 }
 
-/* Draws a slice of the band, unless its lists do not fit. */
+/* Draws a slice of the band, unless its lists or the band's spills do not fit. */
 static camber_status draw_slice(camber_raster *raster, const listed_scene *p, camber_spill_args k, bool *fits) {
     uint32_t chunk_count;
     const camber_bin_args c = cut_chunks(raster, &chunk_count);
@@ -388,6 +431,8 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
         status = count_segments(raster, c, chunk_count);
     if (status == CAMBER_OK)
         status = start_lists(raster, fits);
+    if (status == CAMBER_OK && *fits)
+        status = place_spills(raster, k, fits);
     if (status != CAMBER_OK || !*fits)
         return status;
     size_t heavy, jobs;
@@ -408,10 +453,11 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
     camber_status status = CAMBER_OK;
     raster->tile_count = (size_t)raster->columns * camber_raster_tiles(raster->band.height);
     raster->list_count = raster->tile_count + (raster->end_edge ? camber_raster_tiles(raster->band.height) : 0);
+    if (begin_spills(raster) != CAMBER_OK)
+        return CAMBER_ERROR_MEMORY;
     do {
         raster->segment_count = left < most ? left : most;
         raster->first_segment = left - raster->segment_count;
-        k.is_first = left == p->list.segment_count;
         k.is_last = raster->first_segment == 0;
         *fits = true;
         status = draw_slice(raster, p, k, fits);
@@ -425,20 +471,12 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
     return status;
 }
 
-/* How many rows of tiles a band has: all of the area, or as many as can be spilled between slices. */
-static uint32_t rows_at_once(const camber_raster *raster, const listed_scene *p) {
-    const uint32_t rows = camber_raster_tiles(raster->area.height);
-    const uint64_t row_bytes = 4 * (uint64_t)plan_spill(raster, p->scene).tile_words * raster->columns;
-    const uint64_t most = camber_raster_most_bytes(raster) / row_bytes;
-    if (p->list.segment_count <= segments_at_once(raster) || most >= rows)
-        return rows;
-    return most > 0 ? (uint32_t)most : 1;
-}
-
-/* Draws the area's bands. A band whose lists do not fit is halved, and so are those after it. */
+/* Draws the area's bands, the first of which is all of it. A band whose lists or spills do not fit is halved, and so
+ * are those after it; but bands all of whose tiles can be spilled are not, for want of spills. */
 static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     const camber_raster_area *area = &raster->area;
-    uint32_t rows = rows_at_once(raster, p);
+    const uint32_t sure = (uint32_t)(most_spills(raster, plan_spill(raster, p->scene)) / raster->columns);
+    uint32_t rows = camber_raster_tiles(area->height);
     camber_status status = CAMBER_OK;
     raster->band = *area;
     for (uint32_t done = 0; done < area->height && status == CAMBER_OK;) {
@@ -447,10 +485,11 @@ static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
         raster->band.y = area->y + done;
         raster->band.height = left < tallest ? left : tallest;
         status = draw_band(raster, p, &fits);
+        const uint32_t drawn = camber_raster_tiles(raster->band.height), half = (drawn + 1) / 2;
         if (fits)
             done += raster->band.height;
         else
-            rows = (camber_raster_tiles(raster->band.height) + 1) / 2;
+            rows = half < sure && sure < drawn ? sure : half;
     }
     return status;
 }

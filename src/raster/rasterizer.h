@@ -44,7 +44,9 @@ struct camber_raster {
     cl_mem buffers[BUFFERS];
     size_t capacities[BUFFERS];
     uint32_t *starts, *jobs; /* in host memory */
-    size_t start_capacity, job_capacity;
+    uint32_t *spills;        /* where among the spills each tile of the band has its own. UINT32_MAX: it has none */
+    size_t start_capacity, job_capacity, spill_capacity;
+    size_t spill_count, spills_before;   /* tiles that have one, and those that had one before the slice */
     camber_raster_area area;             /* drawn last */
     camber_raster_area band;             /* the band of the area: whole rows of tiles whose lists fit */
     cl_mem given;                        /* the caller's buffer for the pixels; NULL: a buffer of our own */

@@ -19,9 +19,6 @@
 /* The time that a picture and a tile take besides its points, in points. A point took 0.43 us of one processor, a tile
  * of 256 px 0.52 ms, whatever the zoom (2026-11-26, AMD EPYC, Zen 4: three inputs, zooms 0 to 16). */
 static const double PICTURE_COST = 1e3, TILE_COST = 1.2e3;
-/* A picture of more points than this is drawn in bands where it is large, and its lines are tessellated for each: a
- * point takes twice as long (30 million points, zoom 3; 2026-11-26, 52ee0d9). */
-static const double BANDED_POINTS = 4e6, BANDED = 2.0;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which
@@ -41,8 +38,7 @@ static unsigned count_tiles(uint64_t tiles) {
 double camber_task_cost(const camber_tile_task *task) {
     if (!task->touched)
         return 0.0;
-    const double points = (double)task->points;
-    return PICTURE_COST + points * (points > BANDED_POINTS ? BANDED : 1.0) + TILE_COST * count_tiles(task->touched);
+    return PICTURE_COST + (double)task->points + TILE_COST * count_tiles(task->touched);
 }
 
 static camber_status add_task(camber_schedule *schedule, const camber_tile_task *task) {

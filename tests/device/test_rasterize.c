@@ -333,6 +333,32 @@ static void test_bound(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
+/* Tiles of which nothing is drawn spill nothing: a tall picture of few tiles takes no more slices than a low one. */
+static void test_spills(void **state) {
+    const fixture *e = *state;
+    const camber_device_desc desc = {.memory_bytes = 24 * 1024 * 1024};
+    drawing d = begin_drawing();
+    uint64_t seed = 6;
+    uint32_t slices[2];
+    for (int i = 0; i < 3000; i++) {
+        for (int k = 0; k < 40; k++)
+            camber_made_scene_point(&d.lines, camber_random_between(&seed, 20, 110),
+                                    camber_random_between(&seed, 20, 110));
+        camber_made_scene_end(&d.lines, (size_t)i % 3);
+    }
+    for (int i = 0; i < 2; i++) {
+        d.frame.width = 512;
+        d.frame.height = i ? 128 : SIDE_PX;
+        picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+        slices[i] = compare_on(e, &desc, &d, 3, &whole);
+        picture_free(&whole);
+    }
+    printf("# %u and %u slices\n", slices[0], slices[1]);
+    assert_true(slices[0] > 3);
+    assert_int_equal(slices[0], slices[1]);
+    camber_made_scene_free(&d.lines);
+}
+
 static void test_steps(void **state) {
     const fixture *e = *state;
     drawing d = begin_drawing();
@@ -465,6 +491,7 @@ int main(void) {
         cmocka_unit_test(test_gl),     cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),
         cmocka_unit_test(test_steps),  cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
         cmocka_unit_test(test_slices), cmocka_unit_test(test_bound),         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_spills),
     };
     return FIXTURE_CL_RUN(tests);
 }

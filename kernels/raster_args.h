@@ -11,7 +11,7 @@ typedef struct camber_tile_grid {
     camber_u32 columns, rows;
 } camber_tile_grid;
 
-/* setup: the records of a range, and where their segments go. */
+/* setup: the records of a range, and where their segments go. Ranges of one part are set up together. */
 typedef struct camber_setup_args {
     camber_u32 first, end, record_count; /* the range's records [first, end), and how many the part has */
     camber_u32 stride, strips, linear;   /* stride: 2 where records have arc lengths behind them */
@@ -23,6 +23,7 @@ typedef struct camber_setup_args {
     camber_eye eye;
     /* The range's records at which the brush changes, and how many changes of the same input lie before the part. */
     camber_u32 first_change, change_count, changes_before;
+    camber_u32 first_item; /* of the work-items that take it; each range begins one */
 } camber_setup_args;
 
 /* So many records a work-item of setup takes: some, as a work-group takes a while to begin. */
@@ -97,19 +98,19 @@ typedef struct camber_spill_args {
 #define CAMBER_OVERLAP_EDGES 64
 #define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 
-/* rasterize: a job is three words, the tile, the first and the last row of its cells to draw, and where among the spills
- * the tile has its own; a tile of which nothing was drawn yet has nothing there. */
+/* rasterize: a job is three words, the tile, the first and the last row of its cells to draw, and where among the
+ * spills the tile has its own; a tile of which nothing was drawn yet has nothing there. */
 #define CAMBER_JOB_WORDS 3
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
 #define CAMBER_JOB_BEGINS 0x80000000u
 
 #ifdef CAMBER_DEVICE
-typedef char camber_setup_args_has_84_bytes[sizeof(camber_setup_args) == 84 ? 1 : -1];
+typedef char camber_setup_args_has_88_bytes[sizeof(camber_setup_args) == 88 ? 1 : -1];
 typedef char camber_bin_args_has_36_bytes[sizeof(camber_bin_args) == 36 ? 1 : -1];
 typedef char camber_target_args_has_88_bytes[sizeof(camber_target_args) == 88 ? 1 : -1];
 typedef char camber_spill_args_has_24_bytes[sizeof(camber_spill_args) == 24 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_setup_args) == 84, "setup reads 84 bytes");
+_Static_assert(sizeof(camber_setup_args) == 88, "setup reads 88 bytes");
 _Static_assert(sizeof(camber_bin_args) == 36, "bin_count and bin_scatter read 36 bytes");
 _Static_assert(sizeof(camber_target_args) == 88, "rasterize reads 88 bytes");
 _Static_assert(sizeof(camber_spill_args) == 24, "rasterize reads 24 bytes");

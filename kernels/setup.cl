@@ -1,9 +1,9 @@
 /* setup: makes a segment, or the edge of a ring, of each record that ends one, and finds the box of tiles around it. A
- * work-item takes 128 records, and on a GPU 16.
+ * work-item takes 128 records of a range, and on a GPU 16.
  *
- * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count],
- * changes[first_change + change_count]. For the n records of a range, rounded up to sixteens, it writes from element
- * `base` on:
+ * Reads ranges[range_count], and of each records[CAMBER_RECORD_WORDS * stride * record_count],
+ * rows[CAMBER_RASTER_ROW_WORDS * row count], changes[first_change + change_count]. For the n records of a range,
+ * rounded up to sixteens, it writes from element `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
  *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, of records that belong to rings of areas
  *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
@@ -255,13 +255,27 @@ static inline void make_edges(global const camber_u32 *records, global const flo
     CAMBER_STORE(take_brushes(changes, (camber_u32)first, r, e.row[3]), 0, to.brushes);
 }
 
+/* The range whose records a work-item takes. */
+static inline uint range_of(global const camber_setup_args *ranges, uint count, uint item) {
+    uint first = 0;
+    while (count > 1) {
+        const uint below = count / 2;
+        const bool is_above = ranges[first + below].first_item <= item;
+        first += is_above ? below : 0;
+        count = is_above ? count - below : below;
+    }
+    return first;
+}
+
 CAMBER_KERNEL(1, setup,
               (global const camber_u32 *restrict records, global const float *restrict rows,
-               global float *restrict segments, global camber_u32 *restrict boxes, const camber_setup_args r,
+               global float *restrict segments, global camber_u32 *restrict boxes,
+               global const camber_setup_args *restrict ranges, const uint range_count,
                global float *restrict arc_lengths, global float *restrict planes,
                global const camber_u32 *restrict changes, global float *restrict edges),
-              (records, rows, segments, boxes, r, arc_lengths, planes, changes, edges)) {
-    const uint most = CAMBER_SETUP_RECORDS(CAMBER_LANES), from = most * (uint)CAMBER_WORK_ITEM,
+              (records, rows, segments, boxes, ranges, range_count, arc_lengths, planes, changes, edges)) {
+    const camber_setup_args r = ranges[range_of(ranges, range_count, (uint)CAMBER_WORK_ITEM)];
+    const uint most = CAMBER_SETUP_RECORDS(CAMBER_LANES), from = most * ((uint)CAMBER_WORK_ITEM - r.first_item),
                left = (r.end - r.first - from + 15) / 16 * 16;
     const uint count = left < most ? left : most;
     for (uint i = from; i < from + count; i += CAMBER_LANES) {

@@ -171,22 +171,13 @@ static camber_status list_strip(camber_renderer *renderer, GLint first, GLsizei 
 }
 
 /* Gives the first index of a polyline, or in a pitched view its first vertex. */
-static camber_status first_of(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, bool pitched,
-                              uint64_t *first) {
-    if (pitched && !mesh->mesh_info.strips) {
-        size_t slot = 0;
-        const camber_status found = camber_part_slot(mesh, part, polyline, &slot);
-        *first = (uint64_t)RECORD_VERTICES * slot;
-        return found;
-    }
-    const camber_status status = camber_part_first_index(mesh, part, polyline, first);
-    if (status == CAMBER_OK && pitched)
-        *first *= RECORD_VERTICES / 2;
-    return status;
+static uint64_t first_of(camber_slot_starts *starts, size_t polyline, bool pitched) {
+    return pitched ? (uint64_t)RECORD_VERTICES * camber_slot_starts_record(starts, polyline)
+                   : camber_slot_starts_index(starts, polyline);
 }
 
 /* Lists or draws the polylines of a range that lie in a part, which is bound. */
-static camber_status draw_part(camber_renderer *renderer, const camber_mesh_part *part, camber_batch_range range,
+static camber_status draw_part(camber_renderer *renderer, camber_slot_starts *starts, camber_batch_range range,
                                const camber_shader *shader, const camber_gl_area *area) {
     /* GL's counts are signed 32-bit numbers. Longer strips are cut between polylines. */
     enum { INDICES_MAX = 1 << 30 };
@@ -195,16 +186,14 @@ static camber_status draw_part(camber_renderer *renderer, const camber_mesh_part
     camber_status status = CAMBER_OK;
     while (range.first < range.end && status == CAMBER_OK) {
         size_t until = range.end;
-        uint64_t from = 0, to = 0;
-        status = first_of(mesh, part, range.first, area->view.pitched, &from);
-        if (status == CAMBER_OK)
-            status = first_of(mesh, part, until, area->view.pitched, &to);
-        while (status == CAMBER_OK && to - from > INDICES_MAX && until - range.first > 1) {
+        const uint64_t from = first_of(starts, range.first, area->view.pitched);
+        uint64_t to = first_of(starts, until, area->view.pitched);
+        while (to - from > INDICES_MAX && until - range.first > 1) {
             until = range.first + (until - range.first) / 2;
-            status = first_of(mesh, part, until, area->view.pitched, &to);
+            to = first_of(starts, until, area->view.pitched);
         }
         range.first = until;
-        if (status != CAMBER_OK || to == from)
+        if (to == from)
             continue;
         if (has_numbered_tables(mesh, area)) {
             status = list_strip(renderer, (GLint)((uint64_t)range.table << bits | from), (GLsizei)(to - from));
@@ -220,7 +209,7 @@ static camber_status draw_part(camber_renderer *renderer, const camber_mesh_part
 static camber_status draw_ranges(camber_renderer *renderer, const camber_shader *shader, const camber_gl_area *area) {
     const camber_batch *batch = &renderer->gl.batch;
     camber_mesh *mesh = batch->mesh;
-    const camber_mesh_part *bound = NULL;
+    camber_slot_starts starts = {0}; /* of the part that is bound */
     camber_status status = CAMBER_OK;
     for (size_t r = 0; r < batch->range_count; r++)
         for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK; i++) {
@@ -231,16 +220,19 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
             range.end = range.end < part_end ? range.end : part_end;
             if (range.first >= range.end || part->index_count == 0)
                 continue;
-            if (part != bound) {
+            if (part != starts.part) {
                 draw_strips(renderer, area); /* their part is bound, and may have to go */
+                camber_slot_starts_unmap(&starts);
                 status = camber_part_ensure_made(mesh, part);
+                if (status == CAMBER_OK)
+                    status = camber_slot_starts_map(mesh, part, &starts);
                 if (status != CAMBER_OK)
                     break;
                 camber_gl_bind_part(renderer, part);
             }
-            bound = part;
-            status = draw_part(renderer, part, range, shader, area);
+            status = draw_part(renderer, &starts, range, shader, area);
         }
+    camber_slot_starts_unmap(&starts);
     if (status == CAMBER_OK)
         draw_strips(renderer, area);
     return status;

@@ -29,6 +29,7 @@ void camber_raster_destroy(camber_raster *raster) {
     for (int i = 0; i < BUFFERS; i++)
         camber_release_buffer(raster->device, &raster->buffers[i]);
     camber_drawing_close(raster->device, &raster->memory);
+    camber_free(raster->device->context, raster->setups);
     camber_free(raster->device->context, raster->jobs);
     camber_free(raster->device->context, raster->spills);
     camber_free(raster->device->context, raster->starts);

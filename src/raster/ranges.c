@@ -1,6 +1,7 @@
 /* Lists which records of which parts are drawn. Device and twin both begin with this list. */
 #include "raster/raster.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define BUTT_CAP                                                                                                       \
@@ -12,37 +13,18 @@ const camber_record camber_fill_records[CAMBER_FILL_RECORDS] = {
     {CAMBER_FILL_PX, 0.0f, BUTT_CAP, CAMBER_POINT_REAL | CAMBER_POINT_LAST},
 };
 
-/* How many records of a part lie before a polyline's. A strip has two indices for each record, kite and fan a record
- * for each slot. */
-static camber_status find_record(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
-                                 size_t *record) {
-    uint64_t index = 0;
-    *record = 0;
-    if (polyline == part->first_polyline)
+/* How many records of a part lie before a polyline's. Of a part that has not been made the ends alone are known. */
+static camber_status find_record(camber_range_list *list, const camber_mesh *mesh, const camber_mesh_part *part,
+                                 size_t polyline, size_t *record) {
+    const bool is_end = polyline == part->first_polyline + part->polyline_count;
+    camber_status status = CAMBER_OK;
+    *record = is_end ? part->record_count : 0;
+    if (is_end || polyline == part->first_polyline)
         return CAMBER_OK;
-    *record = part->record_count;
-    if (polyline == part->first_polyline + part->polyline_count) /* also for a part that has not been made */
-        return CAMBER_OK;
-    if (!mesh->mesh_info.strips)
-        return camber_part_slot(mesh, part, polyline, record);
-    const camber_status status = camber_part_first_index(mesh, part, polyline, &index);
-    *record = (size_t)index / 2;
-    return status;
-}
-
-/* The same. A range mostly begins where the one before ends, and looking waits for the device. */
-static camber_status first_record(camber_range_list *list, const camber_mesh *mesh, const camber_mesh_part *part,
-                                  size_t polyline, size_t *record) {
-    if (list->last_part == part && list->last_polyline == polyline) {
-        *record = list->last_record;
-        return CAMBER_OK;
-    }
-    const camber_status status = find_record(mesh, part, polyline, record);
-    if (status == CAMBER_OK) {
-        list->last_part = part;
-        list->last_polyline = polyline;
-        list->last_record = *record;
-    }
+    if (list->starts.part != part)
+        status = camber_slot_starts_map(mesh, part, &list->starts);
+    if (status == CAMBER_OK)
+        *record = camber_slot_starts_record(&list->starts, polyline);
     return status;
 }
 
@@ -61,15 +43,17 @@ static camber_status add_range(camber_range_list *list, camber_record_range rang
 
 /* Lists the records at which the brush changes within a range. */
 static camber_status add_changes(camber_range_list *list, const camber_record_range *range, const size_t *polylines) {
-    const camber_mesh *mesh = range->mesh;
-    if (range->change_count == 0)
-        return CAMBER_OK;
+    const camber_mesh_part *part = range->mesh->parts + range->part;
+    camber_status status = CAMBER_OK;
     if (!camber_grow(list->context, &list->changes, &list->change_capacity, list->change_count + range->change_count,
                      sizeof *list->changes))
         return CAMBER_ERROR_MEMORY;
-    list->change_count += range->change_count;
-    return camber_part_first_records(mesh, mesh->parts + range->part, polylines, range->change_count,
-                                     list->changes + range->first_change);
+    for (size_t i = 0; i < range->change_count && status == CAMBER_OK; i++) {
+        size_t record = 0;
+        status = find_record(list, range->mesh, part, polylines[i], &record);
+        list->changes[list->change_count++] = (uint32_t)record;
+    }
+    return status;
 }
 
 /* Adds the polylines [from, to) of a part. range: what is known of it. polylines: where the brush changes within. */
@@ -77,11 +61,13 @@ static camber_status add_polylines(camber_range_list *list, camber_record_range 
                                    const size_t *polylines) {
     camber_mesh_part *part = range.mesh->parts + range.part;
     const bool whole = from == part->first_polyline && to == part->first_polyline + part->polyline_count;
+    if (list->starts.part != part)
+        camber_slot_starts_unmap(&list->starts); /* it may have to go */
     camber_status status = whole && range.change_count == 0 ? CAMBER_OK : camber_part_ensure_made(range.mesh, part);
     if (status == CAMBER_OK)
-        status = first_record(list, range.mesh, part, from, &range.first);
+        status = find_record(list, range.mesh, part, from, &range.first);
     if (status == CAMBER_OK)
-        status = first_record(list, range.mesh, part, to, &range.end);
+        status = find_record(list, range.mesh, part, to, &range.end);
     if (status != CAMBER_OK || range.first >= range.end)
         return status;
     status = add_changes(list, &range, polylines);
@@ -119,14 +105,28 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
     return status;
 }
 
+/* By their part, and each part's in the order in which they are drawn. */
+static int compare_ranges(const void *left, const void *right) {
+    const camber_record_range *a = left, *b = right;
+    const uintptr_t meshes[2] = {(uintptr_t)a->mesh, (uintptr_t)b->mesh};
+    if (meshes[0] != meshes[1])
+        return meshes[0] < meshes[1] ? -1 : 1;
+    if (a->part != b->part)
+        return a->part < b->part ? -1 : 1;
+    return a->base < b->base ? -1 : a->base > b->base;
+}
+
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_range_list *list) {
     camber_status status = CAMBER_OK;
     *list = (camber_range_list){.context = context};
     for (size_t r = 0; r < scene->input_count && status == CAMBER_OK; r++)
         status = add_input(list, scene, scene->inputs + r);
+    camber_slot_starts_unmap(&list->starts);
     for (size_t i = 0; i < list->count; i++)
         list->ranges[i].among_edges = list->ranges[i].base >= list->first_edge && list->ranges[i].base < list->end_edge;
+    if (list->count > 1)
+        qsort(list->ranges, list->count, sizeof *list->ranges, compare_ranges);
     return status;
 }
 

@@ -92,8 +92,9 @@ uint32_t camber_raster_slice_count(const camber_raster *raster);
 /* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
 
 typedef struct camber_raster_stages {
-    float *segments;    /* segment_count times CAMBER_SEGMENT_WORDS. Of an edge: its ends and its brush, else 0 */
-    float *edges;       /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: there are no areas, or they were shown as segments */
+    float *segments; /* segment_count times CAMBER_SEGMENT_WORDS. Of an edge: its ends and its brush, else 0 */
+    float *edges; /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: there are no areas, or they were shown
+                     as segments */
     uint32_t *boxes;    /* segment_count */
     float *arc_lengths; /* segment_count times CAMBER_SEGMENT_ARC_LENGTHS. NULL: a plain scene */
     float *planes;      /* segment_count times CAMBER_PLANE_WORDS. NULL: no pitch */
@@ -133,8 +134,7 @@ typedef struct camber_range_list {
     camber_record_range *ranges;
     uint32_t *changes; /* of brushes: records of a part, those of a range ascending */
     size_t count, capacity, segment_count, change_count, change_capacity;
-    const camber_mesh_part *last_part; /* the polyline whose first record was looked for last, and that record */
-    size_t last_polyline, last_record;
+    camber_slot_starts starts;   /* of the part that was looked into last */
     size_t first_edge, end_edge; /* no edge of a ring lies outside these segments; 0 and 0: there are no areas */
 } camber_range_list;
 

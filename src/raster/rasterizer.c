@@ -82,49 +82,67 @@ static bool cut_range(const camber_raster *raster, camber_record_range *range) {
     return range->first < range->end;
 }
 
-/* Starts setup for a range whose records lie in a buffer. */
-static camber_status set_up(camber_raster *raster, const camber_raster_scene *scene, const camber_record_range *range,
+/* Starts setup for ranges whose records lie in one buffer, by so many work-items. */
+static camber_status set_up(camber_raster *raster, const camber_setup_args *args, cl_uint count, size_t items,
                             cl_mem records) {
-    const size_t a_job = CAMBER_SETUP_RECORDS(raster->device->lanes);
-    const camber_setup_args args = camber_raster_setup_args(scene, range, &raster->band);
-    const camber_kernel_arg arguments[] = {
-        CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),    BUFFER(BUFFER_SEGMENTS),
-        BUFFER(BUFFER_BOXES),       CAMBER_ARG_VALUE(args), BUFFER(BUFFER_ARC_LENGTHS),
-        BUFFER(BUFFER_PLANES),      BUFFER(BUFFER_CHANGES), BUFFER(BUFFER_EDGES)};
-    return run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments,
-               (range->end - range->first + a_job - 1) / a_job);
+    const camber_status status = camber_raster_put(raster, BUFFER_SETUPS, args, count * sizeof *args);
+    const camber_kernel_arg arguments[] = {CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),   BUFFER(BUFFER_SEGMENTS),
+                                           BUFFER(BUFFER_BOXES),       BUFFER(BUFFER_SETUPS), CAMBER_ARG_VALUE(count),
+                                           BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES), BUFFER(BUFFER_CHANGES),
+                                           BUFFER(BUFFER_EDGES)};
+    return status == CAMBER_OK ? run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments, items)
+                               : status;
 }
 
 /* The same for a part of a mesh that GL draws, too: it has the buffers back when setup is done. */
-static camber_status set_up_shared(camber_raster *raster, const camber_raster_scene *scene,
-                                   const camber_record_range *range) {
-    camber_mesh *mesh = range->mesh;
-    camber_mesh_part *part = mesh->parts + range->part;
+static camber_status set_up_shared(camber_raster *raster, const camber_setup_args *args, cl_uint count, size_t items,
+                                   camber_mesh *mesh, camber_mesh_part *part) {
     camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh));
     if (status != CAMBER_OK)
         return status;
-    status = set_up(raster, scene, range, part->buffers[CAMBER_BUFFER_RECORDS].mem);
+    status = set_up(raster, args, count, items, part->buffers[CAMBER_BUFFER_RECORDS].mem);
     const camber_status settled = settle(raster);
     return camber_part_finish(mesh, part, false, status == CAMBER_OK ? settled : status);
 }
 
-static camber_status make_segments(camber_raster *raster, const listed_scene *p) {
-    const camber_raster_scene *scene = p->scene;
+/* Makes the segments that ranges of one part have in the slice, all at once, as each launch costs time. */
+static camber_status set_up_part(camber_raster *raster, const listed_scene *p, size_t first, size_t end) {
+    const size_t an_item = CAMBER_SETUP_RECORDS(raster->device->lanes);
+    camber_mesh *mesh = p->list.ranges[first].mesh;
+    camber_mesh_part *part = mesh ? mesh->parts + p->list.ranges[first].part : NULL;
+    camber_setup_args *args = raster->setups + first;
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < p->list.count && status == CAMBER_OK; i++) {
+    size_t items = 0;
+    cl_uint count = 0;
+    for (size_t i = first; i < end && status == CAMBER_OK; i++) {
         camber_record_range range = p->list.ranges[i];
         if (!cut_range(raster, &range))
             continue;
-        camber_mesh *mesh = range.mesh;
-        camber_mesh_part *part = mesh ? mesh->parts + range.part : NULL;
-        status = part ? camber_part_ensure_made(mesh, part) : CAMBER_OK;
-        if (status != CAMBER_OK)
-            break;
-        if (part && !mesh->ops->is_copied)
-            status = set_up_shared(raster, scene, &range);
-        else
-            status = set_up(raster, scene, &range,
-                            part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL]);
+        if (count == 0 && part)
+            status = camber_part_ensure_made(mesh, part);
+        args[count] = camber_raster_setup_args(p->scene, &range, &raster->band);
+        args[count++].first_item = (uint32_t)items;
+        items += (range.end - range.first + an_item - 1) / an_item;
+    }
+    if (status != CAMBER_OK || count == 0)
+        return status;
+    if (part && !mesh->ops->is_copied)
+        return set_up_shared(raster, args, count, items, mesh, part);
+    return set_up(raster, args, count, items,
+                  part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL]);
+}
+
+static camber_status make_segments(camber_raster *raster, const listed_scene *p) {
+    const camber_record_range *ranges = p->list.ranges;
+    camber_status status = camber_grow(raster->device->context, &raster->setups, &raster->setup_capacity, p->list.count,
+                                       sizeof *raster->setups)
+                               ? CAMBER_OK
+                               : CAMBER_ERROR_MEMORY;
+    for (size_t i = 0, end; i < p->list.count && status == CAMBER_OK; i = end) {
+        for (end = i + 1;
+             end < p->list.count && ranges[end].mesh == ranges[i].mesh && ranges[end].part == ranges[i].part;)
+            end++;
+        status = set_up_part(raster, p, i, end);
     }
     return status;
 }

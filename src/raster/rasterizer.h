@@ -11,6 +11,7 @@ enum {
     BUFFER_BRUSH_EXT,
     BUFFER_SIDE_TABLE,
     BUFFER_CHANGES, /* of brushes, as records */
+    BUFFER_SETUPS,  /* of the ranges of a part */
     BUFFER_SEGMENTS,
     BUFFER_EDGES, /* of rings */
     BUFFER_BOXES,
@@ -43,8 +44,10 @@ struct camber_raster {
     unsigned variant;        /* of what was drawn last */
     cl_mem buffers[BUFFERS];
     size_t capacities[BUFFERS];
-    uint32_t *starts, *jobs; /* in host memory */
-    uint32_t *spills;        /* where among the spills each tile of the band has its own. UINT32_MAX: it has none */
+    camber_setup_args *setups; /* of the slice's ranges, in host memory, as are these: */
+    size_t setup_capacity;
+    uint32_t *starts, *jobs;
+    uint32_t *spills; /* where among the spills each tile of the band has its own. UINT32_MAX: it has none */
     size_t start_capacity, job_capacity, spill_capacity;
     size_t spill_count, spills_before;   /* tiles that have one, and those that had one before the slice */
     camber_raster_area area;             /* drawn last */

@@ -102,68 +102,22 @@ camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh) {
     return mesh->mesh_info;
 }
 
-camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
-                                      uint64_t *first_index) {
-    size_t slot = 0;
-    const camber_status found = camber_part_slot(mesh, part, polyline, &slot);
-    if (found != CAMBER_OK)
-        return found;
-    const size_t block = slot / mesh->device->block;
-    uint32_t packed = 0;
-    if (slot < part->slot_count && slot % mesh->device->block != 0) {
-        camber_slot_starts starts;
-        const camber_status status = camber_slot_starts_map(mesh, part, slot, slot + 1, &starts);
-        if (status != CAMBER_OK)
-            return status;
-        packed = camber_slot_starts_before(&starts, slot);
-        camber_slot_starts_unmap(&starts);
-    }
-    *first_index = part->slot_count ? part->host_bases[2 * block + 1] + (packed >> 16) : 0;
-    return CAMBER_OK;
-}
-
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index) {
     size_t i = 0;
     while (i + 1 < mesh->part_count && mesh->parts[i + 1].first_polyline <= polyline)
         i++;
-    uint64_t first = 0;
-    camber_status status = mesh->part_count ? camber_part_ensure_made(mesh, mesh->parts + i) : CAMBER_OK;
-    if (status == CAMBER_OK && mesh->part_count)
-        status = camber_part_first_index(mesh, mesh->parts + i, polyline, &first);
-    if (status == CAMBER_OK)
-        *first_index = first + (mesh->part_count ? mesh->parts[i].first_index : 0);
-    return status;
-}
-
-/* The same for records. starts: of all slots, where the mesh is strips. */
-static uint32_t first_record(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
-                             size_t slot) {
-    if (!mesh->mesh_info.strips)
-        return (uint32_t)slot;
-    const uint64_t *base = part->host_bases + 2 * (slot / mesh->device->block);
-    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
-    return (uint32_t)((base[1] + (packed >> 16)) / 2); /* a strip has two indices for each */
-}
-
-camber_status camber_part_first_records(const camber_mesh *mesh, const camber_mesh_part *part, const size_t *polylines,
-                                        size_t count, uint32_t *records) {
-    cl_command_queue queue = mesh->device->queue;
-    cl_mem mem = part->source_line.places;
-    cl_uint *places = NULL;
-    cl_int code = CL_SUCCESS;
     camber_slot_starts starts;
-    if (mesh->has_offsets && part->given_count > 0)
-        places = clEnqueueMapBuffer(queue, mem, CL_TRUE, CL_MAP_READ, 0, 4 * part->given_count, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
-    const camber_status status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &starts);
-    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-        records[i] = first_record(mesh, part, &starts, camber_part_slot_from(mesh, part, places, polylines[i]));
+    *first_index = 0;
+    if (mesh->part_count == 0)
+        return CAMBER_OK;
+    camber_status status = camber_part_ensure_made(mesh, mesh->parts + i);
     if (status == CAMBER_OK)
-        camber_slot_starts_unmap(&starts);
-    if (places)
-        clEnqueueUnmapMemObject(queue, mem, places, 0, NULL, NULL);
-    return status;
+        status = camber_slot_starts_map(mesh, mesh->parts + i, &starts);
+    if (status != CAMBER_OK)
+        return status;
+    *first_index = mesh->parts[i].first_index + camber_slot_starts_index(&starts, polyline);
+    camber_slot_starts_unmap(&starts);
+    return CAMBER_OK;
 }
 
 /* ---- Reading back ---- */

@@ -104,12 +104,9 @@ camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_o
                                     camber_mesh **mesh);
 /* Makes a part again unless its buffers hold its output. part points into mesh->parts. Other parts may be evicted. */
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
-/* Finds the first slot of a polyline in its part, whose slots must be in its buffers: the device may have to be asked.
- * A polyline just behind the part's last gives the end of its slots. */
-camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot);
-/* The same, from the places of slots of offset lines, which are mapped; NULL where the mesh has no offsets. */
-size_t camber_part_slot_from(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places,
-                             size_t polyline);
+/* The first slot of a polyline in its part. One just behind the part's last gives the end of its slots. places: those
+ * of the slots of offset lines, mapped; not read where the mesh has no offsets, nor for an end. */
+size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places, size_t polyline);
 /* The same among the given slots, before the offset stages. */
 size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* How many output buffers each part has. */
@@ -121,33 +118,30 @@ static inline size_t camber_buffer_count(const camber_mesh *mesh) {
 static inline size_t camber_record_bytes(const camber_mesh_info *info) {
     return (info->has_arc_length ? 2 : 1) * sizeof(camber_record);
 }
-/* Finds the first index of a polyline in its part; for strips, two for each record before it. A polyline just behind
- * the part's last gives the end. */
-camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
-                                      uint64_t *first_index);
-/* The same among the indices of the whole mesh, as camber_mesh_read gives them. Makes the polyline's part if it is
- * gone. */
+/* Finds the first index of a polyline among those of the whole mesh, as camber_mesh_read gives them. Makes the
+ * polyline's part if it is gone. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
-/* Finds the first records of polylines of a part, which is made and has them in this ascending order. */
-camber_status camber_part_first_records(const camber_mesh *mesh, const camber_mesh_part *part, const size_t *polylines,
-                                        size_t count, uint32_t *records);
 
-/* slot_starts.c: where the output of slots begins within their blocks, from what classify and scan left. */
+/* slot_starts.c: where the slots and the output of a part's polylines begin, from what classify and scan left. */
 typedef struct camber_slot_starts {
     const camber_mesh *mesh;
-    const camber_mesh_part *part;
-    cl_uint *joins, *info, *offsets; /* mapped, from the first slot of a chunk on */
-    size_t first, first_chunk;
-    size_t at; /* the slot that was asked for last, and sum for it */
+    const camber_mesh_part *part;             /* NULL: nothing is mapped */
+    cl_uint *joins, *info, *offsets, *places; /* mapped */
+    size_t at;                                /* the slot that was asked for last, and sum for it */
     uint32_t sum;
 } camber_slot_starts;
 
-/* Maps what the slots [first, end) of a part need; end is above first. */
-camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
-                                     camber_slot_starts *starts);
+/* Maps what is asked for below. The part is made, and stays so until it is unmapped. Each mapping waits for the device,
+ * so it is for many questions. */
+camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts);
 void camber_slot_starts_unmap(camber_slot_starts *starts);
 /* Returns vertices | indices << 16: how many the slot's block has before it. Asking in ascending order is cheap. */
 uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot);
+/* The first slot of a polyline, its first index and its first record. A strip has two indices for each record; kite and
+ * fan have a record for each slot. A polyline just behind the part's last gives the end. */
+size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline);
+uint64_t camber_slot_starts_index(camber_slot_starts *starts, size_t polyline);
+size_t camber_slot_starts_record(camber_slot_starts *starts, size_t polyline);
 
 /* Adds the time that a command took to the stage's time in the mesh's info, and releases its event. */
 void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event);
@@ -159,7 +153,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
  * takes the part's index, the others follow. */
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
 /* How many records a scanned part will have. */
-camber_status camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count);
+size_t camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part);
 /* Whether a scanned part's output fits the device and the part's share of memory. */
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 /* Uploads the part's slots, unless they have been. */

@@ -207,27 +207,12 @@ size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *p
     return mesh->held ? camber_part_network_slot(mesh, part, polyline) : mesh->first_slots[polyline] - part->first_slot;
 }
 
-size_t camber_part_slot_from(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places,
-                             size_t polyline) {
+size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places, size_t polyline) {
     const size_t given = camber_part_given_slot(mesh, part, polyline);
-    if (!places)
+    if (!mesh->has_offsets)
         return given;
     const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
     return is_behind ? part->source_line.made_count : places[given];
-}
-
-camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot) {
-    const size_t given = camber_part_given_slot(mesh, part, polyline);
-    const camber_device *device = mesh->device;
-    cl_uint place = 0;
-    cl_int code = CL_SUCCESS;
-    if (mesh->has_offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
-        place = (cl_uint)part->source_line.made_count;
-    else if (mesh->has_offsets && part->slot_count > 0)
-        code =
-            clEnqueueReadBuffer(device->queue, part->source_line.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
-    *slot = mesh->has_offsets ? place : given;
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
 }
 
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
@@ -456,10 +441,9 @@ static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part 
                : camber_fail_memory(mesh, polyline, needed_bytes(mesh, part, size));
 }
 
-camber_status camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count) {
-    *count = part->index_count / 2;
-    return mesh->mesh_info.strips ? CAMBER_OK
-                                  : camber_part_slot(mesh, part, part->first_polyline + part->polyline_count, count);
+size_t camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return mesh->mesh_info.strips ? part->index_count / 2
+                                  : camber_part_slot(mesh, part, NULL, part->first_polyline + part->polyline_count);
 }
 
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
@@ -468,18 +452,12 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
 }
 
 /* Finds how much a part has before a polyline, from what the scan left. */
-static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
-                                 size_t polyline, part_size *size) {
-    size_t slot = 0;
-    const camber_status status = camber_part_slot(mesh, part, polyline, &slot);
-    if (status != CAMBER_OK)
-        return status;
-    const size_t block = slot / mesh->device->block;
-    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
-    const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
-    const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, part, polyline) : 0;
-    *size = (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
-    return CAMBER_OK;
+static part_size size_before(camber_slot_starts *starts, size_t polyline) {
+    const camber_mesh *mesh = starts->mesh;
+    const uint64_t indices = camber_slot_starts_index(starts, polyline);
+    const size_t slot = camber_slot_starts_slot(starts, polyline);
+    const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, starts->part, polyline) : 0;
+    return (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
 }
 
 static part_size subtract(part_size a, part_size b) {
@@ -495,10 +473,7 @@ static camber_status find_cut(const camber_mesh *mesh, const camber_mesh_part *p
     part_size before_cut = *start;
     size_t fits = first;
     for (size_t behind = end + 1, tried = end; behind - fits > 1; tried = fits + (behind - fits) / 2) {
-        part_size before;
-        const camber_status status = size_before(mesh, part, starts, tried, &before);
-        if (status != CAMBER_OK)
-            return status;
+        const part_size before = size_before(starts, tried);
         const part_size taken = subtract(before, *start);
         const bool is_alone = tried == first + 1;
         if (is_alone && is_too_large(mesh, part, taken, ALONE))
@@ -592,7 +567,7 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
     const camber_mesh_part *part = mesh->parts + which;
     size_t *cuts = NULL, cut_count = 0;
     camber_slot_starts starts;
-    camber_status status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &starts);
+    camber_status status = camber_slot_starts_map(mesh, part, &starts);
     if (status != CAMBER_OK)
         return status;
     status = find_cuts(mesh, part, &starts, &cuts, &cut_count);

@@ -1,13 +1,14 @@
-/* Where a slot's vertices and indices begin within its block. The scan stores this only for the first slot of each
- * chunk that a work-item took. From there on the host counts again, from the join words. */
+/* Where the slots of polylines, and what becomes of them, begin in a part. The scan stores where a slot's vertices and
+ * indices begin within its block only for the first slot of each chunk that a work-item took. From there on the host
+ * counts again, from the join words. */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"
 
-static cl_uint *map(const camber_mesh *mesh, cl_mem mem, size_t first, size_t count, camber_status *status) {
+static cl_uint *map(const camber_mesh *mesh, cl_mem mem, size_t count, camber_status *status) {
     cl_int code = CL_SUCCESS;
     void *bytes = *status != CAMBER_OK ? NULL
-                                       : clEnqueueMapBuffer(mesh->device->queue, mem, CL_TRUE, CL_MAP_READ, 4 * first,
+                                       : clEnqueueMapBuffer(mesh->device->queue, mem, CL_TRUE, CL_MAP_READ, 0,
                                                             4 * count, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         *status = camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
@@ -19,39 +20,62 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, cl_uint *words) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, words, 0, NULL, NULL);
 }
 
-camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
+camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part,
                                      camber_slot_starts *starts) {
-    const size_t chunk_slots = mesh->device->point_chunk, chunk = first / chunk_slots, slot = chunk * chunk_slots,
-                 words = end - slot + 1;
+    const size_t slots = part->slot_count, chunk_slots = mesh->device->point_chunk;
     camber_status status = CAMBER_OK;
-    camber_slot_starts o = {.mesh = mesh, .part = part, .first = slot, .first_chunk = chunk, .at = SIZE_MAX};
-    o.joins = map(mesh, part->joins, slot, words, &status);
-    o.info = map(mesh, part->info, slot, words, &status);
-    o.offsets = map(mesh, part->offsets, chunk, (end - 1) / chunk_slots - chunk + 1, &status);
-    if (status == CAMBER_OK)
-        *starts = o;
-    else
-        camber_slot_starts_unmap(&o);
+    *starts = (camber_slot_starts){.mesh = mesh, .part = part, .at = SIZE_MAX};
+    if (slots > 0) {
+        starts->joins = map(mesh, part->joins, slots + 1, &status);
+        starts->info = map(mesh, part->info, slots + 1, &status);
+        starts->offsets = map(mesh, part->offsets, (slots - 1) / chunk_slots + 1, &status);
+    }
+    if (mesh->has_offsets && part->given_count > 0)
+        starts->places = map(mesh, part->source_line.places, part->given_count, &status);
+    if (status != CAMBER_OK)
+        camber_slot_starts_unmap(starts);
     return status;
 }
 
 void camber_slot_starts_unmap(camber_slot_starts *starts) {
-    unmap(starts->mesh, starts->part->offsets, starts->offsets);
-    unmap(starts->mesh, starts->part->info, starts->info);
-    unmap(starts->mesh, starts->part->joins, starts->joins);
-    starts->joins = starts->info = starts->offsets = NULL;
+    const camber_mesh_part *part = starts->part;
+    if (!part)
+        return;
+    unmap(starts->mesh, part->source_line.places, starts->places);
+    unmap(starts->mesh, part->offsets, starts->offsets);
+    unmap(starts->mesh, part->info, starts->info);
+    unmap(starts->mesh, part->joins, starts->joins);
+    *starts = (camber_slot_starts){0};
 }
 
 uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot) {
     const size_t chunk_slots = starts->mesh->device->point_chunk, chunk = slot / chunk_slots;
     if (slot < starts->at || chunk * chunk_slots > starts->at) {
         starts->at = chunk * chunk_slots;
-        starts->sum = starts->offsets[chunk - starts->first_chunk];
+        starts->sum = starts->offsets[chunk];
     }
     for (; starts->at < slot; starts->at++) {
-        const size_t word = starts->at - starts->first + 1;
+        const size_t word = starts->at + 1;
         starts->sum += camber_join_counts(starts->joins[word], starts->joins[word - 1], starts->info[word],
                                           (camber_u32)starts->mesh->mesh_info.method);
     }
     return starts->sum;
+}
+
+size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline) {
+    return camber_part_slot(starts->mesh, starts->part, starts->places, polyline);
+}
+
+uint64_t camber_slot_starts_index(camber_slot_starts *starts, size_t polyline) {
+    const camber_mesh_part *part = starts->part;
+    const size_t slot = camber_slot_starts_slot(starts, polyline);
+    if (part->slot_count == 0)
+        return 0;
+    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
+    return part->host_bases[2 * (slot / starts->mesh->device->block) + 1] + (packed >> 16);
+}
+
+size_t camber_slot_starts_record(camber_slot_starts *starts, size_t polyline) {
+    return starts->mesh->mesh_info.strips ? (size_t)camber_slot_starts_index(starts, polyline) / 2
+                                          : camber_slot_starts_slot(starts, polyline);
 }

@@ -8,7 +8,6 @@
 typedef struct arrays {
     float *x, *y;
     cl_uint *info, *joins;
-    cl_uint *places; /* NULL where the mesh has no offsets */
     camber_slot_starts starts;
 } arrays;
 
@@ -43,8 +42,8 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0, slot = 0; i < part->polyline_count; i++) {
         const size_t polyline = part->first_polyline + i;
-        const size_t begin = camber_part_slot_from(mesh, part, a->places, polyline);
-        const size_t wanted = camber_part_slot_from(mesh, part, a->places, polyline + 1);
+        const size_t begin = camber_slot_starts_slot(&a->starts, polyline);
+        const size_t wanted = camber_slot_starts_slot(&a->starts, polyline + 1);
         const size_t end = wanted < part->slot_count ? wanted : part->slot_count;
         uint32_t point = 0;
         for (slot = begin > slot ? begin : slot; slot < end; slot++) {
@@ -82,10 +81,8 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             .info = map(mesh, part->info, words, &status),
             .joins = map(mesh, part->joins, words, &status),
         };
-        if (mesh->has_offsets)
-            seen.places = map(mesh, part->source_line.places, part->given_count, &status);
         if (status == CAMBER_OK)
-            status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &seen.starts);
+            status = camber_slot_starts_map(mesh, part, &seen.starts);
         if (seen.starts.offsets) {
             status = append_points(mesh, part, &seen, &made);
             camber_slot_starts_unmap(&seen.starts);
@@ -94,7 +91,6 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         unmap(mesh, part->y, seen.y);
         unmap(mesh, part->info, seen.info);
         unmap(mesh, part->joins, seen.joins);
-        unmap(mesh, part->source_line.places, seen.places);
     }
     if (status != CAMBER_OK) {
         camber_stages_destroy(&made);

@@ -59,7 +59,8 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     clEnqueueUnmapMemObject(device->queue, part->sums, sums, 0, NULL, NULL);
     part->vertex_count = (size_t)part->host_bases[2 * blocks];
     part->index_count = (size_t)part->host_bases[2 * blocks + 1];
-    return camber_part_count_records(mesh, part, &part->record_count);
+    part->record_count = camber_part_count_records(mesh, part);
+    return CAMBER_OK;
 }
 
 void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event) {

@@ -79,6 +79,15 @@ typedef struct bench_frame_times {
 
 camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times);
 
+/* Takes the rows of a picture of BENCH_SIDE_PX. Rows that are handed over are pixels in memory: to keep them is the
+ * bench's own business, so the time of that is told, and left out. */
+typedef struct bench_taking {
+    uint8_t *picture;
+    double kept_ms;
+} bench_taking;
+
+bool bench_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
+
 /* Polylines in world coordinates, pixels of the square: polyline i has the points [offsets[i], offsets[i + 1]). */
 typedef struct bench_plane {
     double *points;

@@ -54,29 +54,23 @@ void bench_close(bench *b) {
 
 /* ---- A frame ---- */
 
-/* Rows that are taken are pixels in memory: to keep them is the bench's own business, and not counted. */
-typedef struct taking {
-    uint8_t *picture;
-    double kept_ms;
-} taking;
-
-static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    taking *t = user;
+bool bench_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    bench_taking *t = user;
     const double begin = camber_now_ms();
     memcpy(t->picture + 4 * (size_t)BENCH_SIDE_PX * first_row, rgba, 4 * (size_t)BENCH_SIDE_PX * row_count);
     t->kept_ms += camber_now_ms() - begin;
     return true;
 }
 
-static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, taking *t, camber_frame_stats *stats) {
+static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, bench_taking *t, camber_frame_stats *stats) {
     const camber_fill fill = {.color = {0, 0, 0, 1}};
     const camber_paint paint = {.width_px = desc->width_px, .color = {0, 0, 0, 1}, .fill = desc->areas ? &fill : NULL};
     const camber_pass pass = {
         .mesh = desc->in_cl ? b->cl_mesh : b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-    return camber_renderer_render(desc->in_cl ? b->cl_renderer : b->renderer, &frame, desc->picture ? take_rows : NULL,
-                                  t, stats);
+    return camber_renderer_render(desc->in_cl ? b->cl_renderer : b->renderer, &frame,
+                                  desc->picture ? bench_take_rows : NULL, t, stats);
 }
 
 static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, const camber_tessellation_desc *strokes) {
@@ -120,7 +114,7 @@ static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
 
 camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times) {
     camber_frame_stats stats = {0};
-    taking t = {.picture = desc->picture};
+    bench_taking t = {.picture = desc->picture};
     const double begin = camber_now_ms();
     camber_status status = tessellate(b, desc);
     times->tessellate_ms = camber_now_ms() - begin;

@@ -129,22 +129,17 @@ static camber_status make_layers(trial *t) {
 
 /* ---- Frames ---- */
 
-static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const trial *t = user;
-    memcpy(t->b->picture + 4 * (size_t)BENCH_SIDE_PX * first_row, rgba, 4 * (size_t)BENCH_SIDE_PX * row_count);
-    return true;
-}
-
 static camber_status draw_ours(trial *t, bool counts) {
+    bench_taking taking = {.picture = t->b->picture};
     const double begin = camber_now_ms();
     camber_status status = camber_scene_tessellate(t->scene, t->b->cl_mesh, CAMBER_METHOD_STRIP);
     const double tessellated = camber_now_ms();
     if (status == CAMBER_OK) {
         const camber_frame frame = camber_scene_get_frame(t->scene, t->b->cl_mesh);
-        status = camber_renderer_render(t->b->cl_renderer, &frame, take_rows, t, NULL);
+        status = camber_renderer_render(t->b->cl_renderer, &frame, bench_take_rows, &taking, NULL);
     }
     if (counts) {
-        bench_series_add(&t->ours, camber_now_ms() - begin);
+        bench_series_add(&t->ours, camber_now_ms() - begin - taking.kept_ms);
         bench_series_add(&t->tessellate, tessellated - begin);
     }
     return status;

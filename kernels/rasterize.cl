@@ -4,7 +4,7 @@
  * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
  * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
  * planes[CAMBER_PLANE_WORDS * n]. Where there are areas it reads crossings and ends, as wind writes them. Writes
- * pixels, rows of `stride` words. Before the last slice it writes spill[tiles * tile_words] instead.
+ * pixels, rows of `stride` words. Before the last slice it writes spill[spills * tile_words] instead.
  *
  * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
  * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */

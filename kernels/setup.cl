@@ -1,7 +1,7 @@
 /* setup: makes a segment, or the edge of a ring, of each record that ends one, and finds the box of tiles around it. A
  * work-item takes 128 records of a range, and on a GPU 16.
  *
- * Reads ranges[range_count], and of each records[CAMBER_RECORD_WORDS * stride * record_count],
+ * Reads ranges[range_count] of one part, records[CAMBER_RECORD_WORDS * stride * record_count],
  * rows[CAMBER_RASTER_ROW_WORDS * row count], changes[first_change + change_count]. For the n records of a range,
  * rounded up to sixteens, it writes from element `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture

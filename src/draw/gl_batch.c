@@ -171,9 +171,13 @@ static camber_status list_strip(camber_renderer *renderer, GLint first, GLsizei 
 }
 
 /* Gives the first index of a polyline, or in a pitched view its first vertex. */
-static uint64_t first_of(camber_slot_starts *starts, size_t polyline, bool pitched) {
-    return pitched ? (uint64_t)RECORD_VERTICES * camber_slot_starts_record(starts, polyline)
-                   : camber_slot_starts_index(starts, polyline);
+static camber_status first_of(camber_slot_starts *starts, size_t polyline, bool pitched, uint64_t *first) {
+    size_t record = 0;
+    if (!pitched)
+        return camber_slot_starts_index(starts, polyline, first);
+    const camber_status status = camber_slot_starts_record(starts, polyline, &record);
+    *first = (uint64_t)RECORD_VERTICES * record;
+    return status;
 }
 
 /* Lists or draws the polylines of a range that lie in a part, which is bound. */
@@ -186,14 +190,16 @@ static camber_status draw_part(camber_renderer *renderer, camber_slot_starts *st
     camber_status status = CAMBER_OK;
     while (range.first < range.end && status == CAMBER_OK) {
         size_t until = range.end;
-        const uint64_t from = first_of(starts, range.first, area->view.pitched);
-        uint64_t to = first_of(starts, until, area->view.pitched);
-        while (to - from > INDICES_MAX && until - range.first > 1) {
+        uint64_t from = 0, to = 0;
+        status = first_of(starts, range.first, area->view.pitched, &from);
+        if (status == CAMBER_OK)
+            status = first_of(starts, until, area->view.pitched, &to);
+        while (status == CAMBER_OK && to - from > INDICES_MAX && until - range.first > 1) {
             until = range.first + (until - range.first) / 2;
-            to = first_of(starts, until, area->view.pitched);
+            status = first_of(starts, until, area->view.pitched, &to);
         }
         range.first = until;
-        if (to == from)
+        if (status != CAMBER_OK || to == from)
             continue;
         if (has_numbered_tables(mesh, area)) {
             status = list_strip(renderer, (GLint)((uint64_t)range.table << bits | from), (GLsizei)(to - from));
@@ -224,10 +230,9 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
                 draw_strips(renderer, area); /* their part is bound, and may have to go */
                 camber_slot_starts_unmap(&starts);
                 status = camber_part_ensure_made(mesh, part);
-                if (status == CAMBER_OK)
-                    status = camber_slot_starts_map(mesh, part, &starts);
                 if (status != CAMBER_OK)
                     break;
+                starts = camber_slot_starts_of(mesh, part);
                 camber_gl_bind_part(renderer, part);
             }
             status = draw_part(renderer, &starts, range, shader, area);

@@ -13,21 +13,6 @@ const camber_record camber_fill_records[CAMBER_FILL_RECORDS] = {
     {CAMBER_FILL_PX, 0.0f, BUTT_CAP, CAMBER_POINT_REAL | CAMBER_POINT_LAST},
 };
 
-/* How many records of a part lie before a polyline's. Of a part that has not been made the ends alone are known. */
-static camber_status find_record(camber_range_list *list, const camber_mesh *mesh, const camber_mesh_part *part,
-                                 size_t polyline, size_t *record) {
-    const bool is_end = polyline == part->first_polyline + part->polyline_count;
-    camber_status status = CAMBER_OK;
-    *record = is_end ? part->record_count : 0;
-    if (is_end || polyline == part->first_polyline)
-        return CAMBER_OK;
-    if (list->starts.part != part)
-        status = camber_slot_starts_map(mesh, part, &list->starts);
-    if (status == CAMBER_OK)
-        *record = camber_slot_starts_record(&list->starts, polyline);
-    return status;
-}
-
 static camber_status add_range(camber_range_list *list, camber_record_range range) {
     if (!camber_grow(list->context, &list->ranges, &list->capacity, list->count + 1, sizeof *list->ranges))
         return CAMBER_ERROR_MEMORY;
@@ -43,14 +28,13 @@ static camber_status add_range(camber_range_list *list, camber_record_range rang
 
 /* Lists the records at which the brush changes within a range. */
 static camber_status add_changes(camber_range_list *list, const camber_record_range *range, const size_t *polylines) {
-    const camber_mesh_part *part = range->mesh->parts + range->part;
     camber_status status = CAMBER_OK;
     if (!camber_grow(list->context, &list->changes, &list->change_capacity, list->change_count + range->change_count,
                      sizeof *list->changes))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < range->change_count && status == CAMBER_OK; i++) {
         size_t record = 0;
-        status = find_record(list, range->mesh, part, polylines[i], &record);
+        status = camber_slot_starts_record(&list->starts, polylines[i], &record);
         list->changes[list->change_count++] = (uint32_t)record;
     }
     return status;
@@ -61,13 +45,15 @@ static camber_status add_polylines(camber_range_list *list, camber_record_range 
                                    const size_t *polylines) {
     camber_mesh_part *part = range.mesh->parts + range.part;
     const bool whole = from == part->first_polyline && to == part->first_polyline + part->polyline_count;
-    if (list->starts.part != part)
-        camber_slot_starts_unmap(&list->starts); /* it may have to go */
+    if (list->starts.part != part) {
+        camber_slot_starts_unmap(&list->starts); /* its part may have to go */
+        list->starts = camber_slot_starts_of(range.mesh, part);
+    }
     camber_status status = whole && range.change_count == 0 ? CAMBER_OK : camber_part_ensure_made(range.mesh, part);
     if (status == CAMBER_OK)
-        status = find_record(list, range.mesh, part, from, &range.first);
+        status = camber_slot_starts_record(&list->starts, from, &range.first);
     if (status == CAMBER_OK)
-        status = find_record(list, range.mesh, part, to, &range.end);
+        status = camber_slot_starts_record(&list->starts, to, &range.end);
     if (status != CAMBER_OK || range.first >= range.end)
         return status;
     status = add_changes(list, &range, polylines);

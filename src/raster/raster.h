@@ -138,6 +138,7 @@ typedef struct camber_range_list {
     size_t first_edge, end_edge; /* no edge of a ring lies outside these segments; 0 and 0: there are no areas */
 } camber_range_list;
 
+/* The ranges come by their part, those of one part in drawing order. */
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_range_list *list);
 void camber_raster_free_ranges(camber_range_list *list);

@@ -134,10 +134,13 @@ static camber_status set_up_part(camber_raster *raster, const listed_scene *p, s
 
 static camber_status make_segments(camber_raster *raster, const listed_scene *p) {
     const camber_record_range *ranges = p->list.ranges;
+    const size_t most_bytes = p->list.count * sizeof *raster->setups;
     camber_status status = camber_grow(raster->device->context, &raster->setups, &raster->setup_capacity, p->list.count,
                                        sizeof *raster->setups)
                                ? CAMBER_OK
                                : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK && most_bytes)
+        status = camber_raster_reserve(raster, BUFFER_SETUPS, most_bytes);
     for (size_t i = 0, end; i < p->list.count && status == CAMBER_OK; i = end) {
         for (end = i + 1;
              end < p->list.count && ranges[end].mesh == ranges[i].mesh && ranges[end].part == ranges[i].part;)
@@ -269,8 +272,9 @@ static camber_status begin_spills(camber_raster *raster) {
     return CAMBER_OK;
 }
 
-/* Gives a spill to each tile that the slice is the first to draw; the last spills none. *fits is false if there are too
- * many, which those of one row of tiles never are. */
+/* Gives a spill to each tile that the slice is the first to draw; the last spills none. The buffer has room for all
+ * that there may be, as it would lose them if it grew. *fits is false if there are too many, which those of one row of
+ * tiles never are. */
 static camber_status place_spills(camber_raster *raster, camber_spill_args k, bool *fits) {
     const size_t most = most_spills(raster, k), tiles = raster->tile_count;
     raster->spills_before = raster->spill_count;
@@ -463,8 +467,8 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
     return status == CAMBER_OK ? rasterize_tiles(raster, p->scene, k, heavy, jobs) : status;
 }
 
-/* Draws the band's slices, from the last to the first. If the lists of one do not fit, it stops so that the caller
- * halves the band, or halves the slice. */
+/* Draws the band's slices, from the last to the first. If lists or spills of one do not fit, it stops so that the
+ * caller halves the band, or halves the slice. */
 static camber_status draw_band(camber_raster *raster, const listed_scene *p, bool *fits) {
     size_t most = segments_at_once(raster), left = p->list.segment_count;
     camber_spill_args k = plan_spill(raster, p->scene);
@@ -490,7 +494,7 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
 }
 
 /* Draws the area's bands, the first of which is all of it. A band whose lists or spills do not fit is halved, and so
- * are those after it; but bands all of whose tiles can be spilled are not, for want of spills. */
+ * are those after it. A band of `sure` rows can always be spilled, so want of spills halves none below that. */
 static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     const camber_raster_area *area = &raster->area;
     const uint32_t sure = (uint32_t)(most_spills(raster, plan_spill(raster, p->scene)) / raster->columns);

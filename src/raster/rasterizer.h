@@ -44,14 +44,14 @@ struct camber_raster {
     unsigned variant;        /* of what was drawn last */
     cl_mem buffers[BUFFERS];
     size_t capacities[BUFFERS];
-    camber_setup_args *setups; /* of the slice's ranges, in host memory, as are these: */
+    camber_setup_args *setups; /* of the slice's ranges. This and the next are in host memory: */
     size_t setup_capacity;
     uint32_t *starts, *jobs;
     uint32_t *spills; /* where among the spills each tile of the band has its own. UINT32_MAX: it has none */
     size_t start_capacity, job_capacity, spill_capacity;
     size_t spill_count, spills_before;   /* tiles that have one, and those that had one before the slice */
     camber_raster_area area;             /* drawn last */
-    camber_raster_area band;             /* the band of the area: whole rows of tiles whose lists fit */
+    camber_raster_area band;             /* the band of the area: whole rows of tiles whose lists and spills fit */
     cl_mem given;                        /* the caller's buffer for the pixels; NULL: a buffer of our own */
     uint32_t columns;                    /* tiles */
     size_t first_segment, segment_count; /* of the slice */

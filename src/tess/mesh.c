@@ -106,18 +106,15 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     size_t i = 0;
     while (i + 1 < mesh->part_count && mesh->parts[i + 1].first_polyline <= polyline)
         i++;
-    camber_slot_starts starts;
-    *first_index = 0;
-    if (mesh->part_count == 0)
-        return CAMBER_OK;
-    camber_status status = camber_part_ensure_made(mesh, mesh->parts + i);
-    if (status == CAMBER_OK)
-        status = camber_slot_starts_map(mesh, mesh->parts + i, &starts);
-    if (status != CAMBER_OK)
-        return status;
-    *first_index = mesh->parts[i].first_index + camber_slot_starts_index(&starts, polyline);
+    uint64_t first = 0;
+    camber_slot_starts starts = camber_slot_starts_of(mesh, mesh->parts + i);
+    camber_status status = mesh->part_count ? camber_part_ensure_made(mesh, mesh->parts + i) : CAMBER_OK;
+    if (status == CAMBER_OK && mesh->part_count)
+        status = camber_slot_starts_index(&starts, polyline, &first);
     camber_slot_starts_unmap(&starts);
-    return CAMBER_OK;
+    if (status == CAMBER_OK)
+        *first_index = first + (mesh->part_count ? mesh->parts[i].first_index : 0);
+    return status;
 }
 
 /* ---- Reading back ---- */

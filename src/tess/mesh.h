@@ -125,23 +125,29 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
 /* slot_starts.c: where the slots and the output of a part's polylines begin, from what classify and scan left. */
 typedef struct camber_slot_starts {
     const camber_mesh *mesh;
-    const camber_mesh_part *part;             /* NULL: nothing is mapped */
-    cl_uint *joins, *info, *offsets, *places; /* mapped */
+    const camber_mesh_part *part;             /* which has been scanned */
+    cl_uint *joins, *info, *offsets, *places; /* mapped; NULL: nobody asked yet */
     size_t at;                                /* the slot that was asked for last, and sum for it */
     uint32_t sum;
 } camber_slot_starts;
 
-/* Maps what is asked for below. The part is made, and stays so until it is unmapped. Each mapping waits for the device,
- * so it is for many questions. */
-camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts);
+static inline camber_slot_starts camber_slot_starts_of(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return (camber_slot_starts){.mesh = mesh, .part = part};
+}
+/* Maps the whole part, unless it is mapped: that waits for the device, and is for many questions. Until it is unmapped
+ * the part must not lose its buffers. */
+camber_status camber_slot_starts_map(camber_slot_starts *starts);
+/* Forgets the part. May be called of none. */
 void camber_slot_starts_unmap(camber_slot_starts *starts);
-/* Returns vertices | indices << 16: how many the slot's block has before it. Asking in ascending order is cheap. */
+/* Returns vertices | indices << 16: how many the slot's block has before it. Asking in ascending order is cheap. This
+ * and the first slot of a polyline are for parts that are mapped. */
 uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot);
-/* The first slot of a polyline, its first index and its first record. A strip has two indices for each record; kite and
- * fan have a record for each slot. A polyline just behind the part's last gives the end. */
 size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline);
-uint64_t camber_slot_starts_index(camber_slot_starts *starts, size_t polyline);
-size_t camber_slot_starts_record(camber_slot_starts *starts, size_t polyline);
+/* The first index of a polyline, and its first record. A strip has two indices for each record; kite and fan have a
+ * record for each slot. A polyline just behind the part's last gives the end. The part is mapped where it must be: not
+ * for its first polyline, nor for its end. */
+camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyline, uint64_t *index);
+camber_status camber_slot_starts_record(camber_slot_starts *starts, size_t polyline, size_t *record);
 
 /* Adds the time that a command took to the stage's time in the mesh's info, and releases its event. */
 void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event);

@@ -452,12 +452,16 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
 }
 
 /* Finds how much a part has before a polyline, from what the scan left. */
-static part_size size_before(camber_slot_starts *starts, size_t polyline) {
+static camber_status size_before(camber_slot_starts *starts, size_t polyline, part_size *size) {
     const camber_mesh *mesh = starts->mesh;
-    const uint64_t indices = camber_slot_starts_index(starts, polyline);
+    uint64_t indices = 0;
+    const camber_status status = camber_slot_starts_index(starts, polyline, &indices);
+    if (status != CAMBER_OK)
+        return status;
     const size_t slot = camber_slot_starts_slot(starts, polyline);
     const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, starts->part, polyline) : 0;
-    return (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
+    *size = (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
+    return CAMBER_OK;
 }
 
 static part_size subtract(part_size a, part_size b) {
@@ -473,7 +477,10 @@ static camber_status find_cut(const camber_mesh *mesh, const camber_mesh_part *p
     part_size before_cut = *start;
     size_t fits = first;
     for (size_t behind = end + 1, tried = end; behind - fits > 1; tried = fits + (behind - fits) / 2) {
-        const part_size before = size_before(starts, tried);
+        part_size before;
+        const camber_status status = size_before(starts, tried, &before);
+        if (status != CAMBER_OK)
+            return status;
         const part_size taken = subtract(before, *start);
         const bool is_alone = tried == first + 1;
         if (is_alone && is_too_large(mesh, part, taken, ALONE))
@@ -566,8 +573,8 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
     const camber_device *device = mesh->device;
     const camber_mesh_part *part = mesh->parts + which;
     size_t *cuts = NULL, cut_count = 0;
-    camber_slot_starts starts;
-    camber_status status = camber_slot_starts_map(mesh, part, &starts);
+    camber_slot_starts starts = camber_slot_starts_of(mesh, part);
+    camber_status status = camber_slot_starts_map(&starts);
     if (status != CAMBER_OK)
         return status;
     status = find_cuts(mesh, part, &starts, &cuts, &cut_count);

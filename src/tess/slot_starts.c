@@ -20,17 +20,18 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, cl_uint *words) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, words, 0, NULL, NULL);
 }
 
-camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part,
-                                     camber_slot_starts *starts) {
+camber_status camber_slot_starts_map(camber_slot_starts *starts) {
+    const camber_mesh *mesh = starts->mesh;
+    const camber_mesh_part *part = starts->part;
     const size_t slots = part->slot_count, chunk_slots = mesh->device->point_chunk;
     camber_status status = CAMBER_OK;
-    *starts = (camber_slot_starts){.mesh = mesh, .part = part, .at = SIZE_MAX};
-    if (slots > 0) {
-        starts->joins = map(mesh, part->joins, slots + 1, &status);
-        starts->info = map(mesh, part->info, slots + 1, &status);
-        starts->offsets = map(mesh, part->offsets, (slots - 1) / chunk_slots + 1, &status);
-    }
-    if (mesh->has_offsets && part->given_count > 0)
+    if (slots == 0 || starts->joins)
+        return CAMBER_OK;
+    starts->at = SIZE_MAX;
+    starts->joins = map(mesh, part->joins, slots + 1, &status);
+    starts->info = map(mesh, part->info, slots + 1, &status);
+    starts->offsets = map(mesh, part->offsets, (slots - 1) / chunk_slots + 1, &status);
+    if (mesh->has_offsets)
         starts->places = map(mesh, part->source_line.places, part->given_count, &status);
     if (status != CAMBER_OK)
         camber_slot_starts_unmap(starts);
@@ -66,16 +67,39 @@ size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline
     return camber_part_slot(starts->mesh, starts->part, starts->places, polyline);
 }
 
-uint64_t camber_slot_starts_index(camber_slot_starts *starts, size_t polyline) {
-    const camber_mesh_part *part = starts->part;
-    const size_t slot = camber_slot_starts_slot(starts, polyline);
-    if (part->slot_count == 0)
-        return 0;
-    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
-    return part->host_bases[2 * (slot / starts->mesh->device->block) + 1] + (packed >> 16);
+/* Whether a polyline begins where its part does, or is the one behind its last. */
+static bool is_first(const camber_slot_starts *starts, size_t polyline) {
+    return polyline <= starts->part->first_polyline || starts->part->slot_count == 0;
 }
 
-size_t camber_slot_starts_record(camber_slot_starts *starts, size_t polyline) {
-    return starts->mesh->mesh_info.strips ? (size_t)camber_slot_starts_index(starts, polyline) / 2
-                                          : camber_slot_starts_slot(starts, polyline);
+static bool is_end(const camber_slot_starts *starts, size_t polyline) {
+    return polyline >= starts->part->first_polyline + starts->part->polyline_count;
+}
+
+camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyline, uint64_t *index) {
+    const camber_mesh_part *part = starts->part;
+    if (is_first(starts, polyline) || is_end(starts, polyline)) {
+        *index = is_first(starts, polyline) ? 0 : part->index_count;
+        return CAMBER_OK;
+    }
+    const camber_status status = camber_slot_starts_map(starts);
+    if (status != CAMBER_OK)
+        return status;
+    const size_t slot = camber_slot_starts_slot(starts, polyline);
+    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
+    *index = part->host_bases[2 * (slot / starts->mesh->device->block) + 1] + (packed >> 16);
+    return CAMBER_OK;
+}
+
+camber_status camber_slot_starts_record(camber_slot_starts *starts, size_t polyline, size_t *record) {
+    const camber_mesh *mesh = starts->mesh;
+    uint64_t index = 0;
+    if (is_first(starts, polyline) || is_end(starts, polyline)) {
+        *record = is_first(starts, polyline) ? 0 : starts->part->record_count;
+        return CAMBER_OK;
+    }
+    camber_status status = camber_slot_starts_index(starts, polyline, &index);
+    if (status == CAMBER_OK)
+        *record = mesh->mesh_info.strips ? (size_t)index / 2 : camber_slot_starts_slot(starts, polyline);
+    return status;
 }

@@ -7,7 +7,6 @@
 /* A part's arrays, mapped into host memory. */
 typedef struct arrays {
     float *x, *y;
-    cl_uint *info, *joins;
     camber_slot_starts starts;
 } arrays;
 
@@ -35,7 +34,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
                                    camber_stages *stages) {
     size_t count = 0;
     for (size_t slot = 0; slot < part->slot_count; slot++)
-        count += a->info[slot + 1] & CAMBER_POINT_REAL;
+        count += a->starts.info[slot + 1] & CAMBER_POINT_REAL;
     size_t capacity = stages->point_count;
     if (!camber_grow(mesh->device->context, &stages->points, &capacity, stages->point_count + count,
                      sizeof *stages->points))
@@ -48,7 +47,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
         uint32_t point = 0;
         for (slot = begin > slot ? begin : slot; slot < end; slot++) {
             const size_t word = slot + 1, block = slot / mesh->device->block;
-            if (!(a->info[word] & CAMBER_POINT_REAL))
+            if (!(a->starts.info[word] & CAMBER_POINT_REAL))
                 continue;
             const uint64_t *base = part->host_bases + 2 * block;
             const uint32_t packed = camber_slot_starts_before(&a->starts, slot);
@@ -57,7 +56,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
                 .point = point++,
                 .x = a->x[word],
                 .y = a->y[word],
-                .join = a->joins[word],
+                .join = a->starts.joins[word],
                 .first_vertex = (uint32_t)(part->first_vertex + base[0] + (packed & 0xffffu)),
                 .first_index = part->first_index + base[1] + (packed >> 16),
             };
@@ -78,19 +77,15 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         arrays seen = {
             .x = map(mesh, part->x, words, &status),
             .y = map(mesh, part->y, words, &status),
-            .info = map(mesh, part->info, words, &status),
-            .joins = map(mesh, part->joins, words, &status),
+            .starts = camber_slot_starts_of(mesh, part),
         };
         if (status == CAMBER_OK)
-            status = camber_slot_starts_map(mesh, part, &seen.starts);
-        if (seen.starts.offsets) {
+            status = camber_slot_starts_map(&seen.starts);
+        if (status == CAMBER_OK)
             status = append_points(mesh, part, &seen, &made);
-            camber_slot_starts_unmap(&seen.starts);
-        }
+        camber_slot_starts_unmap(&seen.starts);
         unmap(mesh, part->x, seen.x);
         unmap(mesh, part->y, seen.y);
-        unmap(mesh, part->info, seen.info);
-        unmap(mesh, part->joins, seen.joins);
     }
     if (status != CAMBER_OK) {
         camber_stages_destroy(&made);

@@ -16,14 +16,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The time that a picture and a tile take besides its points, in points. A point took 0.43 us of one processor, a tile
- * of 256 px 0.52 ms, whatever the zoom (2026-11-26, AMD EPYC, Zen 4: three inputs, zooms 0 to 16). */
-static const double PICTURE_COST = 1e3, TILE_COST = 1.2e3;
+/* The time that a picture and a tile take besides its points, in points. Zoom by zoom from 0 to 14 a point took 0.37 us of
+ * one processor and a tile of 256 px 0.6 ms. A picture took 5 ms, but those of few pictures have the most lines: 16
+ * shards are the most alike with 2 (10 million points, two styles; 2026-11-26, AMD EPYC, Zen 4). */
+static const double PICTURE_COST = 6e3, TILE_COST = 1.6e3;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which
  * tiles the points lie that it holds: all of the zoom's from wide zooms on, else those that it draws. */
-static const double SKIP_COST = 0.1, LOOK_COST = 0.12;
+static const double SKIP_COST = 0.12, LOOK_COST = 0.14;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
 enum { CUT_STEPS = 24 }; /* to less than a millionth of all */

@@ -98,8 +98,8 @@ typedef struct camber_spill_args {
 #define CAMBER_OVERLAP_EDGES 64
 #define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 
-/* rasterize: a job is three words, the tile, the first and the last row of its cells to draw, and where among the spills
- * the tile has its own. With CAMBER_JOB_BEGINS nothing of it was drawn yet, and there is nothing to restore. */
+/* rasterize: a job is three words, the tile, the first and the last row of its cells to draw, and where among the
+ * spills the tile has its own. With CAMBER_JOB_BEGINS nothing of it was drawn yet, and there is nothing to restore. */
 #define CAMBER_JOB_WORDS 3
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
 #define CAMBER_JOB_BEGINS 0x80000000u

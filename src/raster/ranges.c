@@ -26,9 +26,11 @@ static camber_status add_range(camber_range_list *list, camber_record_range rang
     return CAMBER_OK;
 }
 
-/* Lists the records at which the brush changes within a range. */
+/* Lists the records at which the brush changes within a range. polylines: NULL where it does not. */
 static camber_status add_changes(camber_range_list *list, const camber_record_range *range, const size_t *polylines) {
     camber_status status = CAMBER_OK;
+    if (!polylines)
+        return CAMBER_OK;
     if (!camber_grow(list->context, &list->changes, &list->change_capacity, list->change_count + range->change_count,
                      sizeof *list->changes))
         return CAMBER_ERROR_MEMORY;

@@ -16,8 +16,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The time that a picture and a tile take besides its points, in points. Zoom by zoom from 0 to 14 a point took 0.37 us of
- * one processor and a tile of 256 px 0.6 ms. A picture took 5 ms, but those of few pictures have the most lines: 16
+/* The time that a picture and a tile take besides its points, in points. Zoom by zoom from 0 to 14 a point took 0.37 us
+ * of one processor and a tile of 256 px 0.6 ms. A picture took 5 ms, but those of few pictures have the most lines: 16
  * shards are the most alike with 2 (10 million points, two styles; 2026-11-26, AMD EPYC, Zen 4). */
 static const double PICTURE_COST = 6e3, TILE_COST = 1.6e3;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */

@@ -62,7 +62,7 @@ ports_are_free() { # port
 }
 
 start_cluster() {
-    local host port=$((20000 + $$ % 20000)) node
+    local host port=$((20000 + $$ % 12000)) node # below those from which a system takes ports of connections
     host=$(hostname -s)
     until ports_are_free $port; do port=$((port + 3)); done
     mkdir -m 755 munge state

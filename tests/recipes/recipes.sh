@@ -128,7 +128,7 @@ ROADS
         block python
         echo 'PYTHON'
         echo 'od -An -c -N4 walk.png | grep -q "P   N   G"'
-        echo 'port=$((20000 + RANDOM % 20000))'
+        echo 'port=$((20000 + RANDOM % 12000))'
         echo 'camber serve /checkout/tests/data/santa_cruz/osm.mbtiles --listen 127.0.0.1:$port & server=$!'
         echo 'curl -fsS --retry 100 --retry-delay 1 --retry-all-errors http://127.0.0.1:$port/health && kill -0 $server'
         echo 'curl -fsS http://127.0.0.1:$port/12/659/1593.png | od -An -c -N4 | grep -q "P   N   G"'

@@ -49,7 +49,7 @@ cd "$out"
 
 # A tile from the example's own server.
 ask_for_tile() {
-    local port=$((20000 + RANDOM % 20000))
+    local port=$((20000 + RANDOM % 12000))
     "$folder/build/tiles" "$source/tests/data/santa_cruz/osm.mbtiles" "$port" &
     server=$!
     for _ in $(seq 300); do

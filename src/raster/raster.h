@@ -92,9 +92,8 @@ uint32_t camber_raster_slice_count(const camber_raster *raster);
 /* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
 
 typedef struct camber_raster_stages {
-    float *segments; /* segment_count times CAMBER_SEGMENT_WORDS. Of an edge: its ends and its brush, else 0 */
-    float *edges; /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: there are no areas, or they were shown
-                     as segments */
+    float *segments;    /* segment_count times CAMBER_SEGMENT_WORDS. Of an edge: its ends and its brush, else 0 */
+    float *edges;       /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: none, or shown as segments */
     uint32_t *boxes;    /* segment_count */
     float *arc_lengths; /* segment_count times CAMBER_SEGMENT_ARC_LENGTHS. NULL: a plain scene */
     float *planes;      /* segment_count times CAMBER_PLANE_WORDS. NULL: no pitch */

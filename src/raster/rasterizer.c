@@ -134,13 +134,10 @@ static camber_status set_up_part(camber_raster *raster, const listed_scene *p, s
 
 static camber_status make_segments(camber_raster *raster, const listed_scene *p) {
     const camber_record_range *ranges = p->list.ranges;
-    const size_t most_bytes = p->list.count * sizeof *raster->setups;
     camber_status status = camber_grow(raster->device->context, &raster->setups, &raster->setup_capacity, p->list.count,
                                        sizeof *raster->setups)
                                ? CAMBER_OK
                                : CAMBER_ERROR_MEMORY;
-    if (status == CAMBER_OK && most_bytes)
-        status = camber_raster_reserve(raster, BUFFER_SETUPS, most_bytes);
     for (size_t i = 0, end; i < p->list.count && status == CAMBER_OK; i = end) {
         for (end = i + 1;
              end < p->list.count && ranges[end].mesh == ranges[i].mesh && ranges[end].part == ranges[i].part;)

@@ -687,6 +687,16 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
 CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const camber_frame *frame,
                                                 camber_rows_fn *rows, void *user, camber_frame_stats *stats);
 
+/* Kernels write pixels into the caller's memory where they begin at a multiple of so many bytes. */
+#define CAMBER_PIXELS_ALIGNMENT 128
+
+/* Draws a frame into memory of the caller: rows from the top down, stride_bytes from one to the next (0: width * 4).
+ * Where OpenCL draws on the host's processor, rgba is a multiple of CAMBER_PIXELS_ALIGNMENT, width and height are
+ * multiples of 32 and rows have no gaps, kernels write there themselves. Elsewhere rows are copied.
+ * All else is as camber_renderer_render has it. The pixels are undefined on failure. */
+CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame,
+                                                     uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
+
 #define CAMBER_FRAMES_IN_FLIGHT 2
 
 /* Draw a frame in two steps, so that the work that comes next overlaps the drawing. begin draws and does not wait; end

@@ -174,8 +174,9 @@ CAMBER_API size_t camber_tiles_engine_get_picture_bytes(const camber_tiles_engin
  * Returns CAMBER_ERROR_ARGUMENT (no such tile; zooms are 0 to 24), CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_tiles_engine_look(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                                   camber_tiles_picture *picture);
-/* Draws the metatile that has a tile into rgba, which has room for a picture. A metatile that no line touches is drawn
- * too. Returns what camber_tiles_engine_look, camber_mesh_tessellate_network and camber_renderer_render return. */
+/* Draws the metatile that has a tile into rgba, which has room for a picture, as camber_renderer_render_into does. A
+ * metatile that no line touches is drawn too. Returns what camber_tiles_engine_look, camber_mesh_tessellate_network and
+ * camber_renderer_render_into return. */
 CAMBER_API camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                                   uint8_t *rgba, camber_tiles_picture *picture);
 /* Gives tile x, y of a picture, counted from its north-western one, as pixels to encode. */

@@ -11,7 +11,7 @@ camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags
     cl_int code;
     if (counts && !camber_budget_take(context, size_bytes))
         return camber_budget_fail(context, size_bytes);
-    /* OpenCL wants a pointer that may be written, also for CL_MEM_USE_HOST_PTR. Buffers made so are only read. */
+    /* OpenCL wants a pointer that may be written; what callers give as const bytes is only read. */
     cl_mem made = clCreateBuffer(device->cl, flags | at_once, size_bytes, (void *)(uintptr_t)host_bytes, &code);
     if (code == CL_SUCCESS) {
         *mem = made;

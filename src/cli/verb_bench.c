@@ -33,13 +33,6 @@ typedef struct job {
     uint32_t width, height;
 } job;
 
-static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const job *j = user;
-    const size_t row_bytes = (size_t)j->width * 4;
-    memcpy(j->pixels + first_row * row_bytes, rgba, row_count * row_bytes);
-    return true;
-}
-
 /* Times a whole frame, from the lines to pixels in memory, and then its stages alone with their input already on the
  * device. */
 static int time_run(job *j, run_times *times) {
@@ -50,7 +43,7 @@ static int time_run(job *j, run_times *times) {
     camber_status status = camber_input_tessellate(&j->input, j->mesh);
     camber_frame frame = camber_input_frame(&j->input, j->mesh);
     if (status == CAMBER_OK)
-        status = camber_renderer_render(j->session->renderer, &frame, keep_rows, j, NULL);
+        status = camber_renderer_render_into(j->session->renderer, &frame, j->pixels, 0, NULL);
     times->frame = camber_clock_ms() - start_ms;
     const double resident_ms = camber_clock_ms();
     if (status == CAMBER_OK)
@@ -116,7 +109,8 @@ static int measure(job *j) {
     const camber_frame frame = camber_input_frame(&j->input, j->mesh);
     j->width = frame.width;
     j->height = frame.height;
-    j->pixels = malloc((size_t)frame.width * frame.height * 4);
+    const size_t bytes = (size_t)frame.width * frame.height * 4, step = CAMBER_PIXELS_ALIGNMENT;
+    j->pixels = aligned_alloc(step, (bytes + step - 1) / step * step);
     j->runs = calloc(runs, sizeof *j->runs);
     if (!j->pixels || !j->runs)
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);

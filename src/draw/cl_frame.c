@@ -29,7 +29,8 @@ typedef struct destination {
     camber_rows_fn *rows;
     void *user;
     camber_area_fn *draw; /* called in place of drawing. NULL: the rasterizer draws */
-    uint8_t *rgba; /* rows of the picture, put together of several areas. NULL: an area's own rows are handed over */
+    uint8_t *place; /* of the picture, into which kernels write. NULL: they write into a buffer of the rasterizer */
+    uint8_t *rgba;  /* rows of the picture, put together of several areas. NULL: an area's own rows are handed over */
     uint32_t width;
     double user_ms; /* that the user took with an area, which is no part of reading back */
 } destination;
@@ -49,6 +50,25 @@ static camber_status take_area(camber_renderer *renderer, const camber_raster_ar
     for (size_t y = 0; !direct && y < area->height; y++)
         memcpy(to->rgba + y * row_bytes + 4 * (size_t)area->x, pixels.rgba + y * pixels.row_bytes, width_bytes);
     camber_raster_unmap(renderer->raster, pixels);
+    return status;
+}
+
+/* Draws an area, as wide as the picture, in its place. */
+static camber_status draw_in_place(camber_renderer *renderer, const camber_raster_scene *scene,
+                                   const camber_raster_area *area, const destination *to) {
+    const camber_device *device = renderer->share.device;
+    camber_raster_pixels pixels;
+    cl_mem mem = NULL;
+    camber_status status =
+        camber_make_buffer(device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, camber_raster_bytes(area),
+                           to->place + 4 * (size_t)to->width * area->y, &mem);
+    if (status == CAMBER_OK)
+        status = camber_raster_draw_into(renderer->raster, scene, area, mem);
+    if (status == CAMBER_OK)
+        status = camber_raster_map(renderer->raster, &pixels); /* after which the host sees what kernels wrote */
+    if (status == CAMBER_OK)
+        camber_raster_unmap(renderer->raster, pixels);
+    camber_release_buffer(device, &mem);
     return status;
 }
 
@@ -72,8 +92,9 @@ static camber_status draw_across(camber_renderer *renderer, const camber_raster_
         const double begin = camber_now_ms();
         to->user_ms = 0;
         area.width = to->width - area.x < widest ? to->width - area.x : widest;
-        status =
-            to->draw ? to->draw(renderer, scene, &area, to->user) : camber_raster_draw(renderer->raster, scene, &area);
+        status = to->draw    ? to->draw(renderer, scene, &area, to->user)
+                 : to->place ? draw_in_place(renderer, scene, &area, to)
+                             : camber_raster_draw(renderer->raster, scene, &area);
         const double drawn = camber_now_ms();
         stats->draw_ms += drawn - begin;
         stats->areas++;
@@ -127,6 +148,20 @@ camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *fr
     return render_to(renderer, frame, &to, stats);
 }
 
+/* Whether kernels can write a picture where it is wanted: whole tiles, without gaps, in memory that they reach. */
+static bool can_be_in_place(const camber_renderer *renderer, const camber_frame *frame, const camber_place *place) {
+    return renderer->share.device->host_memory && first_area(renderer, frame).width == frame->width &&
+           frame->width % CAMBER_TILE_PX == 0 && frame->height % CAMBER_TILE_PX == 0 &&
+           place->stride_bytes == place->row_bytes && (uintptr_t)place->rgba % CAMBER_PIXELS_ALIGNMENT == 0;
+}
+
+camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, camber_place *place,
+                                    camber_frame_stats *stats) {
+    destination to = {.place = place->rgba};
+    return can_be_in_place(renderer, frame, place) ? render_to(renderer, frame, &to, stats)
+                                                   : camber_cl_render(renderer, frame, camber_place_rows, place, stats);
+}
+
 camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
                                   void *user) {
     destination to = {.draw = draw, .user = user};
@@ -135,13 +170,6 @@ camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame 
 }
 
 /* ---- Frames in two steps ---- */
-
-static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    camber_flight *flight = user;
-    const size_t row_bytes = 4 * (size_t)flight->frame.width;
-    memcpy(flight->rgba + first_row * row_bytes, rgba, row_count * row_bytes);
-    return true;
-}
 
 camber_status camber_cl_begin_frame(camber_renderer *renderer, camber_flight *flight) {
     camber_context *context = renderer->share.device->context;
@@ -152,7 +180,9 @@ camber_status camber_cl_begin_frame(camber_renderer *renderer, camber_flight *fl
     flight->rgba = camber_alloc(context, (size_t)frame->width * frame->height, 4);
     if (!flight->rgba)
         return CAMBER_ERROR_MEMORY;
-    const camber_status status = camber_cl_render(renderer, frame, keep_rows, flight, &flight->stats);
+    const size_t row_bytes = 4 * (size_t)frame->width;
+    camber_place place = {flight->rgba, row_bytes, row_bytes};
+    const camber_status status = camber_cl_render_into(renderer, frame, &place, &flight->stats);
     flight->is_drawn = status == CAMBER_OK;
     if (!flight->is_drawn) {
         camber_free(context, flight->rgba);

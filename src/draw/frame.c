@@ -27,22 +27,48 @@ static camber_status end(camber_renderer *renderer, camber_flight *flight, cambe
                             : camber_gl_end_frame(renderer, flight, rows, user);
 }
 
+static camber_status render_in_gl(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
+                                  void *user, camber_frame_stats *stats) {
+    camber_flight flight = {.frame = *frame};
+    camber_status status = begin(renderer, CAMBER_TARGET_PICTURE, &flight);
+    if (status == CAMBER_OK)
+        status = end(renderer, &flight, rows, user);
+    *stats = flight.stats;
+    return status;
+}
+
+/* place: where all rows go. NULL: wherever rows takes them. */
+static camber_status render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
+                            camber_place *place, camber_frame_stats *stats) {
+    assert(renderer->flight_count == 0);
+    camber_frame_stats made;
+    camber_status status = camber_renderer_resolve(renderer, frame);
+    if (status == CAMBER_OK)
+        status = !renderer->raster ? render_in_gl(renderer, frame, rows, user, &made)
+                 : place           ? camber_cl_render_into(renderer, frame, place, &made)
+                                   : camber_cl_render(renderer, frame, rows, user, &made);
+    if (stats && status == CAMBER_OK)
+        *stats = made;
+    return status;
+}
+
 camber_status camber_renderer_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                      void *user, camber_frame_stats *stats) {
-    assert(renderer->flight_count == 0);
-    camber_flight flight = {.frame = *frame};
-    camber_status status = camber_renderer_resolve(renderer, frame);
-    if (status == CAMBER_OK && renderer->raster) {
-        status = camber_cl_render(renderer, frame, rows, user, &flight.stats);
-    } else {
-        if (status == CAMBER_OK)
-            status = begin(renderer, CAMBER_TARGET_PICTURE, &flight);
-        if (status == CAMBER_OK)
-            status = end(renderer, &flight, rows, user);
-    }
-    if (stats && status == CAMBER_OK)
-        *stats = flight.stats;
-    return status;
+    return render(renderer, frame, rows, user, NULL, stats);
+}
+
+bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const camber_place *place = user;
+    for (size_t i = 0; i < row_count; i++)
+        memcpy(place->rgba + (first_row + i) * place->stride_bytes, rgba + i * place->row_bytes, place->row_bytes);
+    return true;
+}
+
+camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame, uint8_t *rgba,
+                                          size_t stride_bytes, camber_frame_stats *stats) {
+    const size_t row_bytes = 4 * (size_t)frame->width;
+    camber_place place = {rgba, row_bytes, stride_bytes ? stride_bytes : row_bytes};
+    return render(renderer, frame, camber_place_rows, &place, &place, stats);
 }
 
 /* ---- Frames that overlap ---- */

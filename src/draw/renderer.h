@@ -10,6 +10,15 @@
 #include "gl/share.h"
 #include "tess/mesh.h"
 
+/* Memory of a caller that a picture goes to. */
+typedef struct camber_place {
+    uint8_t *rgba;
+    size_t row_bytes, stride_bytes;
+} camber_place;
+
+/* A camber_rows_fn that copies rows to a place. */
+bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
+
 /* A frame that camber_renderer_begin has begun, and that has not ended. */
 typedef struct camber_flight {
     camber_frame frame;

@@ -9,7 +9,7 @@
 #include "io/png_chunks.h"
 #include "io/quantize.h"
 
-enum { LEVEL_USUAL = 1, LEVEL_USUAL_PNG8 = 6, LEVEL_MOST = 9 };
+enum { LEVEL_USUAL = 1, LEVEL_USUAL_PNG8 = 6, LEVEL_MOST = 9, ROWS_AHEAD = 8 };
 
 struct camber_encoder {
     camber_context *context;
@@ -180,6 +180,17 @@ static bool is_opaque(const camber_pixels *pixels) {
     return true;
 }
 
+/* Rows of a tile lie far apart in a large picture, where no processor looks for the next one by itself. */
+static void ask_for_row(const camber_pixels *pixels, size_t y) {
+#ifdef __GNUC__
+    if (y < pixels->height)
+        for (size_t i = 0; i < 4 * (size_t)pixels->width; i += 64)
+            __builtin_prefetch(row_of(pixels, y) + i);
+#else
+    (void)pixels, (void)y;
+#endif
+}
+
 static bool make_room(camber_encoder *self, size_t size_bytes) {
     return camber_grow(self->context, &self->rows, &self->row_capacity, size_bytes, 1);
 }
@@ -202,8 +213,10 @@ static camber_status encode_true_color(camber_encoder *self, const camber_pixels
     const size_t row_bytes = camber_png_row_bytes(head->kind, head->depth, head->width);
     if (!make_room(self, row_bytes * head->height))
         return CAMBER_ERROR_MEMORY;
-    for (size_t y = 0; y < head->height; y++)
+    for (size_t y = 0; y < head->height; y++) {
+        ask_for_row(pixels, y + ROWS_AHEAD);
         camber_png_make_row(head->kind, row_of(pixels, y), head->width, self->rows + row_bytes * y);
+    }
     return finish_png(self, head, row_bytes);
 }
 

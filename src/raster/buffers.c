@@ -3,7 +3,6 @@
 
 #include "kernels/cells.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* The bytes that lists and spills may each take if memory has no bound. If they would take more, a band is halved; if
@@ -111,12 +110,16 @@ camber_status camber_raster_put(camber_raster *raster, int which, const void *by
 
 /* ---- Pixels ---- */
 
+/* The buffer that the last area was drawn into. */
+static cl_mem pixels_of(const camber_raster *raster) {
+    return raster->given ? raster->given : raster->buffers[BUFFER_PIXELS];
+}
+
 camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels) {
     const camber_device *device = raster->device;
     const size_t row_bytes = 4 * camber_raster_stride_px(&raster->area);
     cl_int code;
-    assert(!raster->given);
-    const void *rgba = clEnqueueMapBuffer(device->queue, raster->buffers[BUFFER_PIXELS], CL_TRUE, CL_MAP_READ, 0,
+    const void *rgba = clEnqueueMapBuffer(device->queue, pixels_of(raster), CL_TRUE, CL_MAP_READ, 0,
                                           row_bytes * raster->area.height, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
@@ -125,8 +128,7 @@ camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pix
 }
 
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels) {
-    clEnqueueUnmapMemObject(raster->device->queue, raster->buffers[BUFFER_PIXELS], (void *)(uintptr_t)pixels.rgba, 0,
-                            NULL, NULL);
+    clEnqueueUnmapMemObject(raster->device->queue, pixels_of(raster), (void *)(uintptr_t)pixels.rgba, 0, NULL, NULL);
 }
 
 /* ---- Stages, read back ---- */

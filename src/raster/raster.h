@@ -77,7 +77,7 @@ void camber_raster_destroy(camber_raster *raster);
 /* Draws an area. The scene may be freed afterwards. */
 camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
                                  const camber_raster_area *area);
-/* The same, into a buffer of the caller that holds camber_raster_bytes; camber_raster_map then has nothing to map. */
+/* The same, into a buffer of the caller that holds camber_raster_bytes. */
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, cl_mem pixels);
 /* Maps the pixels of the area that was drawn last, until they are unmapped. */

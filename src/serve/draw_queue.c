@@ -60,11 +60,12 @@ static double now_s(void) {
 }
 
 bool camber_drawn_resize(camber_drawn *drawn) {
-    const size_t wanted = 4 * (size_t)drawn->width * drawn->height;
+    const size_t bytes = 4 * (size_t)drawn->width * drawn->height, step = CAMBER_PIXELS_ALIGNMENT;
+    const size_t wanted = (bytes + step - 1) / step * step; /* as aligned_alloc wants it */
     if (wanted <= drawn->capacity_bytes)
         return true;
     free(drawn->rgba);
-    drawn->rgba = malloc(wanted);
+    drawn->rgba = aligned_alloc(step, wanted);
     drawn->capacity_bytes = drawn->rgba ? wanted : 0;
     return drawn->rgba != NULL;
 }

@@ -146,13 +146,6 @@ static camber_status draw_tiles(camber_painter *painter, const camber_route_requ
 
 /* ---- Pictures of a view ---- */
 
-static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const camber_drawn *drawn = user;
-    const size_t row_bytes = 4 * (size_t)drawn->width;
-    memcpy(drawn->rgba + row_bytes * first_row, rgba, row_bytes * row_count);
-    return true;
-}
-
 /* A scene is made once a theme, and then moved; one that could not be moved is made again. */
 static camber_status move_scene(camber_painter *painter, const camber_route_request *request, camber_scene **scene) {
     const camber_chart *chart = &painter->chart;
@@ -191,7 +184,7 @@ static camber_status draw_view(camber_painter *painter, const camber_route_reque
     drawn->opaque = camber_scene_get_info(scene).opaque;
     if (!camber_drawn_resize(drawn))
         return CAMBER_ERROR_MEMORY;
-    return camber_renderer_render(painter->chart.renderer, &frame, take_rows, drawn, NULL);
+    return camber_renderer_render_into(painter->chart.renderer, &frame, drawn->rgba, 0, NULL);
 }
 
 /* ---- For the queue ---- */

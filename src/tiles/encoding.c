@@ -199,6 +199,14 @@ static camber_status make_encoders(camber_encode_queue *queue, const camber_enco
     return CAMBER_OK;
 }
 
+/* Where kernels can write a picture themselves. */
+static bool make_place(camber_context *context, size_t picture_bytes, camber_encode_job *job) {
+    const size_t step = CAMBER_PIXELS_ALIGNMENT;
+    job->block = camber_alloc(context, picture_bytes + step - 1, 1);
+    job->rgba = job->block + (step - (uintptr_t)job->block % step) % step;
+    return job->block != NULL;
+}
+
 camber_status camber_encode_queue_create(camber_workers *workers, const camber_encoder_desc *desc, size_t picture_bytes,
                                          camber_encode_queue **queue) {
     camber_context *context = workers->context;
@@ -216,7 +224,7 @@ camber_status camber_encode_queue_create(camber_workers *workers, const camber_e
         !(made->threads = camber_alloc(context, workers->count, sizeof *made->threads)))
         goto done;
     for (made->job_count = 0; made->job_count < jobs && made->job_count < MOST_JOBS; made->job_count++)
-        if (!(made->jobs[made->job_count].rgba = camber_alloc(context, picture_bytes, 1)))
+        if (!make_place(context, picture_bytes, &made->jobs[made->job_count]))
             goto done;
     status = make_encoders(made, desc);
 done:
@@ -247,7 +255,7 @@ void camber_encode_queue_destroy(camber_encode_queue *queue) {
         for (size_t k = 0; k < 64; k++)
             camber_free(queue->workers->contexts[0], queue->jobs[i].tiles[k].bytes); /* whichever made them */
         camber_mesh_picture_free(&queue->jobs[i].lines);
-        camber_free(context, queue->jobs[i].rgba);
+        camber_free(context, queue->jobs[i].block);
     }
     pthread_cond_destroy(&queue->done);
     pthread_cond_destroy(&queue->work);

@@ -14,7 +14,8 @@ typedef struct camber_encoded_tile {
 /* A picture and what became of its tiles. */
 typedef struct camber_encode_job {
     camber_tiles_picture picture;
-    uint8_t *rgba;             /* the picture's */
+    uint8_t *rgba; /* the picture's, in the block */
+    uint8_t *block;
     camber_mesh_picture lines; /* of tiles that are meshes, in place of pixels; freed with the job's release */
     double ratio;              /* of those */
     uint64_t wanted;           /* tiles to encode */

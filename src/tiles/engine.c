@@ -222,34 +222,6 @@ camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, i
     return picture;
 }
 
-typedef struct row_taker {
-    uint8_t *rgba;
-    const camber_tiles_picture *picture;
-    uint64_t tiles; /* that are wanted; others are not copied */
-} row_taker;
-
-/* Copies the wanted tiles of one row of pixels, those side by side at once. */
-static void take_row(const row_taker *taker, const uint8_t *row, uint32_t y) {
-    const camber_tiles_picture *picture = taker->picture;
-    const uint32_t side = picture->side;
-    const size_t tile_bytes = 4 * (size_t)picture->tile_px;
-    const uint64_t wanted = taker->tiles >> (y / picture->tile_px * side);
-    uint8_t *to = taker->rgba + tile_bytes * side * y;
-    for (uint32_t x = 0, end; x < side; x = end + 1) {
-        for (end = x; end < side && wanted >> end & 1; end++)
-            ;
-        memcpy(to + tile_bytes * x, row + tile_bytes * x, tile_bytes * (end - x));
-    }
-}
-
-static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const row_taker *taker = user;
-    const size_t row_bytes = 4 * (size_t)taker->picture->tile_px * taker->picture->side;
-    for (uint32_t i = 0; i < row_count; i++)
-        take_row(taker, rgba + row_bytes * i, first_row + i);
-    return true;
-}
-
 /* Frees what the mesh holds of a large network. */
 static camber_status renew_mesh(camber_tiles_engine *engine) {
     camber_mesh_destroy(engine->mesh);
@@ -299,16 +271,15 @@ camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, con
     return status;
 }
 
-camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
-                                          uint8_t *rgba, camber_tiles_picture *picture) {
+camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint8_t *rgba,
+                                          camber_tiles_picture *picture) {
     const double start_ms = camber_now_ms(), made_ms = engine->make_ms;
     camber_excerpt excerpt = {0};
-    row_taker taker = {rgba, picture, tiles};
     camber_status status = tessellate(engine, metatile, picture, &excerpt);
     if (status == CAMBER_OK) {
         camber_frame frame = camber_excerpt_get_frame(&excerpt, engine->mesh);
         frame.coverage = engine->desc.coverage;
-        status = camber_renderer_render(engine->desc.renderer, &frame, take_rows, &taker, NULL);
+        status = camber_renderer_render_into(engine->desc.renderer, &frame, rgba, 0, NULL);
     }
     status = end_excerpt(engine, &excerpt, status);
     engine->draw_ms += camber_now_ms() - start_ms - (engine->make_ms - made_ms);
@@ -347,7 +318,7 @@ camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, ui
                            "tiles: the engine's tiles are meshes; make one of pictures, or draw an archive");
     camber_status status = find(engine, zoom, column, row, &metatile, &made);
     if (status == CAMBER_OK)
-        status = camber_engine_draw_metatile(engine, metatile, UINT64_MAX, rgba, &made);
+        status = camber_engine_draw_metatile(engine, metatile, rgba, &made);
     if (status == CAMBER_OK)
         *picture = made;
     return status;

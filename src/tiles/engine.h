@@ -42,8 +42,8 @@ camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, i
  * after a failure. */
 camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, const camber_metatile *metatile,
                                                 camber_tiles_picture *picture, camber_mesh_picture *lines);
-/* Draws a metatile of an open zoom into rgba: the pixels of these tiles; others stay what they were. */
-camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint64_t tiles,
-                                          uint8_t *rgba, camber_tiles_picture *picture);
+/* Draws a metatile of an open zoom into rgba. */
+camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint8_t *rgba,
+                                          camber_tiles_picture *picture);
 
 #endif

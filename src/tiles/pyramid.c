@@ -154,7 +154,7 @@ static camber_status draw_task(pyramid *p, const camber_tile_task *task, const c
     if (p->engine->desc.meshes)
         status = camber_engine_tessellate_metatile(p->engine, metatile, &job->picture, &job->lines);
     else
-        status = camber_engine_draw_metatile(p->engine, metatile, job->wanted, job->rgba, &job->picture);
+        status = camber_engine_draw_metatile(p->engine, metatile, job->rgba, &job->picture);
     if (status != CAMBER_OK)
         return status;
     memcpy(job->background, job->picture.background, sizeof job->background);

@@ -264,6 +264,53 @@ static void test_sizes(void **state) {
     }
 }
 
+/* The picture is the same in the caller's memory, whoever writes it there, and the bytes around it stay. */
+static void test_into(void **state) {
+    fixture *s = *state;
+    enum { ROOM = 1 << 20, MARK = 0xa5 };
+    static const struct {
+        uint32_t width, height, largest_area_px;
+        size_t shift, gap_bytes; /* of the first pixel from a multiple of the alignment; between rows */
+    } cases[] = {{256, 160, 0, 0, 0}, {256, 160, 0, 4, 0}, {256, 160, 0, 0, 128}, {256, 160, 64, 0, 0},
+                 {32, 3232, 0, 0, 0}, {250, 160, 0, 0, 0}, {256, 150, 0, 0, 0},   {1, 1, 0, 1, 3}};
+    camber_made_scene lines = road_scene();
+    uint8_t *room = aligned_alloc(CAMBER_PIXELS_ALIGNMENT, ROOM);
+    assert_non_null(room);
+    for (size_t i = 0; i < CAMBER_FIXTURE_DRAWERS * (sizeof cases / sizeof *cases); i++) {
+        camber_renderer *renderer = s->on.renderer[i % CAMBER_FIXTURE_DRAWERS];
+        const size_t k = i / CAMBER_FIXTURE_DRAWERS, row_bytes = 4 * (size_t)cases[k].width;
+        const size_t stride = row_bytes + cases[k].gap_bytes;
+        uint8_t *rgba = room + CAMBER_PIXELS_ALIGNMENT + cases[k].shift;
+        if (!renderer)
+            continue;
+        const map_style style = make_style(1);
+        camber_mesh *mesh = make_mesh(s, renderer, &lines,
+                                      &(camber_tessellation_desc){.strokes = style.strokes, .stroke_count = MAP_ROWS});
+        const camber_pass pass = {.mesh = mesh, .paints = style.paints, .paint_count = MAP_ROWS};
+        const camber_frame frame = {.width = cases[k].width,
+                                    .height = cases[k].height,
+                                    .background = {0, 0.5f, 1, 1},
+                                    .passes = &pass,
+                                    .pass_count = 1,
+                                    .largest_area_px = cases[k].largest_area_px};
+        picture p = picture_draw(renderer, &frame);
+        camber_frame_stats stats = {0};
+        memset(room, MARK, ROOM);
+        assert_int_equal(camber_renderer_render_into(renderer, &frame, rgba, cases[k].gap_bytes ? stride : 0, &stats),
+                         CAMBER_OK);
+        assert_true(stats.areas > 0);
+        for (size_t at = 0; at < ROOM; at++) {
+            const size_t past = (size_t)(room + at - rgba), row = past / stride, byte = past % stride;
+            const bool inside = room + at >= rgba && row < frame.height && byte < row_bytes;
+            assert_int_equal(room[at], inside ? p.rgba[row * row_bytes + byte] : MARK);
+        }
+        picture_free(&p);
+        camber_mesh_destroy(mesh);
+    }
+    free(room);
+    camber_made_scene_free(&lines);
+}
+
 static void test_rows_refused(void **state) {
     fixture *s = *state;
     for (int after = 1; after < 4; after++) {
@@ -326,11 +373,17 @@ static void test_surface_info(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_backends_agree),      cmocka_unit_test(test_methods_agree),
-        cmocka_unit_test(test_sharing_paths_agree), cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_surfaces_in_turn),    cmocka_unit_test(test_sizes),
-        cmocka_unit_test(test_rows_refused),        cmocka_unit_test(test_background_is_premultiplied),
-        cmocka_unit_test(test_empty_mesh),          cmocka_unit_test(test_surface_info),
+        cmocka_unit_test(test_backends_agree),
+        cmocka_unit_test(test_methods_agree),
+        cmocka_unit_test(test_sharing_paths_agree),
+        cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_surfaces_in_turn),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_into),
+        cmocka_unit_test(test_rows_refused),
+        cmocka_unit_test(test_background_is_premultiplied),
+        cmocka_unit_test(test_empty_mesh),
+        cmocka_unit_test(test_surface_info),
     };
     return FIXTURE_RUN(tests);
 }

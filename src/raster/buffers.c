@@ -5,12 +5,8 @@
 
 #include <string.h>
 
-/* The bytes that lists and spills may each take if memory has no bound. If they would take more, a band is halved; if
- * the lists of a single row of tiles do, the slice is halved. */
-static const uint64_t MOST_BYTES = 256 * 1024 * 1024;
-/* The bytes that segments may take: a million of them without pitch. More are drawn in slices, from the last one to the
- * first. */
-static const uint64_t MOST_SEGMENT_BYTES = 64 * 1024 * 1024;
+/* The bytes that buffers of a kind may take if memory has no bound. A million segments take so much without pitch. */
+static const uint64_t MOST_BYTES = 256 * 1024 * 1024, MOST_SEGMENT_BYTES = 68 * 1024 * 1024;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster) {
     camber_raster *made = camber_alloc_zero(device->context, 1, sizeof *made);
@@ -55,22 +51,18 @@ static void count_buffers(camber_raster *raster) {
     camber_drawing_count_bytes(raster->device, &raster->memory, bytes);
 }
 
-uint64_t camber_raster_most_bytes(const camber_raster *raster) {
-    const uint64_t largest = raster->device->info.largest_buffer_bytes, quarter = raster->memory.allowed_bytes / 4;
-    const uint64_t most = largest < MOST_BYTES ? largest : MOST_BYTES;
-    return quarter && quarter < most ? quarter : most;
-}
-
-uint64_t camber_raster_most_segment_bytes(const camber_raster *raster) {
-    const uint64_t most = camber_raster_most_bytes(raster);
-    return most < MOST_SEGMENT_BYTES ? most : MOST_SEGMENT_BYTES;
+uint64_t camber_raster_most_bytes(const camber_raster *raster, camber_raster_eighths eighths) {
+    const uint64_t largest = raster->device->info.largest_buffer_bytes;
+    const uint64_t usual = eighths == CAMBER_RASTER_SEGMENTS ? MOST_SEGMENT_BYTES : MOST_BYTES;
+    const uint64_t most = largest < usual ? largest : usual, share = raster->memory.allowed_bytes / 8 * eighths;
+    return share && share < most ? share : most;
 }
 
 uint32_t camber_raster_widest(const camber_raster *raster) {
     const uint64_t planes = CAMBER_SPILL_PLANES * CAMBER_TILE_PX * CAMBER_TILE_PX,
                    cells = CAMBER_SPILL_CELL_WORDS * CAMBER_CELLS;
     const uint64_t a_tile = 4 * (cells + planes + camber_raster_area_words(raster));
-    const uint64_t tiles = camber_raster_most_bytes(raster) / a_tile,
+    const uint64_t tiles = camber_raster_most_bytes(raster, CAMBER_RASTER_SPILLS) / a_tile,
                    widest = tiles < CAMBER_TILES_MAX ? tiles : CAMBER_TILES_MAX;
     return CAMBER_TILE_PX * (widest ? (uint32_t)widest : 1);
 }

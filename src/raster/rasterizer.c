@@ -157,7 +157,7 @@ static void find_edges(const camber_raster *raster, uint32_t *first, uint32_t *c
 static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const camber_raster_area *area = &raster->band;
     const size_t lists = (raster->list_count + 15) / 16 * 16,
-                 most = (size_t)(camber_raster_most_bytes(raster) / (4 * lists));
+                 most = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_COUNTS) / (4 * lists));
     const size_t least = camber_raster_draws_cells(raster) ? GPU_CHUNK : CHUNK;
     const size_t chunks_max = camber_raster_draws_cells(raster) ? GPU_CHUNKS_MAX : CHUNKS_MAX;
     const size_t wanted = (raster->segment_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
@@ -212,8 +212,7 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     raster->starts[lists] = raster->starts[lists + 1] = (uint32_t)sum;
     clEnqueueUnmapMemObject(device->queue, raster->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
     const uint64_t crossings = sum - raster->starts[raster->tile_count];
-    *fits = (4 * sum <= camber_raster_most_bytes(raster) &&
-             4 * CAMBER_CROSSING_WORDS * crossings <= camber_raster_most_bytes(raster)) ||
+    *fits = 4 * (sum + CAMBER_CROSSING_WORDS * crossings) <= camber_raster_most_bytes(raster, CAMBER_RASTER_LISTS) ||
             (raster->band.height <= CAMBER_TILE_PX && raster->segment_count <= 16);
     if (!*fits)
         return CAMBER_OK;
@@ -255,7 +254,7 @@ static bool has_work(const camber_raster *raster, size_t tile) {
 
 /* The most tiles that can be spilled: as many as memory allows, and at least a row of them. */
 static size_t most_spills(const camber_raster *raster, camber_spill_args k) {
-    const size_t most = (size_t)(camber_raster_most_bytes(raster) / (4 * (uint64_t)k.tile_words));
+    const size_t most = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_SPILLS) / (4 * (uint64_t)k.tile_words));
     return most > raster->columns ? most : raster->columns;
 }
 
@@ -409,9 +408,12 @@ static camber_status prepare_rich(camber_raster *raster, const camber_raster_sce
     return status;
 }
 
+/* A segment has a box; as an edge it lies in sixteen edges, too. */
 static size_t segments_at_once(const camber_raster *raster) {
-    const size_t segment_words = is_pitched(raster) ? CAMBER_PLANE_WORDS : CAMBER_SEGMENT_WORDS;
-    const size_t count = (size_t)(camber_raster_most_segment_bytes(raster) / (4 * segment_words)) / 16 * 16;
+    const size_t words = CAMBER_SEGMENT_WORDS + 1 + (raster->end_edge ? CAMBER_SIXTEEN_EDGES_WORDS / 16 : 0) +
+                         (raster->variant ? CAMBER_SEGMENT_ARC_LENGTHS : 0) +
+                         (is_pitched(raster) ? CAMBER_PLANE_WORDS : 0);
+    const size_t count = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_SEGMENTS) / (4 * words)) / 16 * 16;
     return count ? count : 16;
 }
 

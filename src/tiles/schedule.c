@@ -16,15 +16,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The time that a picture and a tile take besides its points, in points. Zoom by zoom from 0 to 14 a point took 0.37 us
- * of one processor and a tile of 256 px 0.6 ms. A picture took 5 ms, but those of few pictures have the most lines: 16
- * shards are the most alike with 2 (10 million points, two styles; 2026-11-26, AMD EPYC, Zen 4). */
-static const double PICTURE_COST = 6e3, TILE_COST = 1.6e3;
+/* A metatile takes so many microseconds of one processor: PICTURE_US, whatever it has; SHARE_US by the root of its
+ * points times its tiles, since points beside each other share pixels and bytes; CROWDED_US for each point and each
+ * doubling from CROWD points a tile to its own. So 462 metatiles of zooms 0 to 14 are told within 12 %, root of the
+ * mean square (10 million points, 2026-11-26, Intel Xeon, AVX-512). */
+static const double PICTURE_US = 1.1e3, SHARE_US = 29.0, CROWDED_US = 0.045;
+enum { LEAST_POINTS = 50, CROWD = 2048 }; /* of a tile */
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which
  * tiles the points lie that it holds: all of the zoom's from wide zooms on, else those that it draws. */
-static const double SKIP_COST = 0.12, LOOK_COST = 0.14;
+static const double SKIP_US = 0.044, LOOK_US = 0.052;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
 enum { CUT_STEPS = 24 }; /* to less than a millionth of all */
@@ -36,10 +38,19 @@ static unsigned count_tiles(uint64_t tiles) {
     return count;
 }
 
+/* How often a number has doubled from 1 on, about. Machines that share a schedule have to find the same, and their
+ * libraries' logarithms differ in the last bits. */
+static double count_doublings(double number) {
+    int exponent;
+    const double part = frexp(number, &exponent); /* from 1/2 to 1 */
+    return number > 1.0 ? exponent - 2 + 2.0 * part : 0.0;
+}
+
 double camber_task_cost(const camber_tile_task *task) {
     if (!task->touched)
         return 0.0;
-    return PICTURE_COST + (double)task->points + TILE_COST * count_tiles(task->touched);
+    const double tiles = count_tiles(task->touched), points = (double)task->points + LEAST_POINTS * tiles;
+    return PICTURE_US + SHARE_US * sqrt(points * tiles) + CROWDED_US * points * count_doublings(points / tiles / CROWD);
 }
 
 static camber_status add_task(camber_schedule *schedule, const camber_tile_task *task) {
@@ -234,7 +245,7 @@ static void measure(walk *w) {
         }
         if (most > WIDE_SHARE * *all)
             w->wide = end;
-        w->skip_all = SKIP_COST * *all;
+        w->skip_all = SKIP_US * *all;
     }
 }
 
@@ -268,7 +279,7 @@ static double added_cost(const walk *w, const load *part, const camber_tile_task
     const double looks = !holds_all                       ? (double)task->points
                          : part->looked >> task->zoom & 1 ? 0.0
                                                           : w->points[task->zoom];
-    return camber_task_cost(task) + LOOK_COST * looks;
+    return camber_task_cost(task) + LOOK_US * looks;
 }
 
 /* Fills parts, none of which takes longer than most unless it is a single task. parts gets each task's, from 1; NULL:
@@ -299,7 +310,7 @@ static bool fill(const walk *w, double most, uint32_t *parts) {
 static double find_most(const walk *w) {
     double low = 0.0, high = w->skip_all;
     for (int z = 0; z <= CAMBER_LARGEST_TILE_ZOOM; z++)
-        high += LOOK_COST * w->points[z];
+        high += LOOK_US * w->points[z];
     for (size_t i = 0; i < w->schedule->count; i++)
         high += camber_task_cost(w->schedule->tasks + i);
     high *= 2.0; /* so one part is enough, however sums are rounded */

@@ -37,7 +37,7 @@ void camber_schedule_meet(const camber_schedule *schedule, camber_tiles_area *ar
 static inline uint32_t camber_task_side(const camber_tile_task *task) {
     return (uint32_t)1 << (task->zoom - task->level);
 }
-/* How long a task takes, in points that are drawn. */
+/* How long a task takes, about, in microseconds of one processor. */
 double camber_task_cost(const camber_tile_task *task);
 
 #endif

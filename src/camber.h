@@ -690,10 +690,12 @@ CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const
 /* Kernels write pixels into the caller's memory where they begin at a multiple of so many bytes. */
 #define CAMBER_PIXELS_ALIGNMENT 128
 
-/* Draws a frame into memory of the caller: rows from the top down, stride_bytes from one to the next (0: width * 4).
+/* Draws a frame into memory of the caller: rows from the top down, stride_bytes from one to the next. That is width * 4
+ * at least; 0 means just so much. rgba may not be NULL.
  * Where OpenCL draws on the host's processor, rgba is a multiple of CAMBER_PIXELS_ALIGNMENT, width and height are
- * multiples of 32 and rows have no gaps, kernels write there themselves. Elsewhere rows are copied.
- * All else is as camber_renderer_render has it. The pixels are undefined on failure. */
+ * multiples of 32, rows have no gaps and an area is as wide as the picture (to 8192 px, unless less memory is allowed),
+ * kernels write there themselves. Elsewhere rows are copied.
+ * stats, and what it returns, are as camber_renderer_render has them. The pixels are undefined on failure. */
 CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame,
                                                      uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
 

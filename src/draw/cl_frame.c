@@ -68,6 +68,7 @@ static camber_status draw_in_place(camber_renderer *renderer, const camber_raste
         status = camber_raster_map(renderer->raster, &pixels); /* after which the host sees what kernels wrote */
     if (status == CAMBER_OK)
         camber_raster_unmap(renderer->raster, pixels);
+    clFinish(device->queue); /* the memory is the caller's alone again */
     camber_release_buffer(device, &mem);
     return status;
 }
@@ -182,7 +183,7 @@ camber_status camber_cl_begin_frame(camber_renderer *renderer, camber_flight *fl
         return CAMBER_ERROR_MEMORY;
     const size_t row_bytes = 4 * (size_t)frame->width;
     camber_place place = {flight->rgba, row_bytes, row_bytes};
-    const camber_status status = camber_cl_render_into(renderer, frame, &place, &flight->stats);
+    const camber_status status = camber_cl_render(renderer, frame, camber_place_rows, &place, &flight->stats);
     flight->is_drawn = status == CAMBER_OK;
     if (!flight->is_drawn) {
         camber_free(context, flight->rgba);

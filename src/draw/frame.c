@@ -68,6 +68,7 @@ camber_status camber_renderer_render_into(camber_renderer *renderer, const cambe
                                           size_t stride_bytes, camber_frame_stats *stats) {
     const size_t row_bytes = 4 * (size_t)frame->width;
     camber_place place = {rgba, row_bytes, stride_bytes ? stride_bytes : row_bytes};
+    assert(rgba && place.stride_bytes >= row_bytes);
     return render(renderer, frame, camber_place_rows, &place, &place, stats);
 }
 

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-/* The bytes that buffers of a kind may take if memory has no bound. A million segments take so much without pitch. */
-static const uint64_t MOST_BYTES = 256 * 1024 * 1024, MOST_SEGMENT_BYTES = 68 * 1024 * 1024;
+/* The bytes that buffers of a kind may take if memory has no bound. */
+static const uint64_t MOST_BYTES = 256 * 1024 * 1024;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster) {
     camber_raster *made = camber_alloc_zero(device->context, 1, sizeof *made);
@@ -53,8 +53,8 @@ static void count_buffers(camber_raster *raster) {
 
 uint64_t camber_raster_most_bytes(const camber_raster *raster, camber_raster_eighths eighths) {
     const uint64_t largest = raster->device->info.largest_buffer_bytes;
-    const uint64_t usual = eighths == CAMBER_RASTER_SEGMENTS ? MOST_SEGMENT_BYTES : MOST_BYTES;
-    const uint64_t most = largest < usual ? largest : usual, share = raster->memory.allowed_bytes / 8 * eighths;
+    const uint64_t most = largest < MOST_BYTES ? largest : MOST_BYTES;
+    const uint64_t share = raster->memory.allowed_bytes / 8 * eighths;
     return share && share < most ? share : most;
 }
 
@@ -67,6 +67,12 @@ uint32_t camber_raster_widest(const camber_raster *raster) {
     return CAMBER_TILE_PX * (widest ? (uint32_t)widest : 1);
 }
 
+void camber_raster_drop(camber_raster *raster, int which) {
+    camber_release_buffer(raster->device, &raster->buffers[which]);
+    raster->capacities[which] = 0;
+    count_buffers(raster);
+}
+
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes) {
     const camber_device *device = raster->device;
     if (size_bytes <= raster->capacities[which])
@@ -75,9 +81,7 @@ camber_status camber_raster_reserve(camber_raster *raster, int which, size_t siz
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
                            "drawing takes a buffer of %zu bytes, and %s makes none above %llu; draw less at once",
                            size_bytes, device->info.name, (unsigned long long)device->info.largest_buffer_bytes);
-    camber_release_buffer(device, &raster->buffers[which]);
-    raster->capacities[which] = 0;
-    count_buffers(raster);
+    camber_raster_drop(raster, which);
     const size_t more = size_bytes + size_bytes / 4;
     const bool is_roomy = !raster->memory.allowed_bytes && more < device->info.largest_buffer_bytes;
     const size_t room = is_roomy ? more : size_bytes;
@@ -121,6 +125,7 @@ camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pix
 
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels) {
     clEnqueueUnmapMemObject(raster->device->queue, pixels_of(raster), (void *)(uintptr_t)pixels.rgba, 0, NULL, NULL);
+    raster->given = NULL; /* it may go now */
 }
 
 /* ---- Stages, read back ---- */

@@ -77,7 +77,8 @@ void camber_raster_destroy(camber_raster *raster);
 /* Draws an area. The scene may be freed afterwards. */
 camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
                                  const camber_raster_area *area);
-/* The same, into a buffer of the caller that holds camber_raster_bytes. */
+/* The same, into a buffer of the caller that holds camber_raster_bytes, and that must live until pixels are unmapped or
+ * something else is drawn. */
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, cl_mem pixels);
 /* Maps the pixels of the area that was drawn last, until they are unmapped. */

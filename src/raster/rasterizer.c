@@ -393,7 +393,7 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
 }
 
 /* Makes the buffers that only the rich variants use. */
-static camber_status prepare_rich(camber_raster *raster, const camber_raster_scene *scene, size_t segments) {
+static camber_status prepare_rich(camber_raster *raster, const camber_raster_scene *scene) {
     static const float nothing[4] = {0};
     const bool bare = scene->side_table_count == 0;
     camber_status status =
@@ -401,20 +401,48 @@ static camber_status prepare_rich(camber_raster *raster, const camber_raster_sce
     if (status == CAMBER_OK)
         status = camber_raster_put(raster, BUFFER_SIDE_TABLE, bare ? nothing : scene->side_table,
                                    (bare ? 1 : scene->side_table_count) * sizeof nothing);
-    if (status == CAMBER_OK)
-        status = camber_raster_reserve(raster, BUFFER_ARC_LENGTHS, 4 * CAMBER_SEGMENT_ARC_LENGTHS * segments);
-    if (status == CAMBER_OK && is_pitched(raster))
-        status = camber_raster_reserve(raster, BUFFER_PLANES, 4 * CAMBER_PLANE_WORDS * segments);
     return status;
 }
 
-/* A segment has a box; as an edge it lies in sixteen edges, too. */
+/* The buffers that have words for each segment: BUFFER_SEGMENTS and those behind it. */
+enum { SEGMENT_BUFFERS = BUFFER_PLANES - BUFFER_SEGMENTS + 1, MOST_SEGMENTS = 1 << 20 };
+typedef struct segment_words {
+    size_t of[SEGMENT_BUFFERS], all;
+} segment_words;
+
+static segment_words count_segment_words(const camber_raster *raster) {
+    segment_words words = {.of = {CAMBER_SEGMENT_WORDS, raster->end_edge ? CAMBER_SIXTEEN_EDGES_WORDS / 16 : 0, 1,
+                                  raster->variant ? CAMBER_SEGMENT_ARC_LENGTHS : 0,
+                                  is_pitched(raster) ? CAMBER_PLANE_WORDS : 0}};
+    for (int i = 0; i < SEGMENT_BUFFERS; i++)
+        words.all += words.of[i];
+    return words;
+}
+
 static size_t segments_at_once(const camber_raster *raster) {
-    const size_t words = CAMBER_SEGMENT_WORDS + 1 + (raster->end_edge ? CAMBER_SIXTEEN_EDGES_WORDS / 16 : 0) +
-                         (raster->variant ? CAMBER_SEGMENT_ARC_LENGTHS : 0) +
-                         (is_pitched(raster) ? CAMBER_PLANE_WORDS : 0);
-    const size_t count = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_SEGMENTS) / (4 * words)) / 16 * 16;
-    return count ? count : 16;
+    const uint64_t bytes = camber_raster_most_bytes(raster, CAMBER_RASTER_SEGMENTS);
+    const size_t fitting = (size_t)(bytes / (4 * count_segment_words(raster).all)) / 16 * 16;
+    const size_t most = is_pitched(raster) ? MOST_SEGMENTS / 2 : MOST_SEGMENTS;
+    return fitting < 16 ? 16 : fitting < most ? fitting : most;
+}
+
+/* Makes room for a multiple of 16 segments. Pictures of other kinds have left buffers, and a bound is one of all. */
+static camber_status reserve_segments(camber_raster *raster, size_t segments) {
+    const segment_words words = count_segment_words(raster);
+    uint64_t all = 0;
+    camber_status status = CAMBER_OK;
+    for (int i = 0; i < SEGMENT_BUFFERS; i++) {
+        const size_t held = raster->capacities[BUFFER_SEGMENTS + i], wanted = 4 * words.of[i] * segments;
+        all += held > wanted ? held : wanted;
+    }
+    const bool too_many =
+        raster->memory.allowed_bytes && all > camber_raster_most_bytes(raster, CAMBER_RASTER_SEGMENTS);
+    for (int i = 0; i < SEGMENT_BUFFERS && too_many; i++)
+        camber_raster_drop(raster, BUFFER_SEGMENTS + i);
+    for (int i = 0; i < SEGMENT_BUFFERS && status == CAMBER_OK; i++)
+        if (words.of[i])
+            status = camber_raster_reserve(raster, BUFFER_SEGMENTS + i, 4 * words.of[i] * segments);
+    return status;
 }
 
 static camber_status prepare(camber_raster *raster, const listed_scene *p) {
@@ -431,13 +459,9 @@ static camber_status prepare(camber_raster *raster, const listed_scene *p) {
     if (status == CAMBER_OK && list->change_count)
         status = camber_raster_put(raster, BUFFER_CHANGES, list->changes, list->change_count * sizeof *list->changes);
     if (status == CAMBER_OK)
-        status = camber_raster_reserve(raster, BUFFER_SEGMENTS, 4 * CAMBER_SEGMENT_WORDS * segments);
-    if (status == CAMBER_OK && list->end_edge)
-        status = camber_raster_reserve(raster, BUFFER_EDGES, 4 * CAMBER_SIXTEEN_EDGES_WORDS * (segments / 16));
-    if (status == CAMBER_OK)
-        status = camber_raster_reserve(raster, BUFFER_BOXES, 4 * segments);
+        status = reserve_segments(raster, segments);
     if (status == CAMBER_OK && raster->variant)
-        status = prepare_rich(raster, scene, segments);
+        status = prepare_rich(raster, scene);
     if (status == CAMBER_OK && !raster->given)
         status = camber_raster_reserve(raster, BUFFER_PIXELS, camber_raster_bytes(&raster->area));
     return status;

@@ -75,9 +75,9 @@ static inline uint32_t camber_raster_area_words(const camber_raster *raster) {
     return camber_raster_draws_cells(raster) ? CAMBER_CELL_AREA_WORDS : CAMBER_AREA_WORDS;
 }
 
-/* How many eighths of drawing's memory its buffers may take. If a picture has more segments, it is drawn in slices,
- * from the last one to the first. If lists or spills would take more, a band is halved; if the lists of a single row of
- * tiles do, the slice is halved. Counts of lists go by what is left. */
+/* How many eighths of drawing's memory its buffers may take. A picture of more segments is drawn in slices, from the
+ * last one to the first. If lists or spills would take more, a band is halved; if the lists of a single row of tiles
+ * do, the slice is halved. Segments are counted in as many chunks as counts have room for. */
 typedef enum camber_raster_eighths {
     CAMBER_RASTER_COUNTS = 1,
     CAMBER_RASTER_LISTS = 1,
@@ -86,6 +86,8 @@ typedef enum camber_raster_eighths {
 } camber_raster_eighths;
 /* The same in bytes; if memory has no bound, as much as is of use. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster, camber_raster_eighths eighths);
+/* Frees a buffer. */
+void camber_raster_drop(camber_raster *raster, int which);
 /* Makes a buffer at least so large. If it grows, its contents are lost. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
 /* Writes bytes to a buffer. They must stay until the drawing has been waited for. */

@@ -64,7 +64,7 @@ static void find_in_layer(camber_document *d, const camber_style_layer *layer, c
         camber_compiler_warn(c, "the layer is drawn at no zoom: its minzoom is %g, its maxzoom %g; swap or change them",
                              layer->min_zoom, layer->max_zoom);
     if (!layer->source) {
-        if (camber_document_first_time(d, "source"))
+        if (c->style->source_count && camber_document_first_time(d, "source"))
             camber_compiler_warn(c, "the layer names no source; name one, or it is drawn of files given as input only");
         return;
     }

@@ -203,7 +203,8 @@ static camber_status make_encoders(camber_encode_queue *queue, const camber_enco
 static bool make_place(camber_context *context, size_t picture_bytes, camber_encode_job *job) {
     const size_t step = CAMBER_PIXELS_ALIGNMENT;
     job->block = camber_alloc(context, picture_bytes + step - 1, 1);
-    job->rgba = job->block + (step - (uintptr_t)job->block % step) % step;
+    if (job->block)
+        job->rgba = job->block + (step - (uintptr_t)job->block % step) % step;
     return job->block != NULL;
 }
 

@@ -322,11 +322,47 @@ static void test_areas(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
+/* Frames of every kind in turn, by one renderer: what one of them leaves counts in the next one's bound. */
+static void test_bound(void **state) {
+    const fixture *e = *state;
+    enum { DRAWING_BYTES = 4 << 20 }; /* what a renderer gets of the least bound */
+    const camber_device_desc desc = {.memory_bytes = 16 << 20};
+    fixture bound = {.context = e->context};
+    drawing d = begin_drawing(0, 1);
+    assert_int_equal(camber_device_create(e->context, &desc, &bound.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(bound.on.device, NULL, NULL, &bound.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    uint64_t seed = 5;
+    for (size_t i = 0; i < 60; i++) {
+        camber_made_scene_walk(&d.lines, &seed, 1000, (const double[]){1, 6}, 1);
+        camber_made_scene_end(&d.lines, i % CAMBER_KERNEL_ROWS);
+    }
+    for (int i = 0; i < 6; i++) {
+        d.frame.pitch_deg = i % 3 == 1 ? 65 : 0;
+        for (size_t k = 0; k < CAMBER_KERNEL_ROWS; k++)
+            d.paints[0][k] = d.paints[1][k] =
+                i % 3 < 2 ? paint_of(8 + k % 8, d.strokes[k].width_px)
+                          : (camber_paint){.width_px = d.strokes[k].width_px, .color = {0, 0, 0, 1}};
+        picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
+        picture p = draw_with(&bound, bound.on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
+        picture_assert_same(&whole, &p);
+        const uint64_t held = camber_device_get_memory(bound.on.device).held_bytes;
+        printf("# %u slices, %llu bytes of drawing\n",
+               camber_raster_slice_count(bound.on.renderer[CAMBER_FIXTURE_OPENCL]->raster), (unsigned long long)held);
+        assert_true(held > DRAWING_BYTES / 4 && held <= DRAWING_BYTES);
+        picture_free(&whole);
+        picture_free(&p);
+    }
+    camber_renderer_destroy(bound.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    camber_device_destroy(bound.on.device);
+    camber_made_scene_free(&d.lines);
+}
+
 int main(void) {
     fill_stripes();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_twin),        cmocka_unit_test(test_gl),    cmocka_unit_test(test_gl_tilted),
-        cmocka_unit_test(test_many_alphas), cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_many_alphas), cmocka_unit_test(test_areas), cmocka_unit_test(test_bound),
     };
     return FIXTURE_CL_RUN(tests);
 }

@@ -2,6 +2,7 @@
 #include "pictures.h"
 
 #include "draw/renderer.h"
+#include "raster/rasterizer.h"
 
 static camber_mesh *make_mesh(fixture *s, camber_renderer *renderer, const camber_made_scene *lines,
                               const camber_tessellation_desc *desc) {
@@ -271,8 +272,9 @@ static void test_into(void **state) {
     static const struct {
         uint32_t width, height, largest_area_px;
         size_t shift, gap_bytes; /* of the first pixel from a multiple of the alignment; between rows */
-    } cases[] = {{256, 160, 0, 0, 0}, {256, 160, 0, 4, 0}, {256, 160, 0, 0, 128}, {256, 160, 64, 0, 0},
-                 {32, 3232, 0, 0, 0}, {250, 160, 0, 0, 0}, {256, 150, 0, 0, 0},   {1, 1, 0, 1, 3}};
+    } cases[] = {{256, 160, 0, 0, 0},  {256, 160, 0, 4, 0}, {256, 160, 0, 0, 128},
+                 {256, 160, 64, 0, 0}, {64, 160, 64, 0, 0}, {32, 3232, 0, 0, 0},
+                 {250, 160, 0, 0, 0},  {256, 150, 0, 0, 0}, {1, 1, 0, 1, 3}};
     camber_made_scene lines = road_scene();
     uint8_t *room = aligned_alloc(CAMBER_PIXELS_ALIGNMENT, ROOM);
     assert_non_null(room);
@@ -298,7 +300,7 @@ static void test_into(void **state) {
         memset(room, MARK, ROOM);
         assert_int_equal(camber_renderer_render_into(renderer, &frame, rgba, cases[k].gap_bytes ? stride : 0, &stats),
                          CAMBER_OK);
-        assert_true(stats.areas > 0);
+        assert_int_equal(stats.areas, cases[k].largest_area_px ? (frame.width / 64) * 3 : 1);
         for (size_t at = 0; at < ROOM; at++) {
             const size_t past = (size_t)(room + at - rgba), row = past / stride, byte = past % stride;
             const bool inside = room + at >= rgba && row < frame.height && byte < row_bytes;
@@ -309,6 +311,25 @@ static void test_into(void **state) {
     }
     free(room);
     camber_made_scene_free(&lines);
+}
+
+/* On the host's processor whole tiles are drawn in their place, without a buffer of the renderer's. */
+static void test_into_place(void **state) {
+    fixture *s = *state;
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
+    const camber_frame frame = {.width = 64, .height = 64, .background = {0, 1, 0, 1}};
+    uint8_t *room = aligned_alloc(CAMBER_PIXELS_ALIGNMENT, 4 * 64 * 64 + CAMBER_PIXELS_ALIGNMENT);
+    assert_non_null(room);
+    for (size_t shift = 0; shift < 2; shift++) {
+        camber_renderer *renderer = NULL;
+        assert_int_equal(camber_renderer_create(s->on.device, NULL, &desc, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_render_into(renderer, &frame, room + shift, 0, NULL), CAMBER_OK);
+        assert_memory_equal(room + shift, "\0\xff\0\xff", 4);
+        const bool copies = shift || !s->on.device->host_memory;
+        assert_int_equal(renderer->raster->capacities[BUFFER_PIXELS] > 0, copies);
+        camber_renderer_destroy(renderer);
+    }
+    free(room);
 }
 
 static void test_rows_refused(void **state) {
@@ -380,6 +401,7 @@ int main(void) {
         cmocka_unit_test(test_surfaces_in_turn),
         cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_into),
+        cmocka_unit_test(test_into_place),
         cmocka_unit_test(test_rows_refused),
         cmocka_unit_test(test_background_is_premultiplied),
         cmocka_unit_test(test_empty_mesh),

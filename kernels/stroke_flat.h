@@ -123,24 +123,33 @@ CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
     f->cap = from - past * f->cosine - at->y * f->sine;
 }
 
-/* The share of a pixel inside a flat end. The turned cap is cut as an edge across the segment is. */
+/* The share of a pixel inside a flat end. The turned cap is cut as an edge across the segment is. llvmpipe runs both
+ * sides of a branch: in shaders a cap is a join whose two edges are one, and where there is no stub, its cap is far. */
 CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
+    const float from = out_of > 0.0f ? p->flat_b : p->flat_a;
+    const camber_flag is_join = camber_is_flat_join(p, out_of);
+    const camber_flag is_far = is_join && from >= CAMBER_STUB_PX - 0.5f * CAMBER_STUB_UNIT_PX;
     camber_flat_end f;
-    if (!camber_is_flat_join(p, out_of))
-        return camber_cut_along(p, at, out_of > 0.0f ? p->flat_b - at->past_b : p->flat_a - at->past_a);
     camber_find_flat_end(p, at, out_of, CAMBER_REF(f));
-    const camber_real body = camber_cut_along(p, at, f.body);
-    camber_real before = CAMBER_REAL(1.0f);
-    if ((out_of > 0.0f ? p->flat_b : p->flat_a) < CAMBER_STUB_PX - 0.5f * CAMBER_STUB_UNIT_PX) {
-        const camber_real cap = camber_cut_along(p, at, f.cap);
-        before -= camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
-    }
+    const camber_real body = camber_cut_along(p, at, is_join ? f.body : from + f.body);
+#ifndef CAMBER_GLSL
+    if (!is_join)
+        return body;
+    if (is_far)
+        return f.behind ? body : CAMBER_REAL(1.0f);
+#endif
+    const camber_real cap = camber_cut_along(p, at, is_far ? CAMBER_REAL(CAMBER_NEVER_PX) : f.cap);
+    const camber_real before = 1.0f - camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
     return f.behind ? body : before;
 }
 
-/* The part of an area that flat ends leave: one, or both of a short segment. */
+/* The part of an area that flat ends leave: one, or both of a short segment. Ends that are not flat leave all. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
+#ifdef CAMBER_GLSL
+    const camber_flag at_a = CAMBER_YES, both = CAMBER_YES;
+#else
     const camber_flag at_a = p->flat_a < CAMBER_NEVER_PX, both = at_a && p->flat_b < CAMBER_NEVER_PX;
+#endif
     const camber_real one = camber_cut_end(p, at, at_a ? -1.0f : 1.0f);
     if (!both)
         return area * one;

@@ -132,14 +132,18 @@ CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAM
     camber_flat_end f;
     camber_find_flat_end(p, at, out_of, CAMBER_REF(f));
     const camber_real body = camber_cut_along(p, at, is_join ? f.body : from + f.body);
-#ifndef CAMBER_GLSL
+#ifdef CAMBER_GLSL
+    const camber_flag has_cap = CAMBER_YES;
+#else
+    const camber_flag has_cap = !is_far;
     if (!is_join)
         return body;
-    if (is_far)
-        return f.behind ? body : CAMBER_REAL(1.0f);
 #endif
-    const camber_real cap = camber_cut_along(p, at, is_far ? CAMBER_REAL(CAMBER_NEVER_PX) : f.cap);
-    const camber_real before = 1.0f - camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
+    camber_real before = CAMBER_REAL(1.0f);
+    if (has_cap) {
+        const camber_real cap = camber_cut_along(p, at, is_far ? CAMBER_REAL(CAMBER_NEVER_PX) : f.cap);
+        before -= camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
+    }
     return f.behind ? body : before;
 }
 

@@ -51,14 +51,19 @@ def logged(name):
 
 def calls(trace):
     """What was called with which path and flags; calls that failed open nothing, but servers are told by asking."""
-    text = open(trace, errors="replace").read()
-    # A call that another thread's interrupts is told in two halves.
-    halves = dict(re.findall(r"^(\d+) +(.*) <unfinished \.\.\.>$", text, re.M))
-    for pid, name, tail in re.findall(r"^(\d+) +<\.\.\. (\w+) resumed>(.*)$", text, re.M):
-        if halves.get(pid, "").startswith(name):
-            text += "\n%s %s%s" % (pid, halves[pid], tail)
-    for name, rest, result in re.findall(r"^\d+ +(\w+)\((.*)\) += (-?\d+)", text, re.M):
-        yield name, rest, int(result)
+    begun = {}  # a call that another thread's interrupts is told in two halves
+    for line in open(trace, errors="replace"):
+        pid, _, told = line.strip().partition(" ")
+        told = told.strip()
+        if told.endswith("<unfinished ...>"):
+            begun[pid] = told[:-len("<unfinished ...>")].rstrip()
+            continue
+        rest_of = re.match(r"<\.\.\. \w+ resumed>(.*)", told)
+        if rest_of:
+            told = begun.pop(pid, "") + rest_of.group(1)
+        call = re.match(r"(\w+)\((.*)\) += (-?\d+)", told)
+        if call:
+            yield call.group(1), call.group(2), int(call.group(3))
 
 
 def beyond(trace, folder, named):

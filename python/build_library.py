@@ -14,13 +14,12 @@ from cffi import FFI
 
 HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_map.h", "camber_tiles.h")
 
-# Rows of a picture go to an array without Python, and so without its lock.
+# Rows whose alphas leave their colours go to an array without Python, and so without its lock.
 HELPERS = """
 typedef struct camber_python_picture {
     uint8_t *rgba;
     size_t stride_bytes;
     uint32_t width;
-    bool straight; /* alpha is not in the colours */
 } camber_python_picture;
 bool camber_python_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count);
@@ -35,7 +34,7 @@ bool camber_python_take_rows(void *user, const uint8_t *rgba, uint32_t first_row
         const uint8_t *from = rgba + 4 * (size_t)picture->width * y;
         uint8_t *to = picture->rgba + picture->stride_bytes * (first_row + y);
         memcpy(to, from, 4 * (size_t)picture->width);
-        for (uint32_t x = 0; picture->straight && x < picture->width; x++, from += 4, to += 4)
+        for (uint32_t x = 0; x < picture->width; x++, from += 4, to += 4)
             for (int c = 0; c < 3 && from[3] != 255 && from[3] != 0; c++) {
                 const unsigned straight = (from[c] * 255u + from[3] / 2) / from[3];
                 to[c] = (uint8_t)(straight < 255 ? straight : 255);

@@ -172,8 +172,11 @@ def as_size(size):
 
 def as_output(out, width, height):
     """The array that a picture goes to: rows may lie apart, and the bytes of a row may not."""
-    if out is None:
-        return numpy.empty((height, width, 4), numpy.uint8)
+    if out is None:  # where kernels can write themselves
+        step, size = lib.CAMBER_PIXELS_ALIGNMENT, height * width * 4
+        block = numpy.empty(size + step, numpy.uint8)
+        first = -block.ctypes.data % step
+        return block[first:first + size].reshape(height, width, 4)
     if not isinstance(out, numpy.ndarray) or out.dtype != numpy.uint8 or out.shape != (height, width, 4):
         raise ArgumentError("out is no uint8 array of %d x %d x 4" % (height, width))
     if not out.flags.writeable:
@@ -187,9 +190,12 @@ def as_output(out, width, height):
 def render_frame(core, renderer, frame, out, premultiplied):
     """Draws a frame into an array; Python's lock is free all the while."""
     out = as_output(out, frame.width, frame.height)
+    rgba = ffi.cast("uint8_t *", out.ctypes.data)
+    if premultiplied or frame.background.a >= 1:  # what is opaque is both
+        core.check(lib.camber_renderer_render_into(renderer, frame, rgba, out.strides[0], ffi.NULL))
+        return out
     picture = ffi.new("camber_python_picture *", {
-        "rgba": ffi.cast("uint8_t *", out.ctypes.data), "stride_bytes": out.strides[0], "width": frame.width,
-        "straight": not premultiplied and frame.background.a < 1})  # what is opaque is both
+        "rgba": rgba, "stride_bytes": out.strides[0], "width": frame.width})
     core.check(lib.camber_renderer_render(renderer, frame, TAKE_ROWS, picture, ffi.NULL))
     return out
 

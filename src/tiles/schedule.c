@@ -21,7 +21,7 @@
  * doubling from CROWD points a tile to its own. So 462 metatiles of zooms 0 to 14 are told within 12 %, root of the
  * mean square (10 million points, 2026-11-26, Intel Xeon, AVX-512). */
 static const double PICTURE_US = 1.1e3, SHARE_US = 29.0, CROWDED_US = 0.045;
-enum { LEAST_POINTS = 50, CROWD = 2048 }; /* of a tile */
+enum { LEAST_POINTS = 50, CROWD = 2048 }; /* of a tile; a line that crosses it has no point there */
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which

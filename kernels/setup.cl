@@ -18,9 +18,9 @@
 #define STARTS (CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START)
 
 /* Reads record i. A number outside the part stands for its nearest record. */
-static inline uint4 record_at(global const camber_u32 *records, int i, camber_setup_args r) {
-    const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
-    return vload4((size_t)at * r.stride, records);
+static inline uint4 record_at(global const camber_u32 *records, int i, const camber_setup_args *r) {
+    const int last = (int)r->record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
+    return vload4((size_t)at * r->stride, records);
 }
 
 /* The words of consecutive records, a vector for each word. */
@@ -29,9 +29,10 @@ typedef struct lane_records {
 } lane_records;
 
 /* Reads a vector of records from `first` on. Numbers outside the part stand for its nearest record. */
-static inline void take_records(global const camber_u32 *records, int first, camber_setup_args r, lane_records *taken) {
+static inline void take_records(global const camber_u32 *records, int first, const camber_setup_args *r,
+                                lane_records *taken) {
     camber_words v[4];
-    if (r.stride == 1 && first >= 0 && first + CAMBER_LANES <= (int)r.record_count) {
+    if (r->stride == 1 && first >= 0 && first + CAMBER_LANES <= (int)r->record_count) {
         for (size_t i = 0; i < 4; i++)
             v[i] = CAMBER_LOAD(i, records + CAMBER_RECORD_WORDS * (size_t)first);
     } else {
@@ -77,27 +78,27 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
 }
 
 /* The brushes of a vector of edges that end with the records from `first` on, by those of their rows. */
-static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, camber_setup_args r,
+static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, const camber_setup_args *r,
                                         camber_real of_rows) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    camber_words brushes = CAMBER_AS_WORDS(of_rows) + r.changes_before;
-    if (r.change_count == 0)
+    camber_words brushes = CAMBER_AS_WORDS(of_rows) + r->changes_before;
+    if (r->change_count == 0)
         return brushes;
-    global const camber_u32 *own = changes + r.first_change;
-    uint next = camber_changes_until(own, r.change_count, first);
+    global const camber_u32 *own = changes + r->first_change;
+    uint next = camber_changes_until(own, r->change_count, first);
     brushes += next;
-    for (; next < r.change_count && own[next] - first < CAMBER_LANES; next++)
+    for (; next < r->change_count && own[next] - first < CAMBER_LANES; next++)
         brushes += CAMBER_LOAD(0, numbers) >= own[next] - first ? (camber_words)(1u) : (camber_words)(0u);
     return brushes;
 }
 
 #if CAMBER_RASTER_RICH
-static inline float2 arc_length_at(global const camber_u32 *records, int i, camber_setup_args r) {
-    const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
-    return r.stride == 2 ? as_float2(vload2(4 * (size_t)at + 2, records)) : (float2)(0.0f);
+static inline float2 arc_length_at(global const camber_u32 *records, int i, const camber_setup_args *r) {
+    const int last = (int)r->record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
+    return r->stride == 2 ? as_float2(vload2(4 * (size_t)at + 2, records)) : (float2)(0.0f);
 }
 
-static inline void put_arc_lengths(global const camber_u32 *records, int first, camber_setup_args r,
+static inline void put_arc_lengths(global const camber_u32 *records, int first, const camber_setup_args *r,
                                    const camber_segment *s, global float *arc_lengths) {
     float from[CAMBER_LANES], to[CAMBER_LANES], total[CAMBER_LANES], rates[CAMBER_LANES];
     for (int k = 0; k < CAMBER_LANES; k++) {
@@ -154,22 +155,22 @@ typedef struct ends {
 } ends;
 
 /* Takes the records from `first` on. */
-static inline void take_ends(global const camber_u32 *records, global const float *rows, int first, camber_setup_args r,
-                             ends *e) {
+static inline void take_ends(global const camber_u32 *records, global const float *rows, int first,
+                             const camber_setup_args *r, ends *e) {
     const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     take_records(records, first, r, &e->b);
     take_records(records, first - 1, r, &e->before);
     const camber_words kind = e->b.join >> CAMBER_JOIN_KIND_SHIFT;
     const camber_mask is_real = ((e->b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
-                                (CAMBER_LOAD(0, numbers) < (int)r.end - first);
-    const camber_mask goes_on = (e->b.info & (r.strips ? STARTS : CAMBER_POINT_FIRST)) == 0u;
+                                (CAMBER_LOAD(0, numbers) < (int)r->end - first);
+    const camber_mask goes_on = (e->b.info & (r->strips ? STARTS : CAMBER_POINT_FIRST)) == 0u;
     e->is_dot = kind == CAMBER_KIND_DOT;
-    e->is_drawn = is_real & (r.strips ? goes_on : goes_on | e->is_dot);
-    take_rows(rows, r.first_row, e->b.info >> CAMBER_POINT_ROW_SHIFT, e->is_drawn, e->row);
+    e->is_drawn = is_real & (r->strips ? goes_on : goes_on | e->is_dot);
+    take_rows(rows, r->first_row, e->b.info >> CAMBER_POINT_ROW_SHIFT, e->is_drawn, e->row);
     e->is_drawn &= e->row[0] >= 0.0f;
 #if CAMBER_RASTER_PITCHED
-    e->x = e->row[1] - r.eye.x;
-    e->y = e->row[2] - r.eye.y;
+    e->x = e->row[1] - r->eye.x;
+    e->y = e->row[2] - r->eye.y;
 #else
     e->x = e->row[1];
     e->y = e->row[2];
@@ -190,7 +191,7 @@ static inline void place_ends(const ends *e, lane_ends *l) {
 
 /* Makes the segments of the records from `first` on, and writes them. */
 static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
-                                 camber_setup_args r, outputs to) {
+                                 const camber_setup_args *r, outputs to) {
     ends e;
     lane_records second, third;
     lane_ends l;
@@ -203,13 +204,13 @@ static inline void make_segments(global const camber_u32 *records, global const 
         ((e.before.info & CAMBER_RECORD_START) != 0u) & (e.before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
     camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e.x,
                       CAMBER_AS_REAL(from_third ? third.y : second.y) + e.y, l.ax, l.ay, l.bx, l.by,
-                      e.is_dot ? e.b.join : e.before.join, e.b.join, e.row[0], r.linear, &s);
+                      e.is_dot ? e.b.join : e.before.join, e.b.join, e.row[0], r->linear, &s);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
     camber_plane plane;
-    e.is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
+    e.is_drawn &= camber_pitch_segment_of(r->eye, r->horizon, &flat, &s, &plane);
 #endif
-    const camber_words box = camber_segment_box(&s, e.is_drawn, r.left, r.top, r.columns, r.rows);
+    const camber_words box = camber_segment_box(&s, e.is_drawn, r->left, r->top, r->columns, r->rows);
     CAMBER_STORE(box, 0, to.boxes);
     /* If a picture is drawn in several areas, most segments lie in others. */
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
@@ -225,13 +226,13 @@ static inline void make_segments(global const camber_u32 *records, global const 
                              s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
                              e.row[3]};
     put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
-    if (r.makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES)
+    if (r->makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES)
         CAMBER_STORE((camber_words)(CAMBER_NO_EDGE), 0, to.brushes);
 }
 
 /* The same of edges. */
 static inline void make_edges(global const camber_u32 *records, global const float *rows,
-                              global const camber_u32 *changes, int first, camber_setup_args r, outputs to) {
+                              global const camber_u32 *changes, int first, const camber_setup_args *r, outputs to) {
     ends e;
     lane_ends l;
     camber_segment s;
@@ -240,9 +241,9 @@ static inline void make_edges(global const camber_u32 *records, global const flo
     camber_edge_segment(l.ax, l.ay, l.bx, l.by, &s);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
-    e.is_drawn &= camber_pitch_edge_of(r.eye, &flat, &s);
+    e.is_drawn &= camber_pitch_edge_of(r->eye, &flat, &s);
 #endif
-    const camber_words box = camber_segment_box(&s, e.is_drawn, r.left, r.top, r.columns, r.rows);
+    const camber_words box = camber_segment_box(&s, e.is_drawn, r->left, r->top, r->columns, r->rows);
     CAMBER_STORE(box, 0, to.boxes);
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
         return;
@@ -288,8 +289,8 @@ CAMBER_KERNEL(1, setup,
                             edges + camber_edge_ends(at),
                             (global camber_u32 *)edges + camber_edge_brush(at)};
         if (r.makes == CAMBER_MAKES_EDGES)
-            make_edges(records, rows, changes, first, r, to);
+            make_edges(records, rows, changes, first, &r, to);
         else
-            make_segments(records, rows, first, r, to);
+            make_segments(records, rows, first, &r, to);
     }
 }

@@ -21,7 +21,7 @@ enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20, MOST_UNPACKED_R
 /* Fields of a blob's header, of a blob, of the file's header and of a block. */
 enum { HEADER_TYPE = 1, HEADER_SIZE = 3 };
 enum { BLOB_RAW = 1, BLOB_RAW_SIZE = 2, BLOB_ZLIB = 3, BLOB_LAST_PACKING = 7 };
-enum { FILE_REQUIRED_FEATURE = 4 };
+enum { FILE_BOX = 1, FILE_REQUIRED_FEATURE = 4 };
 enum { BLOCK_STRINGS = 1, BLOCK_GROUP = 2, BLOCK_GRANULARITY = 17, BLOCK_LATITUDE = 19, BLOCK_LONGITUDE = 20 };
 
 /* ---- Bytes of the file ---- */
@@ -207,11 +207,32 @@ bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group)
 
 /* ---- The list of blobs ---- */
 
+/* Reads the box of a file's header: nanodegrees west, east, north and south, which become 10^-7 degrees. */
+static void read_box(camber_wire wire, camber_osm_box *box) {
+    int64_t sides[4] = {0};
+    uint64_t key;
+    while (camber_wire_next(&wire, &key)) {
+        if (key >= CAMBER_WIRE_KEY(1, CAMBER_WIRE_VARINT) && key <= CAMBER_WIRE_KEY(4, CAMBER_WIRE_VARINT) &&
+            (key & 7) == CAMBER_WIRE_VARINT) {
+            const int64_t side = camber_wire_signed(&wire) / 100, most = INT64_C(1800000000);
+            sides[(key >> 3) - 1] = side < -most ? -most : side > most ? most : side;
+        } else {
+            camber_wire_skip(&wire, key);
+        }
+    }
+    if (!wire.bad)
+        *box = (camber_osm_box){(int32_t)sides[0], (int32_t)sides[1], (int32_t)sides[3], (int32_t)sides[2]};
+}
+
 /* Whether this reader has all that the file's header requires. */
-static bool read_file_header(camber_wire wire, camber_osm_failure *failure) {
+static bool read_file_header(camber_wire wire, camber_osm_box *box, camber_osm_failure *failure) {
     static const char *const known[] = {"OsmSchema-V0.6", "DenseNodes"};
     uint64_t key;
     while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(FILE_BOX, CAMBER_WIRE_BYTES)) {
+            read_box(camber_wire_bytes(&wire), box);
+            continue;
+        }
         if (key != CAMBER_WIRE_KEY(FILE_REQUIRED_FEATURE, CAMBER_WIRE_BYTES)) {
             camber_wire_skip(&wire, key);
             continue;
@@ -258,7 +279,8 @@ static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *
     list->at = blob.offset + blob_bytes;
     if (type == BLOB_HEADER) {
         camber_wire block;
-        return unpack_at(file, &blob, pass, &list->unpacked, &block, failure) && read_file_header(block, failure);
+        return unpack_at(file, &blob, pass, &list->unpacked, &block, failure) &&
+               read_file_header(block, &file->box, failure);
     }
     camber_osm_block blobs = {(uint8_t *)file->blobs, file->blob_capacity};
     const bool fits = camber_osm_reserve(pass, &blobs, (file->blob_count + 1) * sizeof blob, failure);

@@ -10,6 +10,11 @@ typedef struct camber_osm_blob {
     uint32_t size_bytes;
 } camber_osm_blob;
 
+/* 10^-7 degrees. left is not below right: there is none. */
+typedef struct camber_osm_box {
+    int32_t left, right, bottom, top;
+} camber_osm_box;
+
 typedef struct camber_osm_file {
     camber_context *context;
     const char *path;
@@ -17,6 +22,7 @@ typedef struct camber_osm_file {
     uint64_t size_bytes;
     camber_osm_blob *blobs; /* those with data, in the file's order */
     size_t blob_count, blob_capacity;
+    camber_osm_box box; /* that the file has the data of, as its header says */
 } camber_osm_file;
 
 /* Whether the file begins as a PBF of OpenStreetMap; what it is named does not matter. */

@@ -8,6 +8,7 @@
  * threads. */
 #include "osm/osm.h"
 
+#include "osm/coast.h"
 #include "osm/nodes.h"
 #include "osm/packed.h"
 #include "source/mercator.h"
@@ -29,6 +30,10 @@ typedef struct reader {
     const camber_source_desc *desc;
     camber_osm_where where;
     camber_osm_ways ways;
+    camber_osm_coast coast; /* its ways, where areas are wanted */
+    camber_osm_box box;
+    size_t coast_key;      /* the style's property "natural"; SIZE_MAX: the sea is not wanted */
+    const char *coastline; /* its value on a coast, interned */
     uint32_t layer;
     uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
     size_t met;                               /* of the relations' ways, so many of those met were added */
@@ -52,8 +57,8 @@ static unsigned count_threads(const camber_source_desc *desc) {
 typedef struct made_way {
     uint32_t tags;       /* as the way has them, with the area's bit set only where the line is closed */
     uint32_t line_count; /* as a line, or as an outline; then comes its ring */
-    bool has_ring;
-    uint32_t place_count; /* of a relation's way, in the run's places */
+    bool has_ring, is_coast;
+    uint32_t place_count; /* of a coast, and of a relation's way, in the run's places */
     size_t first_place;
 } made_way;
 
@@ -118,20 +123,29 @@ static bool make_ring(const camber_osm_way *way, size_t node, made_run *run, boo
     return count > 0;
 }
 
+static bool is_coast(const reader *self, const camber_osm_way *way) {
+    const size_t set = way->tags / CAMBER_OSM_WAY_BITS;
+    if (self->coast_key == SIZE_MAX || way->tags & CAMBER_OSM_WAY_BARE)
+        return false;
+    const camber_value *value = self->ways.values + set * self->features->style->property_count + self->coast_key;
+    return value->type == CAMBER_VALUE_STRING && value->string == self->coastline;
+}
+
 /* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
-static void make_way(const camber_style *style, const camber_osm_way *way, size_t node, made_run *run) {
+static void make_way(const reader *self, const camber_osm_way *way, size_t node, made_run *run) {
+    const camber_style *style = self->features->style;
     camber_world_lines *lines = &run->lines;
     const size_t lines_before = lines->line_count;
     const bool area = way->tags & CAMBER_OSM_WAY_AREA, bare = way->tags & CAMBER_OSM_WAY_BARE;
     const bool has_lines = !bare && (!area || style->wants_polygons);
-    made_way made = {.tags = way->tags, .first_place = node};
+    made_way made = {.tags = way->tags, .first_place = node, .is_coast = is_coast(self, way)};
     if (has_lines) {
         add_nodes(way, node, run);
         camber_world_lines_end(lines);
     }
     made.line_count = (uint32_t)(lines->line_count - lines_before);
     made.has_ring = area && style->wants_areas && make_ring(way, node, run, !has_lines);
-    if (way->tags & CAMBER_OSM_WAY_MEMBER)
+    if (made.is_coast || way->tags & CAMBER_OSM_WAY_MEMBER)
         made.place_count = way->node_count;
     ((made_way *)(void *)run->ways.bytes)[run->way_count++] = made;
 }
@@ -161,7 +175,7 @@ static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     size_t node = 0;
     for (const camber_osm_way *way = ways->ways + from->first_way, *end = way + from->way_count; way < end; way++) {
         if (way->node_count || way->tags & CAMBER_OSM_WAY_MEMBER)
-            make_way(style, way, node, run);
+            make_way(user, way, node, run);
         node += way->node_count;
     }
     return true;
@@ -225,6 +239,8 @@ static camber_status add_run(void *user, size_t part, void *slot) {
         const bool member = ways[i].tags & CAMBER_OSM_WAY_MEMBER;
         const bool filled = !member || !relations->ways[relations->met[self->met]].is_outer;
         status = add_way(self, &ways[i], filled, &run->lines, &line);
+        if (ways[i].is_coast && status == CAMBER_OK)
+            status = camber_osm_coast_add(&self->coast, places + ways[i].first_place, ways[i].place_count);
         if (!member || status != CAMBER_OK)
             continue;
         status =
@@ -282,11 +298,45 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
     return status;
 }
 
+/* The class of the sea: water, as ponds are. */
+static camber_status find_sea_class(reader *self, uint32_t *index) {
+    const size_t count = self->features->style->property_count;
+    camber_value *values = camber_alloc_zero(self->context, count, sizeof *values);
+    if (!values)
+        return CAMBER_ERROR_MEMORY;
+    values[self->coast_key].type = CAMBER_VALUE_STRING;
+    camber_status status = camber_features_intern(self->features, "water", &values[self->coast_key].string);
+    if (status == CAMBER_OK)
+        status = camber_features_find_class(self->features, self->layer, CAMBER_GEOMETRY_AREA, values, index);
+    camber_free(self->context, values);
+    return status;
+}
+
+/* Makes an area of the sea, which OpenStreetMap has the coast of. */
+static camber_status make_sea(reader *self, made_area *area) {
+    camber_status status = camber_osm_coast_fill(&self->coast, self->box, &area->assembly);
+    if (status == CAMBER_OK && area->assembly.open)
+        camber_log(
+            self->context, CAMBER_LOG_WARNING,
+            "%s: no sea is drawn: %s; cut an extract by a box, with whole ways, or name a file of water areas as "
+            "another input",
+            self->desc->path,
+            self->box.left < self->box.right ? "its coast ends inside of the extract's box"
+                                             : "its header does not say in which box its coast is whole");
+    if (status == CAMBER_OK && area->assembly.ring_count)
+        status = find_sea_class(self, &area->class_index);
+    area->added = false;
+    area->rings = (camber_rings){.stats = &self->features->stats, .any_winding = true};
+    for (size_t i = 0; i < area->assembly.ring_count && status == CAMBER_OK; i++)
+        status = add_ring(self, area, &area->assembly.rings[i]);
+    return status;
+}
+
 /* Makes areas once all ways are lines. They have a layer of their own, as GDAL has it. */
 static camber_status make_areas(reader *self) {
     camber_osm_ways *ways = &self->ways;
     made_area area = {.assembly.context = self->context, .lines = {.context = self->context, .uncut = true}};
-    if (ways->relations.count == 0)
+    if (ways->relations.count == 0 && self->coast.way_count == 0)
         return CAMBER_OK;
     camber_free(self->context, ways->packed);
     ways->packed = NULL;
@@ -296,6 +346,8 @@ static camber_status make_areas(reader *self) {
     camber_status status = camber_features_find_layer(self->features, RELATION_LAYER, &self->layer);
     for (size_t i = 0; i < ways->relations.count && status == CAMBER_OK; i++)
         status = add_relation(self, i, &area);
+    if (self->coast.way_count && status == CAMBER_OK)
+        status = make_sea(self, &area);
     self->clamped += area.lines.clamped_points;
     camber_world_lines_free(&area.lines);
     camber_osm_assembly_free(&area.assembly);
@@ -368,14 +420,27 @@ static camber_status check_result(const reader *self, size_t features_before) {
                        self->desc->path, self->skipped);
 }
 
+/* The sea is wanted where areas are, by their key. */
+static camber_status find_coast_key(reader *self) {
+    const camber_style *style = self->features->style;
+    self->coast_key = SIZE_MAX;
+    for (size_t i = 0; i < style->property_count && style->wants_areas && !self->desc->layer; i++)
+        if (strcmp(style->properties[i], "natural") == 0)
+            self->coast_key = i;
+    return camber_features_intern(self->features, "coastline", &self->coastline);
+}
+
 static camber_status read_lines(reader *self, bool *declined) {
     camber_osm_file file;
     const size_t features_before = self->features->feature_count;
     camber_status status = camber_osm_file_open(self->context, self->desc->path, &file, declined);
     if (status != CAMBER_OK || *declined)
         return status;
+    self->box = file.box;
     const bool filters = self->desc->where && camber_osm_where_parse(self->desc->where, &self->where);
     status = camber_osm_ways_init(&self->ways, self->features, filters ? &self->where : NULL, declined);
+    if (status == CAMBER_OK && !*declined)
+        status = find_coast_key(self);
     if (status == CAMBER_OK && !*declined)
         status = read_places(self, &file, declined);
     if (status == CAMBER_OK && !*declined)
@@ -384,6 +449,7 @@ static camber_status read_lines(reader *self, bool *declined) {
         status = check_result(self, features_before);
     /* GDAL's reader finds out why nothing passes a filter. */
     *declined = *declined || (filters && status == CAMBER_OK && self->features->feature_count == features_before);
+    camber_osm_coast_free(&self->coast);
     camber_osm_ways_free(&self->ways);
     camber_osm_file_close(&file);
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS; kind++)
@@ -412,6 +478,7 @@ camber_status camber_osm_read(camber_features *features, const camber_source_des
     const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
     reader self = {.context = features->context, .features = features, .desc = desc, .threads = count_threads(desc)};
+    self.coast.context = features->context;
     *declined = false;
     camber_status status = read_lines(&self, declined);
     features->times.file_ms += camber_now_ms() - start_ms;

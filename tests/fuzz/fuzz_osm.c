@@ -1,6 +1,12 @@
-/* A PBF file of OpenStreetMap: a whole one, or the content of a blob, which needs no packing to be reached. */
+/* A PBF file of OpenStreetMap: a whole one, or the content of a blob, which needs no packing to be reached. The same
+ * bytes are also a coast:
+ *
+ *     box: i16 left, right, bottom, top; ways: u8 places, % 16; places: i16 longitude, i16 latitude
+ */
 #include "fuzz_scene.h"
 
+#include "osm/coast.h"
+#include "osm/node_set.h"
 #include "osm/osm.h"
 
 #include "pbf_file.h"
@@ -9,14 +15,17 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char style_text[] =
-    "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"filter\": [\"has\", \"highway\"]}]}";
+static const char style_text[] = "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"filter\": "
+                                 "[\"any\", [\"has\", \"highway\"], [\"has\", "
+                                 "\"natural\"]]}]}";
+/* 10^-9 degrees */
+static const int64_t box[4] = {-1000000000, 2000000000, 3000000000, -4000000000};
 
 static void write_file(const char *path, const uint8_t *bytes, size_t size, bool content) {
     static pbf_file made;
     if (content) {
         pbf_bytes block = {.size = 0};
-        pbf_header(&made, "DenseNodes");
+        pbf_header_of(&made, "DenseNodes", box);
         pbf_put(&block, bytes, size);
         pbf_content(&made, "OSMData", &block, 0);
         bytes = made.bytes;
@@ -26,11 +35,52 @@ static void write_file(const char *path, const uint8_t *bytes, size_t size, bool
     REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
 }
 
+static int32_t take_degrees(fuzz_reader *from) {
+    return (int16_t)fuzz_take(from, 2);
+}
+
+/* Rings are closed, and outer ones come first, whatever a coast is. */
+static void use_coast(fuzz_run *run, const uint8_t *bytes, size_t size) {
+    fuzz_reader from = {bytes, size};
+    camber_osm_coast coast = {.context = run->context};
+    camber_osm_assembly sea = {.context = run->context};
+    camber_osm_box within = {.left = take_degrees(&from)};
+    within.right = take_degrees(&from);
+    within.bottom = take_degrees(&from);
+    within.top = take_degrees(&from);
+    bool added = true;
+    while (from.size > 0 && added) {
+        uint64_t places[16];
+        const size_t count = fuzz_take(&from, 1) % 16;
+        for (size_t i = 0; i < count; i++) {
+            const int32_t longitude = take_degrees(&from);
+            places[i] = camber_osm_place(longitude, take_degrees(&from));
+        }
+        added = fuzz_done(run, camber_osm_coast_add(&coast, places, count));
+    }
+    if (added && fuzz_done(run, camber_osm_coast_fill(&coast, within, &sea))) {
+        REQUIRE(!sea.open || sea.ring_count == 0);
+        for (size_t i = 0; i < sea.ring_count; i++) {
+            const camber_osm_ring *ring = sea.rings + i;
+            REQUIRE(ring->count > 0 && ring->first + ring->count <= sea.place_count);
+            REQUIRE(sea.places[ring->first] == sea.places[ring->first + ring->count - 1]);
+            REQUIRE(i == 0 || sea.rings[i - 1].role <= ring->role);
+            for (size_t k = ring->first; k < ring->first + ring->count; k++) {
+                const int32_t x = camber_osm_longitude(sea.places[k]), y = camber_osm_latitude(sea.places[k]);
+                REQUIRE(x >= within.left && x <= within.right && y >= within.bottom && y <= within.top);
+            }
+        }
+    }
+    camber_osm_coast_free(&coast);
+    camber_osm_assembly_free(&sea);
+}
+
 static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     char path[64];
     camber_style *style = NULL;
     camber_features *features = NULL;
     const bool content = size > 0 && size < 8192 && bytes[0] != 0;
+    use_coast(run, bytes, size);
     snprintf(path, sizeof path, "/tmp/camber-fuzz-%ld.osm.pbf", (long)getpid());
     write_file(path, bytes, size, content);
     const camber_source_desc desc = {.path = path, .threads = 2};

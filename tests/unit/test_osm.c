@@ -398,13 +398,17 @@ static void test_filters(void **state) {
 /* ---- Relations ---- */
 
 /* A grid of nodes, 100 x + y, a hundredth of a degree apart. */
-static void begin_grid(fixture *it) {
+static void begin_grid_of(fixture *it, const int64_t box[4]) {
     pbf_node grid[100];
     for (int i = 0; i < 100; i++)
         grid[i] = (pbf_node){i / 10 * 100 + i % 10, 10000000 + i / 10 * 100000, 20000000 + i % 10 * 100000};
-    pbf_header(&it->file, "DenseNodes");
+    pbf_header_of(&it->file, "DenseNodes", box);
     pbf_dense(&it->block, grid, 100);
     pbf_end_block(&it->file, &it->block);
+}
+
+static void begin_grid(fixture *it) {
+    begin_grid_of(it, NULL);
 }
 
 static void grid_way(fixture *it, int64_t id, const char *const *tags, size_t count, const int64_t *ids) {
@@ -499,6 +503,39 @@ static void test_relations(void **state) {
     RELATION(it, wood, {2, ""}, {4, ""}, {1, ""}, {5, ""}, {3, ""});
     RELATION(it, wood, {2, "inner"}, {3, "outer"}, {1, "outer"}); /* a ring of two roles */
     expect_areas(it, " +16.0-1.0-1.0 +16.0-1.0-1.0 +16.0-1.0", 0);
+}
+
+/* Land in the south, and an island, which is an area of its own kind, too. */
+static void add_coast(fixture *it, const int64_t box[4]) {
+    static const char *const coast[] = {"natural", "coastline", NULL};
+    begin_grid_of(it, box);
+    GRID_WAY(it, 1, coast, 504, 404, 4);
+    GRID_WAY(it, 2, coast, 206, 306, 307, 207, 206);
+    GRID_WAY(it, 3, coast, 904, 504);
+}
+
+/* The sea is water as a pond is, if the style looks at that, and the file says where its coast is whole. */
+static void test_sea(void **state) {
+    static char *natural[] = {"highway", "natural", CAMBER_PLAIN_PROPERTY};
+    static const char *const old[] = {"type", "multipolygon", NULL};
+    static const int64_t box[4] = {1005000000, 1085000000, 2085000000, 2005000000};
+    fixture *it = *state;
+    use_style(it, natural, sizeof natural / sizeof *natural);
+    it->on.style.wants_areas = true;
+    add_coast(it, box);
+    expect_areas(it, " +1.0 +36.0-1.0", 0);
+    add_coast(it, box);
+    RELATION(it, old, {2, "outer"}); /* in place of the way */
+    expect_areas(it, " +1.0 +36.0-1.0", 0);
+    it->on.warnings = 0;
+    add_coast(it, NULL);
+    expect_areas(it, " +1.0", 0);
+    assert_int_equal(it->on.warnings, 2); /* once a number of threads */
+    use_style(it, natural, 1);
+    it->on.style.wants_areas = true;
+    add_coast(it, box);
+    expect_areas(it, " +1.0", 0);
+    assert_int_equal(it->on.warnings, 2);
 }
 
 /* An old relation: its outer ways have the tags, and are not filled by themselves. */
@@ -733,6 +770,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_declined, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_filters, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_relations, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_sea, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_old_relations, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_no_lines, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_cut, set_up, tear_down),

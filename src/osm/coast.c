@@ -1,15 +1,15 @@
 /* Makes the sea of a coast.
  *
- * Input: ways with land on their left, and a box. Output: rings. Main idea: ways that go on from each other are chains.
- * What of a chain lies in the box is a piece from one place of the box's sides to another, or a ring. Along a piece the
- * sea is on the right, and so it is on the way that goes on from its end clockwise along the sides, until the next
- * piece begins:
+ * Input: ways with land on their left, and a box. Output: rings. Main idea: ways that follow each other are put
+ * together. What of them lies in the box is a stretch from one place of the box's sides to another, or a ring. Along a
+ * stretch the sea is on the right. So it is along the box's sides, clockwise, from the stretch's end to where the next
+ * one begins:
  *
  *        +---end--->--+       Ends and beginnings take turns around the box. Where they do not, some of the coast is
  *        |    |       |       missing, and no sea is better than one that floods the land.
  *        | land  sea  v
- *        |    ^       |       Rings are islands, or seas of their own. Without pieces the box lies in the sea if the
- *        +--begin--<--+       ring that reaches farthest west is an island.
+ *        |    ^       |       Rings are islands, or seas in land. Which of them fit is found by how often the others
+ *        +--begin--<--+       wind around them. Without stretches that also tells whether the box lies in the sea.
  */
 #include "osm/coast.h"
 
@@ -19,24 +19,27 @@
 
 /* How far from a side the coast may end: a share of the box's shorter side, and 10^-7 degrees. */
 enum { NEAR_SHARE = 16, NEAR_MOST = 500000 };
+/* Pairs of an edge and a ring that are looked at; a coast has about one an edge. */
+static const size_t MOST_PROBED = (size_t)1 << 31;
 
 /* A way by where it begins. */
 typedef struct way_start {
     uint64_t place;
     uint32_t way;
+    uint32_t used_count; /* where it is the first that begins at its place: so many from it on are used */
     bool used;
 } way_start;
 
-/* A piece of the coast in the box: its places, and where it begins and ends along the box's sides. */
-typedef struct piece {
+/* What of the coast lies in the box, from side to side: its places, and where along the sides it begins and ends. */
+typedef struct stretch {
     size_t first, count;
     int64_t begin, end;
-} piece;
+} stretch;
 
-/* An end or a beginning of a piece. */
+/* An end or a beginning of a stretch. */
 typedef struct border_mark {
     int64_t at;
-    uint32_t piece;
+    uint32_t stretch;
     bool begins;
 } border_mark;
 
@@ -46,19 +49,39 @@ typedef struct shore {
     camber_osm_box box;
     camber_osm_assembly *sea;
     way_start *starts; /* way_count, by place */
-    uint64_t *chain;   /* places of the chain that is cut */
-    size_t chain_count, chain_capacity;
-    uint64_t *cut; /* places of pieces */
+    uint64_t *line;    /* places of the ways that were put together */
+    size_t line_count, line_capacity;
+    uint64_t *cut; /* places of stretches */
     size_t cut_count, cut_capacity;
-    piece *pieces;
-    size_t piece_count, piece_capacity;
-    bool in_piece;
+    stretch *stretches;
+    size_t stretch_count, stretch_capacity;
+    bool in_stretch;
     bool failed; /* no memory */
 } shore;
 
 /* ---- Ways ---- */
 
-camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *places, size_t count) {
+/* The side that a place in the box is near to: 0 left, 1 right, 2 bottom, 3 top. Below 0: it is near to none. */
+static int find_side(camber_osm_box b, uint64_t place) {
+    const int64_t x = camber_osm_longitude(place), y = camber_osm_latitude(place), wide = (int64_t)b.right - b.left,
+                  high = (int64_t)b.top - b.bottom, shorter = wide < high ? wide : high;
+    const int64_t most = shorter / NEAR_SHARE < NEAR_MOST ? shorter / NEAR_SHARE : NEAR_MOST;
+    const int64_t distances[4] = {x - b.left, b.right - x, y - b.bottom, b.top - y};
+    int side = 0;
+    for (int i = 1; i < 4; i++)
+        side = distances[i] < distances[side] ? i : side;
+    return distances[side] >= 0 && distances[side] <= most ? side : -1;
+}
+
+/* The nearest place on the side that a place is near to, or the place itself. */
+static uint64_t nearest_on_side(camber_osm_box b, uint64_t place) {
+    const int side = find_side(b, place), x = camber_osm_longitude(place), y = camber_osm_latitude(place);
+    return side < 0   ? place
+           : side < 2 ? camber_osm_place(side ? b.right : b.left, y)
+                      : camber_osm_place(x, side == 2 ? b.bottom : b.top);
+}
+
+static camber_status add_way(camber_osm_coast *coast, const uint64_t *places, size_t count) {
     if (count < 2)
         return CAMBER_OK;
     if (!camber_grow(coast->context, &coast->places, &coast->place_capacity, coast->place_count + count,
@@ -71,14 +94,34 @@ camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *plac
     return CAMBER_OK;
 }
 
+/* A way is cut at a gap between two sides of the box. At a gap along one side little is lost. */
+camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *places, size_t count, bool has_gaps) {
+    size_t first = 0;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; has_gaps && i + 1 < count && status == CAMBER_OK; i++) {
+        const int side = find_side(coast->box, places[i]), next = find_side(coast->box, places[i + 1]);
+        if (side < 0 || next < 0 || side == next)
+            continue;
+        status = add_way(coast, places + first, i + 1 - first);
+        first = i + 1;
+    }
+    return status == CAMBER_OK ? add_way(coast, places + first, count - first) : status;
+}
+
 void camber_osm_coast_free(camber_osm_coast *coast) {
     camber_free(coast->context, coast->ends);
     camber_free(coast->context, coast->places);
-    *coast = (camber_osm_coast){.context = coast->context};
+    *coast = (camber_osm_coast){.context = coast->context, .box = coast->box};
 }
 
 static size_t first_of(const camber_osm_coast *coast, size_t way) {
     return way ? coast->ends[way - 1] : 0;
+}
+
+static bool are_same(const camber_osm_coast *coast, size_t way, size_t other) {
+    const size_t first = first_of(coast, way), count = coast->ends[way] - first;
+    return coast->ends[other] - first_of(coast, other) == count &&
+           memcmp(coast->places + first, coast->places + first_of(coast, other), count * sizeof *coast->places) == 0;
 }
 
 static int compare_starts(const void *a, const void *b) {
@@ -102,28 +145,31 @@ static size_t find_start(const shore *s, uint64_t place) {
     return first;
 }
 
-/* The next way that begins at a place and is in no chain yet. way_count: there is none. */
-static size_t find_next(const shore *s, uint64_t place) {
-    for (size_t i = find_start(s, place); i < s->coast->way_count && s->starts[i].place == place; i++)
-        if (!s->starts[i].used)
-            return i;
-    return s->coast->way_count;
+/* The next way that begins at a place and is in no line yet. way_count: there is none. */
+static size_t find_next(shore *s, uint64_t place) {
+    const size_t count = s->coast->way_count, first = find_start(s, place);
+    if (first == count)
+        return count;
+    uint32_t *used = &s->starts[first].used_count;
+    while (first + *used < count && s->starts[first + *used].used && s->starts[first + *used].place == place)
+        ++*used;
+    return first + *used < count && s->starts[first + *used].place == place ? first + *used : count;
 }
 
-/* Puts the ways that go on from each other into the chain. */
-static void take_chain(shore *s, size_t start) {
+/* Puts ways that follow each other together. */
+static void take_line(shore *s, size_t start) {
     const camber_osm_coast *coast = s->coast;
-    s->chain_count = 0;
+    s->line_count = 0;
     for (size_t i = start; i < coast->way_count;) {
-        const size_t way = s->starts[i].way, first = first_of(coast, way) + (s->chain_count > 0),
+        const size_t way = s->starts[i].way, first = first_of(coast, way) + (s->line_count > 0),
                      count = coast->ends[way] - first;
         s->starts[i].used = true;
-        if (!camber_grow(s->context, &s->chain, &s->chain_capacity, s->chain_count + count, sizeof *s->chain)) {
+        if (!camber_grow(s->context, &s->line, &s->line_capacity, s->line_count + count, sizeof *s->line)) {
             s->failed = true;
             return;
         }
-        memcpy(s->chain + s->chain_count, coast->places + first, count * sizeof *s->chain);
-        s->chain_count += count;
+        memcpy(s->line + s->line_count, coast->places + first, count * sizeof *s->line);
+        s->line_count += count;
         i = find_next(s, coast->places[coast->ends[way] - 1]);
     }
 }
@@ -154,16 +200,16 @@ typedef struct inside {
     int from_side, to_side; /* 0: an end of the segment; else 1 left, 2 right, 3 bottom, 4 top */
 } inside;
 
-static void cut_at(inside *i, double distance, double way, int side) {
-    /* distance: of the segment's beginning from the side, above 0 inside; way: how much of it the segment takes */
-    const double share = distance / way;
-    if (way > 0.0 && share < i->to) {
+/* distance: of the segment's beginning from the side, above 0 inside. taken: how much of it the segment takes. */
+static void cut_at(inside *i, double distance, double taken, int side) {
+    const double share = distance / taken;
+    if (taken > 0.0 && share < i->to) {
         i->to = share;
         i->to_side = side;
-    } else if (way < 0.0 && share > i->from) {
+    } else if (taken < 0.0 && share > i->from) {
         i->from = share;
         i->from_side = side;
-    } else if (way == 0.0 && distance < 0.0) {
+    } else if (taken == 0.0 && distance < 0.0) {
         i->to = -1.0;
     }
 }
@@ -197,104 +243,12 @@ static uint64_t place_on(const shore *s, uint64_t a, uint64_t b, double share, i
                                         : y);
 }
 
-/* ---- Pieces ---- */
-
-static void add_place(shore *s, uint64_t place) {
-    if (s->cut_count > s->pieces[s->piece_count - 1].first && s->cut[s->cut_count - 1] == place)
-        return;
-    if (!camber_grow(s->context, &s->cut, &s->cut_capacity, s->cut_count + 1, sizeof *s->cut)) {
-        s->failed = true;
-        return;
-    }
-    s->cut[s->cut_count++] = place;
-}
-
-static void begin_piece(shore *s, uint64_t place) {
-    if (!camber_grow(s->context, &s->pieces, &s->piece_capacity, s->piece_count + 1, sizeof *s->pieces)) {
-        s->failed = true;
-        return;
-    }
-    s->pieces[s->piece_count++] = (piece){.first = s->cut_count};
-    s->in_piece = true;
-    add_place(s, place);
-}
-
-/* Ends a piece, which has to lie between two places of the sides; one that only touches a side is none. */
-static void end_piece(shore *s) {
-    piece *p = s->pieces + s->piece_count - 1;
-    s->in_piece = false;
-    p->count = s->cut_count - p->first;
-    if (p->count < 2) {
-        s->cut_count = p->first;
-        s->piece_count--;
-        return;
-    }
-    p->begin = find_border(s, s->cut[p->first]);
-    p->end = find_border(s, s->cut[s->cut_count - 1]);
-    s->sea->open |= p->begin < 0 || p->end < 0;
-}
-
-/* The nearest place on a side. The same place: that is too far, or the place is on a side, or outside. */
-static uint64_t nearest_on_side(const shore *s, uint64_t place) {
-    const camber_osm_box b = s->box;
-    const int64_t x = camber_osm_longitude(place), y = camber_osm_latitude(place), wide = (int64_t)b.right - b.left,
-                  high = (int64_t)b.top - b.bottom, shorter = wide < high ? wide : high;
-    const int64_t distances[4] = {x - b.left, b.right - x, y - b.bottom, b.top - y};
-    int side = 0;
-    for (int i = 1; i < 4; i++)
-        side = distances[i] < distances[side] ? i : side;
-    const int64_t most = shorter / NEAR_SHARE < NEAR_MOST ? shorter / NEAR_SHARE : NEAR_MOST;
-    if (distances[side] <= 0 || distances[side] > most)
-        return place;
-    return side < 2 ? camber_osm_place(side ? b.right : b.left, (int32_t)y)
-                    : camber_osm_place((int32_t)x, side == 2 ? b.bottom : b.top);
-}
-
-/* An extract may have no node beyond its box: then the coast ends at the last one before a side, and goes on to it. */
-static void reach_sides(shore *s) {
-    const uint64_t first = nearest_on_side(s, s->chain[0]), last = nearest_on_side(s, s->chain[s->chain_count - 1]);
-    if (!camber_grow(s->context, &s->chain, &s->chain_capacity, s->chain_count + 2, sizeof *s->chain)) {
-        s->failed = true;
-        return;
-    }
-    if (last != s->chain[s->chain_count - 1])
-        s->chain[s->chain_count++] = last;
-    if (first == s->chain[0])
-        return;
-    memmove(s->chain + 1, s->chain, s->chain_count * sizeof *s->chain);
-    s->chain[0] = first;
-    s->chain_count++;
-}
-
-/* Cuts pieces of the chain, from its place `first` on. */
-static void cut_chain(shore *s, size_t first) {
-    const size_t count = s->chain_count;
-    const bool closed = s->chain[0] == s->chain[count - 1];
-    for (size_t k = first; k + 1 < first + count && !s->failed; k++) {
-        const size_t at = closed ? k % (count - 1) : k;
-        const uint64_t a = s->chain[at], b = s->chain[at + 1];
-        const inside i = find_inside(s, a, b);
-        const bool empty = i.from >= i.to;
-        if (s->in_piece && empty)
-            end_piece(s);
-        if (empty)
-            continue;
-        if (!s->in_piece)
-            begin_piece(s, i.from > 0.0 ? place_on(s, a, b, i.from, i.from_side) : a);
-        if (!s->failed)
-            add_place(s, i.to < 1.0 ? place_on(s, a, b, i.to, i.to_side) : b);
-        if (i.to < 1.0 && !s->failed)
-            end_piece(s);
-    }
-    if (s->in_piece && !s->failed)
-        end_piece(s);
-}
-
 /* ---- Rings ---- */
 
-static void put_place(camber_osm_assembly *sea, uint64_t place, bool *failed) {
+static void put_place(shore *s, uint64_t place) {
+    camber_osm_assembly *sea = s->sea;
     if (!camber_grow(sea->context, &sea->places, &sea->place_capacity, sea->place_count + 1, sizeof *sea->places)) {
-        *failed = true;
+        s->failed = true;
         return;
     }
     sea->places[sea->place_count++] = place;
@@ -304,7 +258,7 @@ static void put_place(camber_osm_assembly *sea, uint64_t place, bool *failed) {
 static void put_ring(shore *s, size_t first, camber_osm_role role) {
     camber_osm_assembly *sea = s->sea;
     if (!s->failed && sea->places[first] != sea->places[sea->place_count - 1])
-        put_place(sea, sea->places[first], &s->failed);
+        put_place(s, sea->places[first]);
     if (s->failed ||
         !camber_grow(sea->context, &sea->rings, &sea->ring_capacity, sea->ring_count + 1, sizeof *sea->rings)) {
         s->failed = true;
@@ -313,56 +267,144 @@ static void put_ring(shore *s, size_t first, camber_osm_role role) {
     sea->rings[sea->ring_count++] = (camber_osm_ring){first, sea->place_count - first, role};
 }
 
-/* A chain that closes in the box: land lies inside where it goes counter-clockwise, as seen. */
-static void put_closed(shore *s) {
+/* A closed line in the box: land lies inside where it goes counter-clockwise, as seen. */
+static void put_closed(shore *s, const uint64_t *places, size_t count) {
     const size_t first = s->sea->place_count;
-    const double x0 = camber_osm_longitude(s->chain[0]), y0 = camber_osm_latitude(s->chain[0]);
+    const double x0 = camber_osm_longitude(places[0]), y0 = camber_osm_latitude(places[0]);
     double area = 0.0;
-    for (size_t i = 0; i + 1 < s->chain_count && !s->failed; i++) {
-        const uint64_t a = s->chain[i], b = s->chain[i + 1];
+    for (size_t i = 0; i + 1 < count && !s->failed; i++) {
+        const uint64_t a = places[i], b = places[i + 1];
         area += (camber_osm_longitude(a) - x0) * (camber_osm_latitude(b) - y0) -
                 (camber_osm_longitude(b) - x0) * (camber_osm_latitude(a) - y0);
-        put_place(s->sea, a, &s->failed);
+        put_place(s, a);
     }
-    put_ring(s, first, area > 0.0 ? CAMBER_OSM_ROLE_INNER : CAMBER_OSM_ROLE_OUTER);
+    if (area == 0.0)
+        s->sea->place_count = first;
+    else
+        put_ring(s, first, area > 0.0 ? CAMBER_OSM_ROLE_INNER : CAMBER_OSM_ROLE_OUTER);
 }
 
-/* A chain is a ring in the box, or lies outside, or is cut: from a place outside on, where it is closed. */
-static void take_pieces(shore *s) {
-    const bool closed = s->chain_count > 2 && s->chain[0] == s->chain[s->chain_count - 1];
+/* ---- Stretches ---- */
+
+static void add_place(shore *s, uint64_t place) {
+    if (s->cut_count > s->stretches[s->stretch_count - 1].first && s->cut[s->cut_count - 1] == place)
+        return;
+    if (!camber_grow(s->context, &s->cut, &s->cut_capacity, s->cut_count + 1, sizeof *s->cut)) {
+        s->failed = true;
+        return;
+    }
+    s->cut[s->cut_count++] = place;
+}
+
+static void begin_stretch(shore *s, uint64_t place) {
+    if (!camber_grow(s->context, &s->stretches, &s->stretch_capacity, s->stretch_count + 1, sizeof *s->stretches)) {
+        s->failed = true;
+        return;
+    }
+    s->stretches[s->stretch_count++] = (stretch){.first = s->cut_count};
+    s->in_stretch = true;
+    add_place(s, place);
+}
+
+/* Ends a stretch, which has to lie between two places of the sides. One that only touches a side is none, and one that
+ * ends where it begins is a ring. */
+static void end_stretch(shore *s) {
+    stretch *p = s->stretches + s->stretch_count - 1;
+    s->in_stretch = false;
+    p->count = s->cut_count - p->first;
+    if (p->count < 2 || s->cut[p->first] == s->cut[s->cut_count - 1]) {
+        if (p->count > 3)
+            put_closed(s, s->cut + p->first, p->count);
+        s->cut_count = p->first;
+        s->stretch_count--;
+        return;
+    }
+    p->begin = find_border(s, s->cut[p->first]);
+    p->end = find_border(s, s->cut[s->cut_count - 1]);
+    s->sea->open |= p->begin < 0 || p->end < 0;
+}
+
+/* An extract may have no node beyond its box: then the coast ends at the last one before a side, and goes on to it. */
+static void reach_sides(shore *s) {
+    const uint64_t first = nearest_on_side(s->box, s->line[0]),
+                   last = nearest_on_side(s->box, s->line[s->line_count - 1]);
+    if (!camber_grow(s->context, &s->line, &s->line_capacity, s->line_count + 2, sizeof *s->line)) {
+        s->failed = true;
+        return;
+    }
+    if (last != s->line[s->line_count - 1])
+        s->line[s->line_count++] = last;
+    if (first == s->line[0])
+        return;
+    memmove(s->line + 1, s->line, s->line_count * sizeof *s->line);
+    s->line[0] = first;
+    s->line_count++;
+}
+
+/* Cuts stretches of the line, from its place `first` on. */
+static void cut_line(shore *s, size_t first) {
+    const size_t count = s->line_count;
+    const bool closed = s->line[0] == s->line[count - 1];
+    for (size_t k = first; k + 1 < first + count && !s->failed; k++) {
+        const size_t at = closed ? k % (count - 1) : k;
+        const uint64_t a = s->line[at], b = s->line[at + 1];
+        const inside i = find_inside(s, a, b);
+        const bool empty = i.from >= i.to;
+        if (s->in_stretch && empty)
+            end_stretch(s);
+        if (empty)
+            continue;
+        if (!s->in_stretch)
+            begin_stretch(s, i.from > 0.0 ? place_on(s, a, b, i.from, i.from_side) : a);
+        if (!s->failed)
+            add_place(s, i.to < 1.0 ? place_on(s, a, b, i.to, i.to_side) : b);
+        if (i.to < 1.0 && !s->failed)
+            end_stretch(s);
+    }
+    if (s->in_stretch && !s->failed)
+        end_stretch(s);
+}
+
+/* A line is a ring in the box, or lies outside, or is cut: from a place outside on, where it is closed. */
+static void take_stretches(shore *s) {
+    const bool closed = s->line[0] == s->line[s->line_count - 1];
     size_t outside = 0;
-    while (outside < s->chain_count && is_in_box(s, s->chain[outside]))
+    if (s->line_count < 3 && closed)
+        return;
+    while (outside < s->line_count && is_in_box(s, s->line[outside]))
         outside++;
-    if (closed && outside == s->chain_count) {
-        put_closed(s);
+    if (closed && outside == s->line_count) {
+        put_closed(s, s->line, s->line_count);
         return;
     }
     if (!closed)
         reach_sides(s);
     if (!s->failed)
-        cut_chain(s, closed ? outside : 0);
+        cut_line(s, closed ? outside : 0);
 }
 
 static void take_all(shore *s) {
     const camber_osm_coast *coast = s->coast;
     for (size_t i = 0; i < coast->way_count; i++)
-        s->starts[i] = (way_start){coast->places[first_of(coast, i)], (uint32_t)i, false};
+        s->starts[i] = (way_start){coast->places[first_of(coast, i)], (uint32_t)i, 0, false};
     qsort(s->starts, coast->way_count, sizeof *s->starts, compare_starts);
-    /* A way is the first of its chain if none ends where it begins. */
+    for (size_t i = 1; i < coast->way_count; i++)
+        s->starts[i].used = are_same(coast, s->starts[i - 1].way, s->starts[i].way);
+    /* A way is the first of its line if none ends where it begins. */
     uint8_t *goes_on = camber_alloc_zero(s->context, coast->way_count, 1);
     s->failed = !goes_on;
     for (size_t i = 0; i < coast->way_count && !s->failed; i++) {
         const uint64_t end = coast->places[coast->ends[i] - 1];
-        for (size_t k = find_start(s, end); k < coast->way_count && s->starts[k].place == end; k++)
+        for (size_t k = find_start(s, end); k < coast->way_count && s->starts[k].place == end && !goes_on[k]; k++)
             goes_on[k] = 1;
     }
     for (int rings = 0; rings < 2; rings++)
         for (size_t i = 0; i < coast->way_count && !s->failed && !s->sea->open; i++) {
             if (s->starts[i].used || goes_on[i] > rings)
                 continue;
-            take_chain(s, i);
+            take_line(s, i);
             if (!s->failed)
-                take_pieces(s);
+                take_stretches(s);
         }
     camber_free(s->context, goes_on);
 }
@@ -395,22 +437,22 @@ static void put_corners(shore *s, int64_t from, int64_t to) {
     const int64_t end = to < from ? to + 2 * (wide + high) : to;
     for (int i = 0; i < 8; i++)
         if (corners[i] > from && corners[i] < end)
-            put_place(s->sea, corner_of(s, i), &s->failed);
+            put_place(s, corner_of(s, i));
 }
 
-/* Joins the pieces along the sides. marks: two a piece, by place; each end comes before a beginning. */
-static void join_pieces(shore *s, const border_mark *marks, uint8_t *joined, const uint32_t *mark_of_end) {
-    const size_t count = 2 * s->piece_count;
-    for (size_t i = 0; i < s->piece_count && !s->failed; i++) {
+/* Joins the stretches along the sides. marks: two a stretch, by place; each end comes before a beginning. */
+static void join_stretches(shore *s, const border_mark *marks, uint8_t *joined, const uint32_t *mark_of_end) {
+    const size_t count = 2 * s->stretch_count;
+    for (size_t i = 0; i < s->stretch_count && !s->failed; i++) {
         const size_t first = s->sea->place_count;
         for (uint32_t at = (uint32_t)i; !joined[at] && !s->failed;) {
-            const piece *p = s->pieces + at;
+            const stretch *p = s->stretches + at;
             joined[at] = 1;
             for (size_t k = p->first; k < p->first + p->count; k++)
-                put_place(s->sea, s->cut[k], &s->failed);
+                put_place(s, s->cut[k]);
             const border_mark *next = marks + (mark_of_end[at] + 1) % count;
             put_corners(s, p->end, next->at);
-            at = next->piece;
+            at = next->stretch;
         }
         if (s->sea->place_count > first)
             put_ring(s, first, CAMBER_OSM_ROLE_OUTER);
@@ -418,45 +460,104 @@ static void join_pieces(shore *s, const border_mark *marks, uint8_t *joined, con
 }
 
 static void go_around(shore *s) {
-    const size_t count = 2 * s->piece_count;
+    const size_t count = 2 * s->stretch_count;
     border_mark *marks = camber_alloc(s->context, count, sizeof *marks);
-    uint8_t *joined = camber_alloc_zero(s->context, s->piece_count, 1);
-    uint32_t *mark_of_end = camber_alloc(s->context, s->piece_count, sizeof *mark_of_end);
+    uint8_t *joined = camber_alloc_zero(s->context, s->stretch_count, 1);
+    uint32_t *mark_of_end = camber_alloc(s->context, s->stretch_count, sizeof *mark_of_end);
     s->failed = !marks || !joined || !mark_of_end;
-    for (size_t i = 0; i < s->piece_count && !s->failed; i++) {
-        marks[2 * i] = (border_mark){s->pieces[i].begin, (uint32_t)i, true};
-        marks[2 * i + 1] = (border_mark){s->pieces[i].end, (uint32_t)i, false};
+    for (size_t i = 0; i < s->stretch_count && !s->failed; i++) {
+        marks[2 * i] = (border_mark){s->stretches[i].begin, (uint32_t)i, true};
+        marks[2 * i + 1] = (border_mark){s->stretches[i].end, (uint32_t)i, false};
     }
     if (!s->failed)
         qsort(marks, count, sizeof *marks, compare_marks);
     for (size_t i = 0; i < count && !s->failed; i++) {
         s->sea->open |= marks[i].begins == marks[(i + 1) % count].begins;
         if (!marks[i].begins)
-            mark_of_end[marks[i].piece] = (uint32_t)i;
+            mark_of_end[marks[i].stretch] = (uint32_t)i;
     }
     if (!s->failed && !s->sea->open)
-        join_pieces(s, marks, joined, mark_of_end);
+        join_stretches(s, marks, joined, mark_of_end);
     camber_free(s->context, mark_of_end);
     camber_free(s->context, joined);
     camber_free(s->context, marks);
 }
 
-/* The box is sea around the rings, if the one that reaches farthest west is an island. */
-static void put_box(shore *s) {
-    const camber_osm_assembly *sea = s->sea;
-    int32_t least = INT32_MAX;
-    bool is_island = false;
+/* ---- What lies in what ---- */
+
+/* A place on a ring that closes in the box, and how often other rings of the sea wind around it. */
+typedef struct probe {
+    double x, y;
+    size_t ring;
+    int around;
+} probe;
+
+static int compare_probes(const void *a, const void *b) {
+    const probe *one = a, *other = b;
+    return (one->y > other->y) - (one->y < other->y);
+}
+
+/* Adds the edge from a to b of a ring to what winds around the probes. *left: probes that may be looked at. */
+static void wind(probe *probes, size_t count, size_t ring, uint64_t a, uint64_t b, size_t *left) {
+    const double ax = camber_osm_longitude(a), ay = camber_osm_latitude(a), bx = camber_osm_longitude(b),
+                 by = camber_osm_latitude(b), low = ay < by ? ay : by, high = ay < by ? by : ay;
+    size_t first = 0;
+    for (size_t rest = count; rest > 0;) {
+        const size_t half = rest / 2;
+        const bool is_below = probes[first + half].y < low;
+        first += is_below ? half + 1 : 0;
+        rest = is_below ? rest - half - 1 : half;
+    }
+    for (size_t i = first; i < count && probes[i].y<high && * left> 0; i++, --*left)
+        if (probes[i].ring != ring && ax + (probes[i].y - ay) * (bx - ax) / (by - ay) < probes[i].x)
+            probes[i].around += by > ay ? 1 : -1;
+}
+
+/* Leaves out the rings that lie on the wrong side of others. Without stretches the rings tell whether the box lies in
+ * the sea; all have to agree. closed_count: the first rings, which close in the box. */
+static void fit_rings(shore *s, probe *probes, size_t closed_count) {
+    camber_osm_assembly *sea = s->sea;
+    size_t left = MOST_PROBED;
+    for (size_t i = 0; i < closed_count; i++) {
+        const uint64_t a = sea->places[sea->rings[i].first], b = sea->places[sea->rings[i].first + 1];
+        probes[i] = (probe){.x = 0.5 * ((double)camber_osm_longitude(a) + camber_osm_longitude(b)),
+                            .y = 0.5 * ((double)camber_osm_latitude(a) + camber_osm_latitude(b)),
+                            .ring = i};
+    }
+    qsort(probes, closed_count, sizeof *probes, compare_probes);
     for (size_t i = 0; i < sea->ring_count; i++)
-        for (size_t k = sea->rings[i].first; k < sea->rings[i].first + sea->rings[i].count; k++)
-            if (camber_osm_longitude(sea->places[k]) < least) {
-                least = camber_osm_longitude(sea->places[k]);
-                is_island = sea->rings[i].role == CAMBER_OSM_ROLE_INNER;
-            }
+        for (size_t k = sea->rings[i].first; k + 1 < sea->rings[i].first + sea->rings[i].count; k++)
+            wind(probes, closed_count, i, sea->places[k], sea->places[k + 1], &left);
+    bool is_sea = false;
+    for (size_t i = 0; i < closed_count; i++) {
+        camber_osm_ring *ring = sea->rings + probes[i].ring;
+        const int missing = (ring->role == CAMBER_OSM_ROLE_INNER) - probes[i].around;
+        if (s->stretch_count)
+            ring->count = missing == 0 ? ring->count : 0;
+        else
+            sea->open |= missing < 0 || missing > 1 || (i > 0 && is_sea != (missing == 1));
+        is_sea = missing == 1;
+    }
+    sea->open |= left == 0;
     const size_t first = sea->place_count;
-    for (int i = 0; i < 4 && is_island; i++)
-        put_place(s->sea, corner_of(s, i), &s->failed);
-    if (is_island)
+    for (int i = 0; i < 4 && is_sea && !s->stretch_count; i++)
+        put_place(s, corner_of(s, i));
+    if (is_sea && !s->stretch_count)
         put_ring(s, first, CAMBER_OSM_ROLE_OUTER);
+}
+
+static void find_fitting(shore *s, size_t closed_count) {
+    camber_osm_assembly *sea = s->sea;
+    probe *probes = camber_alloc(s->context, closed_count, sizeof *probes);
+    s->failed = !probes;
+    if (probes)
+        fit_rings(s, probes, closed_count);
+    camber_free(s->context, probes);
+    size_t kept = 0;
+    for (size_t i = 0; i < sea->ring_count; i++)
+        if (sea->rings[i].count)
+            sea->rings[kept++] = sea->rings[i];
+    sea->ring_count = kept;
 }
 
 static int compare_rings(const void *a, const void *b) {
@@ -465,7 +566,8 @@ static int compare_rings(const void *a, const void *b) {
                                     : (one->first > other->first) - (one->first < other->first);
 }
 
-camber_status camber_osm_coast_fill(const camber_osm_coast *coast, camber_osm_box box, camber_osm_assembly *sea) {
+camber_status camber_osm_coast_fill(const camber_osm_coast *coast, camber_osm_assembly *sea) {
+    const camber_osm_box box = coast->box;
     shore s = {.context = sea->context, .coast = coast, .box = box, .sea = sea};
     sea->place_count = sea->ring_count = 0;
     sea->open = box.left >= box.right || box.bottom >= box.top;
@@ -474,17 +576,18 @@ camber_status camber_osm_coast_fill(const camber_osm_coast *coast, camber_osm_bo
     if (!(s.starts = camber_alloc(s.context, coast->way_count, sizeof *s.starts)))
         return CAMBER_ERROR_MEMORY;
     take_all(&s);
-    if (!s.failed && !sea->open && s.piece_count)
+    const size_t closed_count = sea->ring_count;
+    if (!s.failed && !sea->open && s.stretch_count)
         go_around(&s);
-    else if (!s.failed && !sea->open)
-        put_box(&s);
+    if (!s.failed && !sea->open && closed_count)
+        find_fitting(&s, closed_count);
     if (sea->open)
         sea->ring_count = 0;
     if (sea->ring_count)
         qsort(sea->rings, sea->ring_count, sizeof *sea->rings, compare_rings); /* outer rings come first */
-    camber_free(s.context, s.pieces);
+    camber_free(s.context, s.stretches);
     camber_free(s.context, s.cut);
-    camber_free(s.context, s.chain);
+    camber_free(s.context, s.line);
     camber_free(s.context, s.starts);
     return s.failed ? CAMBER_ERROR_MEMORY : CAMBER_OK;
 }

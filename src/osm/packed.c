@@ -62,11 +62,14 @@ static void look_up_places(const camber_osm_ways *ways, const camber_osm_run *ru
 static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, packer *to, size_t *dropped) {
     const packer before = *to;
     uint64_t first = 0, last = 0;
-    uint32_t found = 0;
+    uint32_t found = 0, last_found = 0;
+    bool gaps = false;
     for (uint32_t i = 0; i < way->node_count; i++) {
         const uint64_t place = *to->places++;
         if (place == CAMBER_OSM_NOWHERE)
             continue;
+        gaps |= found && i > last_found + 1;
+        last_found = i;
         first = found++ ? first : place;
         last = place;
         put_place(to, place);
@@ -79,7 +82,9 @@ static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, pa
         to->place = before.place;
         found = 0;
     }
-    return (camber_osm_way){way->tags & ~(area ? 0u : (uint32_t)CAMBER_OSM_WAY_AREA), found};
+    return (camber_osm_way){(way->tags & ~(area ? 0u : (uint32_t)CAMBER_OSM_WAY_AREA)) |
+                                (gaps ? (uint32_t)CAMBER_OSM_WAY_GAPS : 0u),
+                            found};
 }
 
 static bool pack_run(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {

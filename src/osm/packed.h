@@ -12,7 +12,8 @@ typedef struct camber_osm_pack_desc {
 } camber_osm_pack_desc;
 
 /* Packs the ways once the places of their nodes are known, and frees ids and nodes. From then on a way's node_count is
- * how many of its nodes the file has, 0 where it makes no line; its tags say that it is an area where it is closed.
+ * how many of its nodes the file has, 0 where it makes no line; its tags say that it is an area where it is closed, and
+ * whether it has gaps.
  * *dropped: so many areas are gone. */
 camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc *desc, size_t *dropped);
 

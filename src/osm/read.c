@@ -5,7 +5,7 @@
  * ways first, which lie at its end, then the places of those nodes that ways name. So a node takes eight bytes and a
  * bit, whatever else the file has. Where areas are wanted, the relations that name ways are read before them. A third
  * pass packs the ways with these places, and frees the nodes; a fourth makes world coordinates. Each pass has several
- * threads. */
+ * threads. Where areas are wanted, the sea is made of the coast's ways as well (coast.h). */
 #include "osm/osm.h"
 
 #include "osm/coast.h"
@@ -30,10 +30,9 @@ typedef struct reader {
     const camber_source_desc *desc;
     camber_osm_where where;
     camber_osm_ways ways;
-    camber_osm_coast coast; /* its ways, where areas are wanted */
-    camber_osm_box box;
-    size_t coast_key;      /* the style's property "natural"; SIZE_MAX: the sea is not wanted */
-    const char *coastline; /* its value on a coast, interned */
+    camber_osm_coast coast; /* its ways, where the sea is wanted */
+    size_t coast_key;       /* the style's property "natural"; SIZE_MAX: the sea is not wanted */
+    const char *coastline;  /* its value on a coast, interned */
     uint32_t layer;
     uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
     size_t met;                               /* of the relations' ways, so many of those met were added */
@@ -240,7 +239,8 @@ static camber_status add_run(void *user, size_t part, void *slot) {
         const bool filled = !member || !relations->ways[relations->met[self->met]].is_outer;
         status = add_way(self, &ways[i], filled, &run->lines, &line);
         if (ways[i].is_coast && status == CAMBER_OK)
-            status = camber_osm_coast_add(&self->coast, places + ways[i].first_place, ways[i].place_count);
+            status = camber_osm_coast_add(&self->coast, places + ways[i].first_place, ways[i].place_count,
+                                          ways[i].tags & CAMBER_OSM_WAY_GAPS);
         if (!member || status != CAMBER_OK)
             continue;
         status =
@@ -261,6 +261,7 @@ typedef struct made_area {
     camber_rings rings;
     uint32_t class_index;
     bool added;
+    bool is_sea; /* rings lie within a box: their edges go the way that they go, however far that is */
 } made_area;
 
 static camber_status add_ring(reader *self, made_area *area, const camber_osm_ring *ring) {
@@ -274,7 +275,9 @@ static camber_status add_ring(reader *self, made_area *area, const camber_osm_ri
         const uint64_t place = area->assembly.places[i];
         camber_world_lines_add_degrees(lines, camber_osm_longitude(place) / 1.0e7, camber_osm_latitude(place) / 1.0e7);
     }
-    size_t count = camber_ring_unroll(lines->points, lines->point_count, &crosses);
+    size_t count = lines->point_count;
+    if (!area->is_sea)
+        count = camber_ring_unroll(lines->points, count, &crosses);
     self->splits += crosses;
     count = camber_rings_take(&area->rings, lines->points, count, ring->role == CAMBER_OSM_ROLE_INNER);
     if (count && !area->added)
@@ -314,15 +317,17 @@ static camber_status find_sea_class(reader *self, uint32_t *index) {
 
 /* Makes an area of the sea, which OpenStreetMap has the coast of. */
 static camber_status make_sea(reader *self, made_area *area) {
-    camber_status status = camber_osm_coast_fill(&self->coast, self->box, &area->assembly);
+    area->is_sea = true;
+    camber_status status = camber_osm_coast_fill(&self->coast, &area->assembly);
     if (status == CAMBER_OK && area->assembly.open)
         camber_log(
             self->context, CAMBER_LOG_WARNING,
             "%s: no sea is drawn: %s; cut an extract by a box, with whole ways, or name a file of water areas as "
             "another input",
             self->desc->path,
-            self->box.left < self->box.right ? "its coast ends inside of the extract's box"
-                                             : "its header does not say in which box its coast is whole");
+            self->coast.box.left < self->coast.box.right ? "its coast is not whole in the box that its header names"
+                                                         : "its header names no box, or one across the antimeridian");
+    camber_osm_coast_free(&self->coast);
     if (status == CAMBER_OK && area->assembly.ring_count)
         status = find_sea_class(self, &area->class_index);
     area->added = false;
@@ -420,11 +425,17 @@ static camber_status check_result(const reader *self, size_t features_before) {
                        self->desc->path, self->skipped);
 }
 
-/* The sea is wanted where areas are, by their key. */
-static camber_status find_coast_key(reader *self) {
+/* The sea is wanted where areas are, by their key, and the whole coast is read. box: of the file's header; the world
+ * ends where Web Mercator does. */
+static camber_status want_sea(reader *self, camber_osm_box box) {
     const camber_style *style = self->features->style;
+    const int32_t most = (int32_t)(CAMBER_MERCATOR_LATITUDE * 1.0e7);
+    const bool wanted = style->wants_areas && !self->desc->layer && !self->desc->where;
+    box.bottom = box.bottom > -most ? box.bottom : -most;
+    box.top = box.top < most ? box.top : most;
+    self->coast.box = box;
     self->coast_key = SIZE_MAX;
-    for (size_t i = 0; i < style->property_count && style->wants_areas && !self->desc->layer; i++)
+    for (size_t i = 0; i < style->property_count && wanted; i++)
         if (strcmp(style->properties[i], "natural") == 0)
             self->coast_key = i;
     return camber_features_intern(self->features, "coastline", &self->coastline);
@@ -436,11 +447,10 @@ static camber_status read_lines(reader *self, bool *declined) {
     camber_status status = camber_osm_file_open(self->context, self->desc->path, &file, declined);
     if (status != CAMBER_OK || *declined)
         return status;
-    self->box = file.box;
     const bool filters = self->desc->where && camber_osm_where_parse(self->desc->where, &self->where);
     status = camber_osm_ways_init(&self->ways, self->features, filters ? &self->where : NULL, declined);
     if (status == CAMBER_OK && !*declined)
-        status = find_coast_key(self);
+        status = want_sea(self, file.box);
     if (status == CAMBER_OK && !*declined)
         status = read_places(self, &file, declined);
     if (status == CAMBER_OK && !*declined)

@@ -22,7 +22,8 @@ enum {
     CAMBER_OSM_WAY_AREA = 1,   /* closed, it is an area */
     CAMBER_OSM_WAY_MEMBER = 2, /* of a relation that is an area */
     CAMBER_OSM_WAY_BARE = 4,   /* only a member: without tags, or kept out by the filter */
-    CAMBER_OSM_WAY_BITS = 8
+    CAMBER_OSM_WAY_GAPS = 8,   /* the file lacks nodes between others of it */
+    CAMBER_OSM_WAY_BITS = 16
 };
 
 typedef struct camber_osm_way {

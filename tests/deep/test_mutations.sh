@@ -298,9 +298,9 @@ mutant strip kernels/layout.h "a pad of another width on the device" '#define CA
 mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &e->before)' 'first, r, &e->before)'
 mutant strip kernels/setup.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
     'first - 1, r, &second)'
-mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r->first_row,' 'take_rows(rows, 0u * r.first_row,'
+mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r->first_row,' 'take_rows(rows, 0u * r->first_row,'
 mutant kite kernels/setup.cl "lines that go on to the next" 'r->strips ? STARTS : CAMBER_POINT_FIRST' \
-    'r.strips ? STARTS : 0u'
+    'r->strips ? STARTS : 0u'
 mutant strip kernels/setup.cl "areas: all by the first fill" 'brushes += next;' 'brushes += 0u * next;'
 mutant strip kernels/setup.cl "areas: fills that change too early" 'numbers) >= own[next] - first' \
     'numbers) < own[next] - first'

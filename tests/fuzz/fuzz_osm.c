@@ -15,9 +15,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char style_text[] = "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"filter\": "
-                                 "[\"any\", [\"has\", \"highway\"], [\"has\", "
-                                 "\"natural\"]]}]}";
+static const char style_text[] =
+    "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"filter\": [\"has\", \"highway\"]}, "
+    "{\"id\": \"water\", \"type\": \"fill\", \"filter\": [\"has\", \"natural\"]}]}";
 /* 10^-9 degrees */
 static const int64_t box[4] = {-1000000000, 2000000000, 3000000000, -4000000000};
 
@@ -48,6 +48,7 @@ static void use_coast(fuzz_run *run, const uint8_t *bytes, size_t size) {
     within.right = take_degrees(&from);
     within.bottom = take_degrees(&from);
     within.top = take_degrees(&from);
+    coast.box = within;
     bool added = true;
     while (from.size > 0 && added) {
         uint64_t places[16];
@@ -56,9 +57,9 @@ static void use_coast(fuzz_run *run, const uint8_t *bytes, size_t size) {
             const int32_t longitude = take_degrees(&from);
             places[i] = camber_osm_place(longitude, take_degrees(&from));
         }
-        added = fuzz_done(run, camber_osm_coast_add(&coast, places, count));
+        added = fuzz_done(run, camber_osm_coast_add(&coast, places, count, size & 1));
     }
-    if (added && fuzz_done(run, camber_osm_coast_fill(&coast, within, &sea))) {
+    if (added && fuzz_done(run, camber_osm_coast_fill(&coast, &sea))) {
         REQUIRE(!sea.open || sea.ring_count == 0);
         for (size_t i = 0; i < sea.ring_count; i++) {
             const camber_osm_ring *ring = sea.rings + i;

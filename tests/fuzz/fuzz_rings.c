@@ -406,13 +406,18 @@ static void choose_places(uint64_t random, const camber_ring_window *window, pla
 /* Fills the rings, with x and y exchanged if they are turned over. Returns whether all places hold, or memory ran out.
  */
 static bool fill_rings(fuzz_run *run, camber_triangulator *triangulator, const camber_polylines *made,
-                       const camber_ring_window *window, bool turned_over) {
+                       const camber_ring_window *wanted, bool turned_over) {
+    const camber_ring_window over = {wanted->centre_y, wanted->centre_x, wanted->half_height, wanted->half_width,
+                                     wanted->units};
+    const camber_ring_window *window = turned_over ? &over : wanted;
     place places[PLACES];
     camber_triangles triangles = {0};
     float *points = malloc((made->slot_count + 2) * 2 * sizeof *points);
     bool added = true;
     REQUIRE(points);
-    choose_places(run->hash | 1, window, places);
+    choose_places(run->hash | 1, wanted, places);
+    for (size_t i = 0; i < PLACES && turned_over; i++)
+        places[i] = (place){.x = places[i].y, .y = places[i].x};
     for (size_t i = 0; i < made->polyline_count && added; i++) {
         const size_t count = ring_of(made, i, points);
         for (size_t k = 0; k < 2 * count && turned_over; k += 2) {
@@ -432,14 +437,12 @@ static bool fill_rings(fuzz_run *run, camber_triangulator *triangulator, const c
 /* GLU computes in floating point, and now and then a tangle has a triangle twice, or a hole: of some 30,000 that a
  * fuzzer made, one. Another way of sweeping is right about the same rings; camber's own part would be wrong in both. */
 static void use_triangles(fuzz_run *run, const camber_polylines *made, const camber_ring_window *window) {
-    const camber_ring_window over = {window->centre_y, window->centre_x, window->half_height, window->half_width,
-                                     window->units};
     camber_triangulator *triangulator = NULL;
     if (made->stats.kept_segments > TRIANGULATED_MOST || !camber_triangulator_is_here() ||
         !fuzz_done(run, camber_triangulator_create(run->context, &triangulator)))
         return;
     if (!fill_rings(run, triangulator, made, window, false))
-        REQUIRE(fill_rings(run, triangulator, made, &over, true));
+        REQUIRE(fill_rings(run, triangulator, made, window, true));
     camber_triangulator_destroy(triangulator);
 }
 

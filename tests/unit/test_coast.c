@@ -84,7 +84,8 @@ static void add_lands(fixture *f) {
 }
 
 static void add_way(fixture *f, const uint64_t *points, size_t count) {
-    assert_int_equal(camber_osm_coast_add(&f->coast, points, count), CAMBER_OK);
+    f->coast.box = f->box;
+    assert_int_equal(camber_osm_coast_add(&f->coast, points, count, false), CAMBER_OK);
 }
 
 /* Adds a land's coast as ways that begin anywhere, in any order. reversed: it is a sea in land. */
@@ -137,7 +138,8 @@ static int count_sea(const camber_osm_assembly *sea, double x, double y, bool *n
 }
 
 static void fill(fixture *f, bool is_open) {
-    assert_int_equal(camber_osm_coast_fill(&f->coast, f->box, &f->sea), CAMBER_OK);
+    f->coast.box = f->box;
+    assert_int_equal(camber_osm_coast_fill(&f->coast, &f->sea), CAMBER_OK);
     assert_int_equal(f->sea.open, is_open);
     if (is_open)
         assert_int_equal(f->sea.ring_count, 0);
@@ -274,6 +276,100 @@ static void test_touches(void **state) {
     assert_int_equal(count_sea(&f->sea, 100, 900, &near), 0);
 }
 
+/* Adds a way of pairs of coordinates. */
+#define ADD(f, has_gaps, ...)                                                                                          \
+    add_pairs(f, has_gaps, (const int32_t[]){__VA_ARGS__}, sizeof(int32_t[]){__VA_ARGS__} / sizeof(int32_t) / 2)
+static void add_pairs(fixture *f, bool has_gaps, const int32_t *pairs, size_t count) {
+    uint64_t places[16];
+    assert_true(count <= 16);
+    for (size_t i = 0; i < count; i++)
+        places[i] = camber_osm_place(pairs[2 * i], pairs[2 * i + 1]);
+    f->coast.box = f->box;
+    assert_int_equal(camber_osm_coast_add(&f->coast, places, count, has_gaps), CAMBER_OK);
+}
+
+static void expect_at(fixture *f, double x, double y, bool is_sea) {
+    bool near = false;
+    const int count = count_sea(&f->sea, x, y, &near);
+    if (near || count != is_sea)
+        fail_msg("sea %d times at %.0f, %.0f", count, x, y);
+}
+
+/* A coast from east to west, land in the south. */
+static void begin_south(fixture *f) {
+    camber_osm_coast_free(&f->coast);
+    f->box = (camber_osm_box){0, 100000, 0, 100000};
+    ADD(f, false, 110000, 50000, -10000, 50000);
+}
+
+/* Lines that close, and are listed twice, lie where they cannot, or have no inside: nothing is flooded by them. */
+static void test_closed(void **state) {
+    fixture *f = *state;
+    begin_south(f);
+    for (int i = 0; i < 2; i++) {
+        ADD(f, false, 10000, 70000, 20000, 70000, 20000, 80000, 10000, 70000); /* an island, in one way and in two */
+        ADD(f, false, 50000, 70000, 60000, 70000, 60000, 80000);
+        ADD(f, false, 60000, 80000, 50000, 70000);
+    }
+    ADD(f, false, 30000, 10000, 40000, 10000, 40000, 20000, 30000, 10000); /* an island on land */
+    ADD(f, false, 70000, 60000, 80000, 70000, 80000, 60000, 70000, 60000); /* a sea in the sea */
+    ADD(f, false, 90000, 10000, 95000, 20000, 95000, 10000, 90000, 10000); /* a sea in land */
+    ADD(f, false, 5000, 90000, 9000, 90000, 5000, 90000);                  /* flat */
+    ADD(f, false, 1000, 90000, 1000, 90000);                               /* a place */
+    fill(f, false);
+    expect_at(f, 18000, 74000, false);
+    expect_at(f, 58000, 74000, false);
+    expect_at(f, 38000, 14000, false);
+    expect_at(f, 78000, 64000, true);
+    expect_at(f, 94000, 14000, true);
+    expect_at(f, 7000, 91000, true);
+    expect_at(f, 50000, 40000, false);
+    /* Without a coast that passes the sides, one that lies does not turn all over. */
+    camber_osm_coast_free(&f->coast);
+    ADD(f, false, 10000, 70000, 20000, 80000, 20000, 70000, 10000, 70000);
+    ADD(f, false, 50000, 70000, 60000, 70000, 60000, 80000, 50000, 70000);
+    fill(f, true);
+}
+
+/* A coast that comes in and leaves at one place of a side is an island there, or a sea. */
+static void test_loop_at_side(void **state) {
+    fixture *f = *state;
+    for (int turned = 0; turned < 2; turned++) {
+        const int32_t first = turned ? 80000 : 60000, second = turned ? 60000 : 80000;
+        begin_south(f);
+        ADD(f, false, 110000, 70000, 100000, 70000, 80000, second, 80000, first, 100000, 70000, 110000, 70001);
+        fill(f, false);
+        expect_at(f, 85000, 70000, turned ? true : false);
+        expect_at(f, 50000, 70000, true);
+        expect_at(f, 50000, 30000, false);
+    }
+}
+
+/* Nodes beyond the box are lost between others: a way leaves at the top, and comes back in the west. */
+static void test_gaps(void **state) {
+    fixture *f = *state;
+    f->box = (camber_osm_box){0, 100000, 0, 100000};
+    ADD(f, true, 98000, 50000, 60000, 50000, 60000, 98000, 2000, 60000, 30000, 60000, 30000, 52000, 2000, 52000);
+    fill(f, false);
+    expect_at(f, 80000, 80000, true);
+    expect_at(f, 15000, 56000, true);
+    expect_at(f, 20000, 90000, false);
+    expect_at(f, 50000, 70000, false);
+    expect_at(f, 20000, 20000, false);
+}
+
+/* One place has a hundred thousand ways: no slower than as many elsewhere. */
+static void test_many_ways(void **state) {
+    fixture *f = *state;
+    begin_south(f);
+    for (int i = 0; i < 100000; i++) {
+        ADD(f, false, 50000, 70000, 50100 + i % 100, 70000, 50100, 70001 + i / 100, 50000, 70000);
+        ADD(f, false, 50000, 70000, 50100 + i, 90000);
+        ADD(f, false, 20100 + i, 90000, 50000, 70000);
+    }
+    assert_int_equal(camber_osm_coast_fill(&f->coast, &f->sea), CAMBER_OK);
+}
+
 static void test_memory(void **state) {
     fixture *f = *state;
     bool made = false;
@@ -285,7 +381,7 @@ static void test_memory(void **state) {
         add_coasts(f, false);
         f->calls = 0;
         f->refuse_at = refused;
-        const camber_status status = camber_osm_coast_fill(&f->coast, f->box, &f->sea);
+        const camber_status status = camber_osm_coast_fill(&f->coast, &f->sea);
         made = f->calls < refused;
         f->refuse_at = 0;
         assert_int_equal(status, made ? CAMBER_OK : CAMBER_ERROR_MEMORY);
@@ -301,6 +397,10 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_ends, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_boxes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_touches, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_closed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_loop_at_side, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_gaps, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_many_ways, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_memory, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("coast", tests, NULL, NULL);

@@ -30,7 +30,7 @@ typedef struct way_start {
     bool used;
 } way_start;
 
-/* What of the coast lies in the box, from side to side: its places, and where along the sides it begins and ends. */
+/* A part of the coast in the box, from side to side: its places, and where along the sides it begins and ends. */
 typedef struct stretch {
     size_t first, count;
     int64_t begin, end;
@@ -483,7 +483,7 @@ static void go_around(shore *s) {
     camber_free(s->context, marks);
 }
 
-/* ---- What lies in what ---- */
+/* ---- Rings that fit ---- */
 
 /* A place on a ring that closes in the box, and how often other rings of the sea wind around it. */
 typedef struct probe {

@@ -15,6 +15,7 @@
 
 #include "osm/node_set.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* How far from a side the coast may end: a share of the box's shorter side, and 10^-7 degrees. */
@@ -81,31 +82,56 @@ static uint64_t nearest_on_side(camber_osm_box b, uint64_t place) {
                       : camber_osm_place(x, side == 2 ? b.bottom : b.top);
 }
 
-static camber_status add_way(camber_osm_coast *coast, const uint64_t *places, size_t count) {
-    if (count < 2)
+/* A gap between two nodes of a way: the coast leaves the box there and comes back at the same side, or at another. */
+typedef enum gap { NO_GAP, GAP_AT_SIDE, GAP_BETWEEN_SIDES } gap;
+
+/* Along one side a segment is taken for a gap if it is long beside its ends' distances from the side: then it would cut
+ * off little, but cut it off wrongly. */
+static gap find_gap(camber_osm_box box, uint64_t a, uint64_t b) {
+    const int side = find_side(box, a), next = find_side(box, b);
+    if (side < 0 || next < 0 || side != next)
+        return side < 0 || next < 0 ? NO_GAP : GAP_BETWEEN_SIDES;
+    const uint64_t on_a = nearest_on_side(box, a), on_b = nearest_on_side(box, b);
+    const double far_a = fabs((double)camber_osm_longitude(on_a) - camber_osm_longitude(a)) +
+                         fabs((double)camber_osm_latitude(on_a) - camber_osm_latitude(a)),
+                 far_b = fabs((double)camber_osm_longitude(on_b) - camber_osm_longitude(b)) +
+                         fabs((double)camber_osm_latitude(on_b) - camber_osm_latitude(b)),
+                 along = fabs((double)camber_osm_longitude(on_b) - camber_osm_longitude(on_a)) +
+                         fabs((double)camber_osm_latitude(on_b) - camber_osm_latitude(on_a));
+    return along > 2.0 * (far_a > far_b ? far_a : far_b) ? GAP_AT_SIDE : NO_GAP;
+}
+
+/* Ends the way whose places begin at `first`; one of fewer than two is none. */
+static camber_status end_way(camber_osm_coast *coast, size_t first) {
+    if (coast->place_count < first + 2) {
+        coast->place_count = first;
         return CAMBER_OK;
-    if (!camber_grow(coast->context, &coast->places, &coast->place_capacity, coast->place_count + count,
-                     sizeof *coast->places) ||
-        !camber_grow(coast->context, &coast->ends, &coast->way_capacity, coast->way_count + 1, sizeof *coast->ends))
+    }
+    if (!camber_grow(coast->context, &coast->ends, &coast->way_capacity, coast->way_count + 1, sizeof *coast->ends))
         return CAMBER_ERROR_MEMORY;
-    memcpy(coast->places + coast->place_count, places, count * sizeof *places);
-    coast->place_count += count;
     coast->ends[coast->way_count++] = coast->place_count;
     return CAMBER_OK;
 }
 
-/* A way is cut at a gap between two sides of the box. At a gap along one side little is lost. */
+/* The coast went on beyond the box at a gap: along the side, or it comes in at another one as another way. */
 camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *places, size_t count, bool has_gaps) {
-    size_t first = 0;
+    size_t first = coast->place_count;
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; has_gaps && i + 1 < count && status == CAMBER_OK; i++) {
-        const int side = find_side(coast->box, places[i]), next = find_side(coast->box, places[i + 1]);
-        if (side < 0 || next < 0 || side == next)
-            continue;
-        status = add_way(coast, places + first, i + 1 - first);
-        first = i + 1;
+    if (!camber_grow(coast->context, &coast->places, &coast->place_capacity, first + (has_gaps ? 3 : 1) * count,
+                     sizeof *coast->places))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
+        coast->places[coast->place_count++] = places[i];
+        const gap found = has_gaps && i + 1 < count ? find_gap(coast->box, places[i], places[i + 1]) : NO_GAP;
+        if (found == GAP_AT_SIDE) {
+            coast->places[coast->place_count++] = nearest_on_side(coast->box, places[i]);
+            coast->places[coast->place_count++] = nearest_on_side(coast->box, places[i + 1]);
+        } else if (found == GAP_BETWEEN_SIDES) {
+            status = end_way(coast, first);
+            first = coast->place_count;
+        }
     }
-    return status == CAMBER_OK ? add_way(coast, places + first, count - first) : status;
+    return status == CAMBER_OK ? end_way(coast, first) : status;
 }
 
 void camber_osm_coast_free(camber_osm_coast *coast) {

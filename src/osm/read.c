@@ -286,19 +286,25 @@ static camber_status add_ring(reader *self, made_area *area, const camber_osm_ri
     return count && status == CAMBER_OK ? camber_features_add_polyline(self->features, lines->points, count) : status;
 }
 
+/* Adds the rings that were put together as one area of its class. */
+static camber_status add_rings(reader *self, made_area *area) {
+    camber_status status = CAMBER_OK;
+    area->added = false;
+    area->rings = (camber_rings){.stats = &self->features->stats, .any_winding = true};
+    for (size_t i = 0; i < area->assembly.ring_count && status == CAMBER_OK; i++)
+        status = add_ring(self, area, &area->assembly.rings[i]);
+    return status;
+}
+
 static camber_status add_relation(reader *self, size_t relation, made_area *area) {
     const uint32_t set = self->ways.relations.items[relation].set;
     if (set == 0)
         return CAMBER_OK;
-    area->added = false;
-    area->rings = (camber_rings){.stats = &self->features->stats, .any_winding = true};
     camber_status status = camber_osm_relations_assemble(&self->ways.relations, relation, &area->assembly);
     self->features->stats.open_relations += status == CAMBER_OK && area->assembly.open;
     if (status == CAMBER_OK && area->assembly.ring_count)
         status = find_class(self, set - 1, CAMBER_GEOMETRY_AREA, &area->class_index);
-    for (size_t i = 0; i < area->assembly.ring_count && status == CAMBER_OK; i++)
-        status = add_ring(self, area, &area->assembly.rings[i]);
-    return status;
+    return status == CAMBER_OK ? add_rings(self, area) : status;
 }
 
 /* The class of the sea: water, as ponds are. */
@@ -330,11 +336,7 @@ static camber_status make_sea(reader *self, made_area *area) {
     camber_osm_coast_free(&self->coast);
     if (status == CAMBER_OK && area->assembly.ring_count)
         status = find_sea_class(self, &area->class_index);
-    area->added = false;
-    area->rings = (camber_rings){.stats = &self->features->stats, .any_winding = true};
-    for (size_t i = 0; i < area->assembly.ring_count && status == CAMBER_OK; i++)
-        status = add_ring(self, area, &area->assembly.rings[i]);
-    return status;
+    return status == CAMBER_OK ? add_rings(self, area) : status;
 }
 
 /* Makes areas once all ways are lines. They have a layer of their own, as GDAL has it. */

@@ -356,6 +356,14 @@ static void test_gaps(void **state) {
     expect_at(f, 20000, 90000, false);
     expect_at(f, 50000, 70000, false);
     expect_at(f, 20000, 20000, false);
+    /* It leaves in the east and comes back there: what lies between is land up to the side. */
+    camber_osm_coast_free(&f->coast);
+    ADD(f, true, 50000, 2000, 50000, 30000, 97000, 30000, 97000, 70000, 50000, 70000, 50000, 98000);
+    fill(f, false);
+    expect_at(f, 98500, 50000, false);
+    expect_at(f, 80000, 15000, true);
+    expect_at(f, 80000, 85000, true);
+    expect_at(f, 98500, 20000, true);
 }
 
 /* One place has a hundred thousand ways: no slower than as many elsewhere. */

@@ -508,7 +508,9 @@ CAMBER_FN void camber_area_add(camber_area_state *s, const camber_tile_edges *t,
         const float turn = camber_lane_of(&t->turn, k);
         if (turn != 0.0f)
             camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
-        if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k))
+        /* An edge that begins where the last row of cells ends turns the corners of that end. */
+        if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k) ||
+            camber_integer_of(&t->above, k) <= camber_integer_of(&t->below, k))
             camber_area_add_edge(s, t, k, where);
         else if (camber_integer_of(&t->flat, k))
             camber_area_mark_flat(s, t, k, where);

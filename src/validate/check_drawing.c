@@ -25,7 +25,7 @@ static const struct {
                 {", gaps and blurs", 1.5f, 0.8f, 0, false},
                 {", at 40 degrees", 0, 0, 40, false},
                 {", areas", 0, 0, 0, true}};
-enum { VARIANTS = sizeof variants / sizeof *variants };
+enum { VARIANTS = sizeof variants / sizeof *variants, AREAS = VARIANTS - 1 };
 
 typedef struct drawn {
     camber_paint *paints; /* of a pass, stroke_count each */
@@ -239,7 +239,8 @@ static camber_status check_methods(camber_validation *v, const camber_subject *s
     return status;
 }
 
-/* With the vectors that the n-th of the device's other work-groups was opened with. */
+/* With the vectors that the n-th of the device's other work-groups was opened with; areas, too, of which such a vector
+ * may take other rows and columns of cells. */
 static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
                                  const char *name, size_t n) {
     camber_device *device = checked->groups[n].device;
@@ -250,6 +251,9 @@ static camber_status check_lanes(camber_validation *v, const camber_subject *s, 
     if (made == CAMBER_OK)
         made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);
     camber_status status = made;
+    if (status == CAMBER_OK)
+        status = check_methods(v, s, checked, &on);
+    on.variant = AREAS;
     if (status == CAMBER_OK)
         status = check_methods(v, s, checked, &on);
     camber_mesh_destroy(on.path.mesh);

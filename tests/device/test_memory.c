@@ -295,9 +295,9 @@ static void test_networks(void **state) {
     camber_made_scene_free(&s);
 }
 
-/* Parts that were cut for all of a network come together where little of it is seen, and are cut again. */
-static void test_parts_join(void **state) {
-    (void)state;
+/* Parts that were cut for all of a network come together where little of it is seen, and are cut again. A device that
+ * has to be given copies holds the network, too. */
+static void join_parts(bool copied) {
     static const double scales[] = {0.9, 9, 9, 9, 9, 9, 9, 0.9};
     enum { FRAMES = 8 };
     camber_stroke strokes[CAMBER_KERNEL_ROWS];
@@ -309,7 +309,9 @@ static void test_parts_join(void **state) {
         camber_scene_add_walks(&s, &seed);
     fixture whole, b;
     bounded_open(&whole, 0, 0);
-    bounded_open(&b, 500000, 64);
+    copied = copied || !whole.on.device->host_memory;
+    bounded_open(&b, copied ? 700000 : 500000, 64);
+    b.on.device->host_memory = !copied;
     camber_network *network = make_network(whole.context, &s), *own = make_network(b.context, &s);
     size_t parts[FRAMES];
     for (size_t k = 0; k < FRAMES; k++) {
@@ -336,6 +338,12 @@ static void test_parts_join(void **state) {
     bounded_close(&b);
     bounded_close(&whole);
     camber_made_scene_free(&s);
+}
+
+static void test_parts_join(void **state) {
+    (void)state;
+    join_parts(false);
+    join_parts(true);
 }
 
 /* ---- Several meshes ---- */

@@ -317,8 +317,10 @@ static void test_moved(void **state) {
     property_check(&(property){"moved by whole cells", property_make_any, check_moved_by_cells, 300, 0}, *state);
 }
 
+/* Known: a GPU that has an edge of 45 degrees pass exactly through centres of pixels, on one side alone. */
 static void test_turned(void **state) {
-    property_check(&(property){"turned by a right angle", property_make_any, check_turned, 300, 0}, *state);
+    const size_t known = fixture_has_gpu(*state) ? 2 : 0;
+    property_check(&(property){"turned by a right angle", property_make_any, check_turned, 300, known}, *state);
 }
 
 /* Known: tight joins, which strip and kite cut in other ways. */

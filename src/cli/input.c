@@ -375,14 +375,28 @@ static bool knows_why_empty(const camber_input *input) {
 #endif
 }
 
+/* Where nothing at all is in a view that the options place, its numbers may be the other way round. */
+static const char *likely_cause(const camber_input *input) {
+#ifdef CAMBER_MAP
+    if (input->features && camber_features_get_stats(input->features).features == 0)
+        return input->view.kind == CAMBER_VIEW_CENTER ? " (--center is LON,LAT: the longitude comes first)"
+               : input->view.kind == CAMBER_VIEW_BBOX ? " (--bbox is W,S,E,N: longitudes come first)"
+                                                      : "";
+#else
+    (void)input;
+#endif
+    return "";
+}
+
 void camber_input_warn_empty(const camber_input *input, const char *consequence) {
     const bool once = input->session->options->verb == CAMBER_VERB_RENDER;
     const camber_polylines_stats drawn =
         once ? input->drawn : camber_polylines_get_stats(camber_input_polylines(input));
     if (drawn.polylines > 0 || knows_why_empty(input))
         return;
-    camber_report_warn(input->session->report, "%s; %s",
-                       input->features ? "no line that the style draws is in the view" : "no polylines", consequence);
+    camber_report_warn(input->session->report, "%s%s; %s",
+                       input->features ? "no line that the style draws is in the view" : "no polylines",
+                       likely_cause(input), consequence);
 }
 
 const camber_polylines *camber_input_polylines(const camber_input *input) {

@@ -392,7 +392,7 @@ expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --
 is_png close.png 99 77
 expect 0 "nothing in the view" render "$osm" -o nothing.png --bbox 10,10,11,11 --size 50x50
 is_png nothing.png 50 50
-says '^camber: warning: no line that the style draws is in the view'
+says '^camber: warning: no line that the style draws is in the view (--bbox is W,S,E,N: longitudes come first); '
 expect 0 "nothing in the view, tessellated" tessellate "$osm" -o nothing.glb --bbox 10,10,11,11
 [ "$(le32 nothing.glb 8)" = "$(stat -c %s nothing.glb)" ] || fail "no whole GLB"
 says '^camber: warning: '

@@ -129,7 +129,7 @@ camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
     return status;
 }
 
-/* ---- Reading ---- */
+/* ---- Names ---- */
 
 typedef struct name {
     uint32_t number;
@@ -161,18 +161,54 @@ static bool parse_name(const char *text, bool file, name *made) {
     return true;
 }
 
+/* Whether a name is that of a file beside the tiles. */
+static bool is_beside(const char *entry, bool has_tileset) {
+    return strcmp(entry, "metadata.json") == 0 ||
+           (has_tileset && (strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0));
+}
+
+static bool is_dots(const char *entry) {
+    return strcmp(entry, ".") == 0 || strcmp(entry, "..") == 0;
+}
+
+/* ---- Replacing ---- */
+
+/* Whether no other folder can take its name: it is the root, a mount, or "." or "..". */
+static bool is_fixed(const char *path) {
+    const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
+    char above[PATH_MAX];
+    struct stat own, its;
+    return is_dots(last) || snprintf(above, sizeof above, "%s/..", path) >= (int)sizeof above || stat(path, &own) != 0 ||
+           stat(above, &its) != 0 || own.st_dev != its.st_dev || own.st_ino == its.st_ino;
+}
+
+camber_status camber_folder_may_go(camber_context *context, const char *path) {
+    if (is_fixed(path))
+        return camber_fail(context, CAMBER_ERROR_IO, "%s: this folder cannot be replaced; name a new one in it", path);
+    DIR *opened = opendir(path);
+    camber_status status = opened ? CAMBER_OK : camber_output_fail(context, path, errno);
+    const struct dirent *entry;
+    while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
+        name zoom;
+        if (!is_dots(entry->d_name) && !is_beside(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
+            status = camber_fail(context, CAMBER_ERROR_IO,
+                                 "%s: has %s, which is no part of an archive of tiles, and would be lost; name another "
+                                 "folder",
+                                 path, entry->d_name);
+    }
+    if (opened)
+        closedir(opened);
+    return status;
+}
+
+/* ---- Reading ---- */
+
 static camber_status tell_stranger(const camber_folder_visitor *visitor, const char *folder, const char *entry) {
     char path[PATH_MAX];
     if (!visitor->take_stranger)
         return CAMBER_OK;
     snprintf(path, sizeof path, "%.2000s/%s", folder, entry);
     return visitor->take_stranger(visitor->user, path);
-}
-
-/* Whether a name is that of a file beside the tiles. */
-static bool is_beside(const camber_folder_visitor *visitor, const char *entry) {
-    return strcmp(entry, "metadata.json") == 0 ||
-           (visitor->has_tileset && (strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0));
 }
 
 /* Lists what is named by a number in a folder, in ascending order. What is not goes to the visitor. */
@@ -184,8 +220,7 @@ static camber_status list(const camber_folder_visitor *visitor, const char *fold
     const struct dirent *entry;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
         name made;
-        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 ||
-            (top && is_beside(visitor, entry->d_name)))
+        if (is_dots(entry->d_name) || (top && is_beside(entry->d_name, visitor->has_tileset)))
             continue;
         if (!parse_name(entry->d_name, files, &made))
             status = tell_stranger(visitor, folder, entry->d_name);

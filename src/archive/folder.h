@@ -20,4 +20,8 @@ typedef struct camber_folder_visitor {
 /* Visits the files by zoom, column and row. */
 camber_status camber_folder_visit(const char *path, const camber_folder_visitor *visitor);
 
+/* Looks whether a new archive may take a folder's place. Returns CAMBER_ERROR_IO where that has something else than an
+ * archive of tiles, which would be lost, or where no other folder can have its name. */
+camber_status camber_folder_may_go(camber_context *context, const char *path);
+
 #endif

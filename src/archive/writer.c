@@ -7,6 +7,7 @@
 #define _FILE_OFFSET_BITS 64
 
 #include "archive/writer.h"
+#include "archive/folder.h"
 #include "archive/output_file.h"
 #include "archive/units.h"
 #include "source/pmtiles.h"
@@ -146,19 +147,31 @@ static camber_status fail_existing(camber_archive_writer *writer, const camber_a
                        writer->path, names);
 }
 
+/* A folder is replaced with all that is in it: there may be nothing but an archive of tiles. */
+static camber_status look_at_folder(camber_archive_writer *writer, const struct stat *about) {
+    struct stat leads_to;
+    if (S_ISLNK(about->st_mode) && stat(writer->path, &leads_to) == 0 && S_ISDIR(leads_to.st_mode))
+        return camber_fail(writer->context, CAMBER_ERROR_IO, "%s: is a link to a folder; name the folder itself",
+                           writer->path);
+    return S_ISDIR(about->st_mode) ? camber_folder_may_go(writer->context, writer->path) : CAMBER_OK;
+}
+
 /* Decides about an archive that stands at the path. */
 static camber_status look_at_existing(camber_archive_writer *writer) {
     struct stat about;
     const camber_archive_desc *desc = &writer->desc;
     camber_archive *there = NULL;
     camber_soft_log kept;
-    if (lstat(writer->path, &about) != 0 || (desc->force && !desc->resume))
+    if (lstat(writer->path, &about) != 0)
         return CAMBER_OK;
+    camber_status status = look_at_folder(writer, &about);
+    if (status != CAMBER_OK || (desc->force && !desc->resume))
+        return status;
     if (!desc->resume)
         return camber_fail(writer->context, CAMBER_ERROR_IO,
                            "%s: exists; name another file, or replace it with --force", writer->path);
     camber_log_soften(writer->context, &kept);
-    camber_status status = camber_archive_open(writer->context, writer->path, &there);
+    status = camber_archive_open(writer->context, writer->path, &there);
     camber_log_restore(writer->context, &kept);
     if (status == CAMBER_OK)
         writer->done = writer->fingerprint && there->fingerprint &&

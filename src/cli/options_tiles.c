@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 const char *camber_options_tiles_action(const camber_options *options) {
     static const char *const actions[] = {"show", "verify", "merge"};
@@ -152,6 +153,12 @@ static int check_run(const camber_option_reader *p) {
     return CAMBER_EXIT_DONE;
 }
 
+/* Whether the first input is more likely a verb of tiles that is mistyped: a bare word, and no file. */
+static bool is_mistyped(const camber_options *options) {
+    const char *first = options->input_count ? options->inputs[0] : "";
+    return *first && !strpbrk(first, "./:-") && access(first, F_OK) != 0;
+}
+
 int camber_options_check_tiles(camber_options *options, char *message, size_t message_size) {
     const camber_option_reader it = {options, message, message_size, NULL}, *p = &it;
     const char *action = camber_options_tiles_action(options);
@@ -161,6 +168,9 @@ int camber_options_check_tiles(camber_options *options, char *message, size_t me
         return camber_options_refuse(
             p, "tiles: no input; give a file with lines, such as city.osm.pbf, or show FILE, verify FILE or "
                "merge PART... -o OUT");
+    if (is_mistyped(options))
+        return camber_options_refuse(p, "%s: no such file, and no such verb of tiles; it is one of show, verify, merge",
+                                     options->inputs[0]);
     if (!options->output || !*options->output)
         return camber_options_refuse(p, "tiles: no output; give -o OUT.pmtiles");
     int status = check_archive_name(p);

@@ -298,6 +298,18 @@ static int print_json(const job *j) {
     return camber_report_json(j->session->report, object);
 }
 
+/* A part of several may well have nothing. */
+static void warn_empty(const job *j) {
+    const camber_options *options = j->session->options;
+    if (j->stats.done || j->stats.units || j->shard.count || options->renewed)
+        return;
+    camber_report_warn(j->session->report, "%s has nothing that the style draws; there are no tiles",
+                       j->place_count      ? "what --tile names"
+                       : j->region         ? "the region"
+                       : options->has_bbox ? "the box (--bbox is W,S,E,N: longitudes come first)"
+                                           : "the input");
+}
+
 static void print_text(const job *j) {
     const camber_tiles_stats *stats = &j->stats;
     camber_report *report = j->session->report;
@@ -330,6 +342,8 @@ int camber_verb_tiles_draw(camber_session *session) {
     j->session = session;
     int status = draw(j);
     j->total_ms = camber_clock_ms() - session->start_ms;
+    if (status == CAMBER_EXIT_DONE)
+        warn_empty(j);
     if (status == CAMBER_EXIT_DONE && session->options->json)
         status = print_json(j);
     else if (status == CAMBER_EXIT_DONE)

@@ -496,6 +496,8 @@ def test_area():
     expect(0.5 * size < told["bytes"] < 2 * size and told["points"] > 0 and told["units"] > 0, told)
     with open("empty.geojson", "w") as file:
         json.dump({"type": "FeatureCollection", "features": []}, file)
+    swapped = camber("tiles", "lines.geojson", "-o", "swapped.pmtiles", *one, "--bbox", "43,7,44,8").stderr
+    expect("longitudes come first" in swapped, swapped)
     done = run("tiles", "empty.geojson", "-o", "empty.pmtiles", "--max-zoom", "3")
     expect(done.returncode in (0, 65), done.stderr)
     for name in ("short", "all", "box", "kept", "region", "some"):
@@ -535,6 +537,37 @@ def test_full():
     expect(read("full.pmtiles") == whole, "other bytes than at once")
 
 
+def folder_of(path):
+    """Names of files to their bytes."""
+    names = [os.path.join(folder, name) for folder, _, files in os.walk(path) for name in files]
+    return {name: read(name) for name in names}
+
+
+def test_folders():
+    """A folder of tiles is replaced by -f, and one that has anything else is not."""
+    make_lines("lines.geojson", 3)
+    draw = ("lines.geojson", "--max-zoom", "3")
+    tiles(*draw, "-o", "tiles/")
+    before = folder_of("tiles")
+    tiles(*draw, "-o", "tiles/", "-f")
+    expect(folder_of("tiles") == before, "a folder that was replaced has other tiles")
+    write("tiles/index.html", b"a page")
+    os.mkdir("site")
+    write("site/notes.txt", b"notes")
+    os.symlink("site", "link")
+    there = sorted(os.listdir("."))
+    for name, told in (("tiles/", "index.html"), ("site/", "notes.txt"), ("link/", "link"), ("./", "replaced"),
+                       ("../", "replaced")):
+        for how in ("--force", "--resume"):
+            line = camber("tiles", *draw, "-o", name, how, status=74).stderr
+            expect(told in line and "--force" not in line, f"{name} {how}: {line}")
+    line = camber("tiles", "merge", "tiles/", "-o", "site/", "-f", status=74).stderr
+    expect("notes.txt" in line, line)
+    expect(folder_of("tiles") == before | {"tiles/index.html": b"a page"}, "a file in the archive is gone")
+    expect(folder_of("site") == {"site/notes.txt": b"notes"}, "a file is gone")
+    expect(sorted(os.listdir(".")) == there, "something is left or gone")
+
+
 def test_usage():
     make_lines("lines.geojson", 3)
     good = ["lines.geojson", "-o", "x.pmtiles"]
@@ -547,7 +580,7 @@ def test_usage():
            ([*good, "--shard", "0/3"], "--shard"), ([*good, "--shard", "4/3"], "--shard"),
            ([*good, "--shard", "a"], "--shard"), ([*good, "--shards", "3"], "--shards"),
            ([*good, "--bbox", "1,2,3"], "--bbox"), ([*good, "--tiles", "list", "--resume"], "--tiles"),
-           ([*good, "--center", "1,1"], "--center"), (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]
+           ([*good, "--center", "1,1"], "--center"), (["shwo", "x.pmtiles"], "show, verify, merge"), (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]
     for arguments, word in bad:
         line = camber("tiles", *arguments, status=2).stderr
         expect(word in line, f"{arguments}: {line}")
@@ -559,7 +592,7 @@ def test_usage():
 
 def main():
     tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed, test_stopped, test_other_run,
-             test_renew, test_area, test_metadata, test_full]
+             test_renew, test_area, test_folders, test_metadata, test_full]
     named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]
     for test in named or tests:
         with tempfile.TemporaryDirectory(prefix="camber-tiles-") as folder:

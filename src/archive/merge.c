@@ -49,7 +49,7 @@ static void compare_parts(merging *m, const camber_archive *first, const camber_
         char names[256];
         camber_fingerprint_compare(part->fingerprint ? part->fingerprint : "",
                                    first->fingerprint ? first->fingerprint : "", names, sizeof names);
-        add_trouble(m, "%s is made of another %s than %s", part->path, names, first->path);
+        add_trouble(m, "%s differs in its %s from %s", part->path, names, first->path);
     }
 }
 

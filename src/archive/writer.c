@@ -143,7 +143,7 @@ static camber_status fail_existing(camber_archive_writer *writer, const camber_a
     if (there->fingerprint && writer->fingerprint)
         camber_fingerprint_compare(there->fingerprint, writer->fingerprint, names, sizeof names);
     return camber_fail(writer->context, CAMBER_ERROR_INPUT,
-                       "%s: exists, and is made of another %s; name another file, or replace it with --force",
+                       "%s: exists, and differs in its %s; name another file, or replace it with --force",
                        writer->path, names);
 }
 

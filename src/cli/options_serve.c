@@ -37,9 +37,10 @@ int camber_options_check_serve(camber_options *options, char *message, size_t me
             return camber_options_refuse(p, "serve: standard input cannot be read again at SIGHUP; name a file");
     if (options->style && strcmp(options->style, "-") == 0)
         return camber_options_refuse(p, "--style -: cannot be read again at SIGHUP; name a file");
-    if ((options->listen && !is_address(options->listen)) || (options->metrics && !is_address(options->metrics)))
-        return camber_options_refuse(p, "--%s: no address; give ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
-                                     options->listen && !is_address(options->listen) ? "listen" : "metrics");
+    const bool listens = !options->listen || is_address(options->listen);
+    if (!listens || (options->metrics && !is_address(options->metrics)))
+        return camber_options_refuse(p, "--%s %.64s: no address; give ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
+                                     listens ? "metrics" : "listen", listens ? options->metrics : options->listen);
     if (options->public_url && !is_url(options->public_url))
         return camber_options_refuse(p, "--public-url: no URL; give one as in https://example.org/map");
     if (options->cors && !is_origin(options->cors))

@@ -56,7 +56,7 @@ static void print_text(camber_report *out, const char *name, const camber_style_
                           report->types[i].drawn ? "drawn" : "not drawn");
     for (size_t i = 0; i < report->source_count; i++) {
         const camber_style_report_source *source = report->sources + i;
-        camber_report_say(out, "source %s of type %s, named by %zu line layer%s: %s", source->name, source->type,
+        camber_report_say(out, "source %s of type %s, named by %zu layer%s: %s", source->name, source->type,
                           source->layers, source->layers == 1 ? "" : "s",
                           source->trouble ? source->trouble : "read when it is drawn");
     }

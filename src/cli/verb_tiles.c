@@ -99,16 +99,19 @@ static int verify(camber_session *session, const char *path) {
     int exit_status = CAMBER_EXIT_DONE;
     if (session->options->json)
         exit_status = verify_json(report, path, found);
+    bool broken = false;
+    for (size_t i = 0; i < found->count; i++)
+        broken = broken || found->findings[i].error;
     for (size_t i = 0; i < found->count && !session->options->json; i++)
         camber_report_say(report, "%s: %s: %s", path, found->findings[i].error ? "error" : "warning",
                           found->findings[i].message);
     if (exit_status == CAMBER_EXIT_DONE && found->count)
         exit_status =
             camber_report_fail(report, CAMBER_EXIT_CHECK,
-                               "%s: %zu finding%s%s; make it again, or convert it "
-                               "with camber tiles merge",
-                               path, found->count + found->left_out, camber_plural(found->count + found->left_out),
-                               found->left_out ? ", the first of each kind told" : "");
+                               "%s: %zu finding%s%s; make it again%s", path, found->count + found->left_out,
+                               camber_plural(found->count + found->left_out),
+                               found->left_out ? ", the first of each kind told" : "",
+                               broken ? "" : ", or convert it with camber tiles merge");
     camber_tiles_findings_destroy(found);
     return exit_status;
 }

@@ -133,7 +133,12 @@ static int find_output(job *j) {
                                   "%s: no such archive, and --tiles renews one; draw it first", j->output);
     j->files = (camber_tiles_files){.session = session, .first = 2}; /* finished units stay for --resume */
     status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
-    return status == CAMBER_EXIT_DONE ? camber_tiles_files_name(&j->files, j->output) : status;
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_tiles_files_name(&j->files, j->output);
+    if (status == CAMBER_EXIT_DONE && !options->resume && stat(j->files.names[0], &about) == 0)
+        camber_report_warn(session->report,
+                           "%s: what a run that was cut off had finished is drawn again; --resume keeps it", j->output);
+    return status;
 }
 
 /* ---- Drawing ---- */

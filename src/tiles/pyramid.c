@@ -309,7 +309,7 @@ static camber_tile_type type_of(const pyramid *p) {
 
 static camber_status fail_renewed(const pyramid *p, const char *names) {
     return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                       "%s: is made of another %s; renew it with the options that it was drawn with, or draw it anew",
+                       "%s: differs in its %s; renew it with the options that it was drawn with, or draw it anew",
                        p->desc->output, names);
 }
 

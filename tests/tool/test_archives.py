@@ -377,7 +377,7 @@ def test_merge():
     refused(("parts 2, 3 of 4 are missing",), parts[0], parts[3])
     refused(("part 2 of 4 is given twice", "part 3 of 4 is missing"), parts[0], parts[1], parts[1], parts[3])
     make("other.pmtiles", count, "shard=3/4", "style=other")
-    refused(("other.pmtiles is made of another style",), parts[0], parts[1], "other.pmtiles", parts[3])
+    refused(("other.pmtiles differs in its style",), parts[0], parts[1], "other.pmtiles", parts[3])
     make("of5.pmtiles", count, "shard=3/5")
     refused(("of5.pmtiles is a part of another number of shards",), *parts, "of5.pmtiles")
     refused(("whole.pmtiles is no part",), *parts, "whole.pmtiles")
@@ -449,7 +449,7 @@ def test_resume():
     make("calm.pmtiles", count, "force")
     stop_half_way("part.pmtiles", count)
     line = make("part.pmtiles", count, "resume", "style=other", status=65)
-    expect("another style" in line, line)
+    expect("differ in their style" in line, line)
     # Torn ends, damaged bytes and damaged records: what is whole is kept, and the rest is drawn again.
     for damage in range(6):
         shutil.copy("part.pmtiles.camber-tiles", "t")
@@ -474,7 +474,7 @@ def test_resume():
     make("part.pmtiles", count, "resume")
     expect(os.stat("part.pmtiles").st_mtime_ns == before, "a whole archive was written again")
     line = make("part.pmtiles", count, "resume", "style=other", status=65)
-    expect("another style" in line and "part.pmtiles" in line, line)
+    expect("differs in its style" in line and "part.pmtiles" in line, line)
     line = make("part.pmtiles", count, status=74)
     expect("exists" in line, line)
 

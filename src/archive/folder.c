@@ -178,8 +178,8 @@ static bool is_fixed(const char *path) {
     const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
     char above[PATH_MAX];
     struct stat own, its;
-    return is_dots(last) || snprintf(above, sizeof above, "%s/..", path) >= (int)sizeof above || stat(path, &own) != 0 ||
-           stat(above, &its) != 0 || own.st_dev != its.st_dev || own.st_ino == its.st_ino;
+    return is_dots(last) || snprintf(above, sizeof above, "%s/..", path) >= (int)sizeof above ||
+           stat(path, &own) != 0 || stat(above, &its) != 0 || own.st_dev != its.st_dev || own.st_ino == its.st_ino;
 }
 
 camber_status camber_folder_may_go(camber_context *context, const char *path) {

@@ -143,8 +143,8 @@ static camber_status fail_existing(camber_archive_writer *writer, const camber_a
     if (there->fingerprint && writer->fingerprint)
         camber_fingerprint_compare(there->fingerprint, writer->fingerprint, names, sizeof names);
     return camber_fail(writer->context, CAMBER_ERROR_INPUT,
-                       "%s: exists, and differs in its %s; name another file, or replace it with --force",
-                       writer->path, names);
+                       "%s: exists, and differs in its %s; name another file, or replace it with --force", writer->path,
+                       names);
 }
 
 /* A folder is replaced with all that is in it: there may be nothing but an archive of tiles. */

@@ -26,6 +26,7 @@ typedef struct job {
     camber_tiles_engine *engine;
     camber_tiles_schedule *schedule; /* NULL: the engine looks where lines are */
     camber_tiles_files files;
+    bool is_left; /* of an earlier run, which was cut off: what it had finished */
     camber_tiles_stats stats;
     double load_ms, total_ms;
 } job;
@@ -135,9 +136,7 @@ static int find_output(job *j) {
     status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
     if (status == CAMBER_EXIT_DONE)
         status = camber_tiles_files_name(&j->files, j->output);
-    if (status == CAMBER_EXIT_DONE && !options->resume && stat(j->files.names[0], &about) == 0)
-        camber_report_warn(session->report,
-                           "%s: what a run that was cut off had finished is drawn again; --resume keeps it", j->output);
+    j->is_left = status == CAMBER_EXIT_DONE && !options->resume && stat(j->files.names[0], &about) == 0;
     return status;
 }
 
@@ -191,6 +190,15 @@ static int open_engine(job *j) {
     return camber_report_status(session->report, camber_tiles_engine_create(j->input.features, &desc, &j->engine));
 }
 
+/* The archive is this run's alone. What an earlier one has left goes. */
+static void begin(void *user) {
+    job *j = user;
+    if (j->is_left)
+        camber_report_warn(j->session->report,
+                           "%s: what a run that was cut off had finished is drawn again; --resume keeps it", j->output);
+    camber_tiles_files_guard(&j->files);
+}
+
 static camber_tiles_draw_desc describe(job *j) {
     const camber_options *options = j->session->options;
     const camber_view_desc *view = &options->view;
@@ -219,8 +227,8 @@ static camber_tiles_draw_desc describe(job *j) {
                                     .inputs = options->inputs,
                                     .input_count = options->input_count,
                                     .spent = j->input.features,
-                                    .begun = camber_tiles_files_guard,
-                                    .user = &j->files};
+                                    .begun = begin,
+                                    .user = j};
 }
 
 static int draw(job *j) {

@@ -188,8 +188,11 @@ camber_status camber_folder_may_go(camber_context *context, const char *path) {
     DIR *opened = opendir(path);
     camber_status status = opened ? CAMBER_OK : camber_output_fail(context, path, errno);
     const struct dirent *entry;
+    bool is_empty = true, has_metadata = false;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
         name zoom;
+        is_empty = is_empty && is_dots(entry->d_name);
+        has_metadata = has_metadata || strcmp(entry->d_name, "metadata.json") == 0;
         if (!is_dots(entry->d_name) && !is_beside(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
             status = camber_fail(context, CAMBER_ERROR_IO,
                                  "%s: has %s, which is no part of an archive of tiles, and would be lost; name another "
@@ -198,6 +201,12 @@ camber_status camber_folder_may_go(camber_context *context, const char *path) {
     }
     if (opened)
         closedir(opened);
+    if (status == CAMBER_OK && !is_empty && !has_metadata)
+        return camber_fail(
+            context, CAMBER_ERROR_IO,
+            "%s: has no metadata.json, so it may be no archive of tiles, and would be lost; name another "
+            "folder",
+            path);
     return status;
 }
 

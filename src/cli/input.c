@@ -378,10 +378,11 @@ static bool knows_why_empty(const camber_input *input) {
 /* Where nothing at all is in a view that the options place, its numbers may be the other way round. */
 static const char *likely_cause(const camber_input *input) {
 #ifdef CAMBER_MAP
+    const camber_view_kind placed = input->session->options->view.kind;
     if (input->features && camber_features_get_stats(input->features).features == 0)
-        return input->view.kind == CAMBER_VIEW_CENTER ? " (--center is LON,LAT: the longitude comes first)"
-               : input->view.kind == CAMBER_VIEW_BBOX ? " (--bbox is W,S,E,N: longitudes come first)"
-                                                      : "";
+        return placed == CAMBER_VIEW_CENTER ? " (--center is LON,LAT: the longitude comes first)"
+               : placed == CAMBER_VIEW_BBOX ? " (--bbox is W,S,E,N: longitudes come first)"
+                                            : "";
 #else
     (void)input;
 #endif

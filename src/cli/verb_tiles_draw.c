@@ -136,7 +136,8 @@ static int find_output(job *j) {
     status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
     if (status == CAMBER_EXIT_DONE)
         status = camber_tiles_files_name(&j->files, j->output);
-    j->is_left = status == CAMBER_EXIT_DONE && !options->resume && stat(j->files.names[0], &about) == 0;
+    j->is_left =
+        status == CAMBER_EXIT_DONE && !options->resume && !options->renewed && stat(j->files.names[0], &about) == 0;
     return status;
 }
 

@@ -554,10 +554,11 @@ def test_folders():
     write("tiles/index.html", b"a page")
     os.mkdir("site")
     write("site/notes.txt", b"notes")
+    os.makedirs("years/2024")
     os.symlink("site", "link")
     there = sorted(os.listdir("."))
-    for name, told in (("tiles/", "index.html"), ("site/", "notes.txt"), ("link/", "link"), ("./", "replaced"),
-                       ("../", "replaced")):
+    for name, told in (("tiles/", "index.html"), ("site/", "notes.txt"), ("years/", "metadata.json"), ("link/", "link"),
+                       ("./", "replaced"), ("../", "replaced")):
         for how in ("--force", "--resume"):
             line = camber("tiles", *draw, "-o", name, how, status=74).stderr
             expect(told in line and "--force" not in line, f"{name} {how}: {line}")
@@ -580,7 +581,8 @@ def test_usage():
            ([*good, "--shard", "0/3"], "--shard"), ([*good, "--shard", "4/3"], "--shard"),
            ([*good, "--shard", "a"], "--shard"), ([*good, "--shards", "3"], "--shards"),
            ([*good, "--bbox", "1,2,3"], "--bbox"), ([*good, "--tiles", "list", "--resume"], "--tiles"),
-           ([*good, "--center", "1,1"], "--center"), (["shwo", "x.pmtiles"], "show, verify, merge"), (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]
+           ([*good, "--center", "1,1"], "--center"), (["shwo", "x.pmtiles"], "show, verify, merge"),
+           (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]
     for arguments, word in bad:
         line = camber("tiles", *arguments, status=2).stderr
         expect(word in line, f"{arguments}: {line}")

@@ -3,9 +3,9 @@
  * Input: features and a zoom's plan. Output: metatiles of tiles along the Hilbert curve, each with the tiles that a
  * line comes near, and the polylines that it is drawn of. Main idea: walk the points that the zoom draws, in tiles as
  * units, and mark the tiles that a segment touches, grown by how far its stroke reaches. Tiles that lie inside of an
- * area's ring are marked too. Threads walk ranges of
- * polylines; each has a table of metatiles, and the tables are put together in order, so the result does not depend on
- * the threads.
+ * area's ring are marked too. Threads take one share
+ * of the polylines after another; each share has a table of metatiles, and the tables are put together in order, so the
+ * result does not depend on the threads.
  *
  *     +-----+-----+-----+
  *     |  x  |  x  |     |      x: touched by the segment, or within its reach
@@ -19,15 +19,17 @@
 #include "source/pmtiles.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum { NOT_YET = UINT32_MAX };
+enum { SHARES_A_THREAD = 8 }; /* a share of wide lines takes longer than one of narrow ones */
 
 typedef struct metatile_pair {
     uint32_t metatile, polyline;
 } metatile_pair;
 
-/* A metatile that a thread has met. */
+/* A metatile that a share has met. */
 typedef struct found_metatile {
     uint32_t column, row;
     uint32_t last; /* polyline that was listed for it; NOT_YET at first */
@@ -41,9 +43,9 @@ typedef struct crossing {
     int winding;
 } crossing;
 
-/* The share of one thread. */
+/* A share of the polylines. */
 typedef struct share {
-    camber_context *context;
+    camber_context *context; /* of the thread that walks it */
     const camber_zoom_plan *plan;
     int64_t tiles; /* a side of the world */
     uint32_t side;
@@ -60,7 +62,7 @@ typedef struct share {
     size_t metatile; /* the one that was marked last; metatile_count: none yet */
 } share;
 
-/* ---- Metatiles of a thread ---- */
+/* ---- Metatiles of a share ---- */
 
 static size_t slot_of(const share *s, uint32_t column, uint32_t row) {
     const uint64_t hash = camber_mix(0, (uint64_t)row << 32 | column);
@@ -253,29 +255,39 @@ static bool mark_polyline(share *s, size_t polyline) {
 /* ---- The threads ---- */
 
 typedef struct taking_census {
+    camber_workers *workers;
     share *shares;
+    size_t share_count;
+    atomic_size_t next; /* the first share that no thread has taken */
 } taking_census;
 
-static camber_status walk_share(void *user, size_t number) {
-    share *s = ((taking_census *)user)->shares + number;
-    for (size_t i = s->first; i < s->end; i++)
-        if (!mark_polyline(s, i))
-            return CAMBER_ERROR_MEMORY;
+static camber_status walk_shares(void *user, size_t number) {
+    taking_census *taking = user;
+    for (size_t i; (i = atomic_fetch_add(&taking->next, 1)) < taking->share_count;) {
+        share *s = taking->shares + i;
+        s->context = taking->workers->contexts[number];
+        for (size_t k = s->first; k < s->end; k++)
+            if (!mark_polyline(s, k))
+                return CAMBER_ERROR_MEMORY;
+    }
     return CAMBER_OK;
 }
 
 /* Divides the polylines by their points. */
-static void divide(const camber_zoom_plan *plan, uint32_t side, int zoom, camber_workers *workers, share *shares) {
+static void divide(const camber_zoom_plan *plan, uint32_t side, int zoom, taking_census *taking) {
     const camber_features *features = plan->features;
-    const size_t count = workers->count, polylines = features->polyline_count;
+    const size_t count = taking->share_count, polylines = features->polyline_count;
     size_t at = 0;
     for (size_t i = 0; i < count; i++) {
         const size_t end_point = (size_t)((double)features->point_count * (double)(i + 1) / (double)count);
-        shares[i] = (share){
-            .context = workers->contexts[i], .plan = plan, .tiles = (int64_t)1 << zoom, .side = side, .first = at};
+        taking->shares[i] = (share){.context = taking->workers->contexts[0],
+                                    .plan = plan,
+                                    .tiles = (int64_t)1 << zoom,
+                                    .side = side,
+                                    .first = at};
         while (at < polylines && (i + 1 == count || features->offsets[at] < end_point))
             at++;
-        shares[i].end = at;
+        taking->shares[i].end = at;
     }
 }
 
@@ -312,7 +324,7 @@ static camber_status list_metatiles(camber_census *census, share *shares, size_t
     return CAMBER_OK;
 }
 
-/* Unites what the threads have met, and lists the polylines of each metatile: those of the first thread come first. */
+/* Unites what the shares have met, and lists the polylines of each metatile: those of the first share come first. */
 static camber_status unite(camber_census *census, share *shares, size_t count) {
     numbered_metatile *all = NULL;
     size_t all_count = 0, pairs = 0;
@@ -358,20 +370,22 @@ static camber_status unite(camber_census *census, share *shares, size_t count) {
 camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_t side, camber_workers *workers,
                                  camber_census *census) {
     *census = (camber_census){.context = workers->context, .zoom = zoom, .side = side};
-    taking_census task = {camber_alloc_zero(workers->context, workers->count, sizeof *task.shares)};
-    if (!task.shares)
+    taking_census taking = {.workers = workers,
+                            .share_count = workers->count > 1 ? SHARES_A_THREAD * workers->count : 1};
+    if (!(taking.shares = camber_alloc_zero(workers->context, taking.share_count, sizeof *taking.shares)))
         return CAMBER_ERROR_MEMORY;
-    divide(plan, side, zoom, workers, task.shares);
-    camber_status status = camber_workers_run(workers, walk_share, &task);
+    divide(plan, side, zoom, &taking);
+    camber_status status = camber_workers_run(workers, walk_shares, &taking);
     if (status == CAMBER_OK)
-        status = unite(census, task.shares, workers->count);
-    for (size_t i = 0; i < workers->count; i++) {
-        camber_free(workers->contexts[i], task.shares[i].metatiles);
-        camber_free(workers->contexts[i], task.shares[i].slots);
-        camber_free(workers->contexts[i], task.shares[i].pairs);
-        camber_free(workers->contexts[i], task.shares[i].crossings);
+        status = unite(census, taking.shares, taking.share_count);
+    for (size_t i = 0; i < taking.share_count; i++) {
+        const share *s = taking.shares + i;
+        camber_free(s->context, s->metatiles);
+        camber_free(s->context, s->slots);
+        camber_free(s->context, s->pairs);
+        camber_free(s->context, s->crossings);
     }
-    camber_free(workers->context, task.shares);
+    camber_free(workers->context, taking.shares);
     return status;
 }
 

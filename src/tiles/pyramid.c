@@ -52,12 +52,21 @@ static camber_tile_index tile_of(const camber_tiles_picture *picture, uint32_t b
     return (camber_tile_index){picture->column + bit % picture->side, picture->row + bit / picture->side};
 }
 
+/* The tile of a picture that comes nth along the Hilbert curve: in the order that archives have. */
+static uint32_t bit_along_curve(const camber_tiles_picture *picture, uint64_t unit, uint32_t n) {
+    uint32_t column, row;
+    const uint64_t zoom_first = camber_pmtiles_number(picture->zoom, 0, 0), count = picture->side * picture->side;
+    camber_pmtiles_locate((unit - zoom_first) / count * count + n, picture->zoom, &column, &row);
+    return (row - picture->row) * picture->side + column - picture->column;
+}
+
 /* Gives the tiles of an encoded picture to the writer, which from then on keeps them. */
 static camber_status write_job(pyramid *p, const camber_encode_job *job) {
     const double start_ms = camber_now_ms();
     const camber_tiles_picture *picture = &job->picture;
     camber_status status = job->status;
-    for (uint32_t bit = 0; bit < picture->side * picture->side && status == CAMBER_OK; bit++) {
+    for (uint32_t n = 0; n < picture->side * picture->side && status == CAMBER_OK; n++) {
+        const uint32_t bit = bit_along_curve(picture, job->unit, n);
         const camber_encoded_tile *tile = job->tiles + bit;
         if (!(job->wanted >> bit & 1))
             continue;

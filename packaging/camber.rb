@@ -11,6 +11,7 @@ class Camber < Formula
   depends_on "opencl-headers" => :build
   depends_on "pkgconf" => :build
   depends_on "gdal"
+  depends_on "isa-l"
   depends_on "jansson"
   depends_on "libdeflate"
   depends_on "libmicrohttpd"

@@ -122,7 +122,7 @@ typedef struct camber_pixels {
 
 /* Encodes whole pictures in memory, one after another. It keeps its buffers, so tiles of one size need no allocations.
  * Threads have an encoder each, each of its own context. The same pixels give the same bytes, whatever was encoded
- * before, with the same versions of libdeflate, zlib and libwebp. */
+ * before, with the same versions of ISA-L, libdeflate, zlib and libwebp. */
 typedef struct camber_encoder camber_encoder;
 
 /* Returns CAMBER_ERROR_ARGUMENT (an encoding that is not built, a level, a quality, or a text's key out of range),

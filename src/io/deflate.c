@@ -1,8 +1,10 @@
-/* DEFLATE by libdeflate and zlib.
+/* DEFLATE by igzip, libdeflate and zlib.
  *
- * libdeflate compresses whole blocks alone, and its blocks cannot be joined: the last one is marked as such, at a bit
- * that only decoding finds. So pictures that are too large to hold are streams, and zlib's. */
+ * igzip has the first level. Of the others libdeflate compresses whole blocks alone, and its blocks cannot be joined:
+ * the last one is marked as such, at a bit that only decoding finds. So pictures that are too large to hold are
+ * streams, and zlib's at these levels. */
 #include "io/deflate.h"
+#include "io/igzip.h"
 
 #ifdef CAMBER_LIBDEFLATE
 #include <libdeflate.h>
@@ -29,10 +31,22 @@ static bool begin_zlib(camber_context *context, int level, z_stream *zlib) {
     return deflateInit(zlib, level) == Z_OK;
 }
 
+/* As camber_igzip_compress. */
+static size_t compress_zlib(z_stream *zlib, camber_uncompressed *input, bool last, uint8_t *to, size_t room_bytes) {
+    zlib->next_in = (Bytef *)(uintptr_t)input->bytes; /* which zlib only reads */
+    zlib->avail_in = (uInt)input->size_bytes;
+    zlib->next_out = to;
+    zlib->avail_out = (uInt)room_bytes;
+    deflate(zlib, last ? Z_FINISH : Z_NO_FLUSH);
+    *input = (camber_uncompressed){zlib->next_in, zlib->avail_in};
+    return room_bytes - zlib->avail_out;
+}
+
 /* ---- Whole blocks ---- */
 
 struct camber_deflater {
     camber_context *context;
+    camber_igzip *igzip; /* NULL: these: */
 #ifdef CAMBER_LIBDEFLATE
     struct libdeflate_compressor *compressor;
 #else
@@ -51,13 +65,12 @@ static void end_whole(camber_deflater *deflater) {
     libdeflate_free_compressor(deflater->compressor);
 }
 
-size_t camber_deflater_bound(camber_deflater *deflater, size_t size_bytes) {
+static size_t bound_whole(camber_deflater *deflater, size_t size_bytes) {
     return libdeflate_zlib_compress_bound(deflater->compressor, size_bytes);
 }
 
-size_t camber_deflater_compress(camber_deflater *deflater, const uint8_t *from, size_t size_bytes, uint8_t *to) {
-    return libdeflate_zlib_compress(deflater->compressor, from, size_bytes, to,
-                                    camber_deflater_bound(deflater, size_bytes));
+static size_t compress_whole(camber_deflater *deflater, const uint8_t *from, size_t size_bytes, uint8_t *to) {
+    return libdeflate_zlib_compress(deflater->compressor, from, size_bytes, to, bound_whole(deflater, size_bytes));
 }
 
 uint32_t camber_crc32(uint32_t crc, const void *bytes, size_t size_bytes) {
@@ -74,19 +87,14 @@ static void end_whole(camber_deflater *deflater) {
     deflateEnd(&deflater->zlib);
 }
 
-size_t camber_deflater_bound(camber_deflater *deflater, size_t size_bytes) {
+static size_t bound_whole(camber_deflater *deflater, size_t size_bytes) {
     return deflateBound(&deflater->zlib, size_bytes);
 }
 
-size_t camber_deflater_compress(camber_deflater *deflater, const uint8_t *from, size_t size_bytes, uint8_t *to) {
-    z_stream *zlib = &deflater->zlib;
-    deflateReset(zlib);
-    zlib->next_in = (Bytef *)(uintptr_t)from; /* which zlib only reads */
-    zlib->avail_in = (uInt)size_bytes;
-    zlib->next_out = to;
-    zlib->avail_out = (uInt)deflateBound(zlib, size_bytes);
-    deflate(zlib, Z_FINISH);
-    return zlib->total_out;
+static size_t compress_whole(camber_deflater *deflater, const uint8_t *from, size_t size_bytes, uint8_t *to) {
+    camber_uncompressed input = {from, size_bytes};
+    deflateReset(&deflater->zlib);
+    return compress_zlib(&deflater->zlib, &input, true, to, bound_whole(deflater, size_bytes));
 }
 
 uint32_t camber_crc32(uint32_t crc, const void *bytes, size_t size_bytes) {
@@ -100,19 +108,38 @@ camber_status camber_deflater_create(camber_context *context, int level, camber_
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
-    if (!begin_whole(made, level)) {
+    camber_status status = CAMBER_OK;
+    if (camber_igzip_has_level(level))
+        status = camber_igzip_create(context, &made->igzip);
+    else if (!begin_whole(made, level))
+        status = fail_memory(context);
+    if (status == CAMBER_OK)
+        *deflater = made;
+    else
         camber_free(context, made);
-        return fail_memory(context);
-    }
-    *deflater = made;
-    return CAMBER_OK;
+    return status;
 }
 
 void camber_deflater_destroy(camber_deflater *deflater) {
     if (!deflater)
         return;
-    end_whole(deflater);
+    if (deflater->igzip)
+        camber_igzip_destroy(deflater->context, deflater->igzip);
+    else
+        end_whole(deflater);
     camber_free(deflater->context, deflater);
+}
+
+size_t camber_deflater_bound(camber_deflater *deflater, size_t size_bytes) {
+    return deflater->igzip ? camber_igzip_bound(size_bytes) : bound_whole(deflater, size_bytes);
+}
+
+size_t camber_deflater_compress(camber_deflater *deflater, const uint8_t *from, size_t size_bytes, uint8_t *to) {
+    if (!deflater->igzip)
+        return compress_whole(deflater, from, size_bytes, to);
+    camber_uncompressed input = {from, size_bytes};
+    camber_igzip_begin(deflater->igzip);
+    return camber_igzip_compress(deflater->igzip, &input, true, to, camber_igzip_bound(size_bytes));
 }
 
 /* ---- Streams ---- */
@@ -120,8 +147,10 @@ void camber_deflater_destroy(camber_deflater *deflater) {
 struct camber_deflate_stream {
     camber_context *context;
     camber_sink sink;
+    camber_igzip *igzip; /* NULL: zlib */
     z_stream zlib;
     uint8_t packed[STREAM_BYTES];
+    size_t packed_bytes;
 };
 
 camber_status camber_deflate_stream_create(camber_context *context, int level, camber_sink sink,
@@ -131,45 +160,54 @@ camber_status camber_deflate_stream_create(camber_context *context, int level, c
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     made->sink = sink;
-    if (!begin_zlib(context, level, &made->zlib)) {
+    made->igzip = NULL;
+    made->packed_bytes = 0;
+    camber_status status = CAMBER_OK;
+    if (camber_igzip_has_level(level))
+        status = camber_igzip_create(context, &made->igzip);
+    else if (!begin_zlib(context, level, &made->zlib))
+        status = fail_memory(context);
+    if (status == CAMBER_OK)
+        *stream = made;
+    else
         camber_free(context, made);
-        return fail_memory(context);
-    }
-    made->zlib.next_out = made->packed;
-    made->zlib.avail_out = STREAM_BYTES;
-    *stream = made;
-    return CAMBER_OK;
+    return status;
 }
 
 static bool give_packed(camber_deflate_stream *stream) {
-    const size_t size_bytes = STREAM_BYTES - stream->zlib.avail_out;
-    stream->zlib.next_out = stream->packed;
-    stream->zlib.avail_out = STREAM_BYTES;
+    const size_t size_bytes = stream->packed_bytes;
+    stream->packed_bytes = 0;
     return size_bytes == 0 || stream->sink.write(stream->sink.user, stream->packed, size_bytes);
 }
 
-bool camber_deflate_stream_write(camber_deflate_stream *stream, const uint8_t *bytes, size_t size_bytes) {
-    z_stream *zlib = &stream->zlib;
-    zlib->next_in = (Bytef *)(uintptr_t)bytes; /* which zlib only reads */
-    zlib->avail_in = (uInt)size_bytes;
-    while (zlib->avail_in > 0) {
-        deflate(zlib, Z_NO_FLUSH);
-        if (zlib->avail_out == 0 && !give_packed(stream))
+/* Compresses all of the input. Pieces are given away when they are full. */
+static bool compress_all(camber_deflate_stream *stream, camber_uncompressed input, bool last) {
+    for (;;) {
+        uint8_t *to = stream->packed + stream->packed_bytes;
+        const size_t room = STREAM_BYTES - stream->packed_bytes;
+        stream->packed_bytes += stream->igzip ? camber_igzip_compress(stream->igzip, &input, last, to, room)
+                                              : compress_zlib(&stream->zlib, &input, last, to, room);
+        if (stream->packed_bytes < STREAM_BYTES)
+            return true;
+        if (!give_packed(stream))
             return false;
     }
-    return true;
+}
+
+bool camber_deflate_stream_write(camber_deflate_stream *stream, const uint8_t *bytes, size_t size_bytes) {
+    return compress_all(stream, (camber_uncompressed){bytes, size_bytes}, false);
 }
 
 bool camber_deflate_stream_finish(camber_deflate_stream *stream) {
-    while (deflate(&stream->zlib, Z_FINISH) != Z_STREAM_END)
-        if (!give_packed(stream))
-            return false;
-    return give_packed(stream);
+    return compress_all(stream, (camber_uncompressed){NULL, 0}, true) && give_packed(stream);
 }
 
 void camber_deflate_stream_destroy(camber_deflate_stream *stream) {
     if (!stream)
         return;
-    deflateEnd(&stream->zlib);
+    if (stream->igzip)
+        camber_igzip_destroy(stream->context, stream->igzip);
+    else
+        deflateEnd(&stream->zlib);
     camber_free(stream->context, stream);
 }

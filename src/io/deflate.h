@@ -1,5 +1,5 @@
-/* DEFLATE in zlib's wrapper, and the CRC of chunks. Whole blocks go through libdeflate, or through zlib
- * where that is missing; streams through zlib. */
+/* DEFLATE in zlib's wrapper, and the CRC of chunks. Level 1 is igzip's. Other levels, and that one where igzip is
+ * missing: whole blocks go through libdeflate, or through zlib where that is missing; streams through zlib. */
 #ifndef CAMBER_IO_DEFLATE_H
 #define CAMBER_IO_DEFLATE_H
 

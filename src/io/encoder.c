@@ -20,8 +20,8 @@ struct camber_encoder {
     camber_quantizer *quantizer; /* png8's */
     camber_palette palette;
     uint8_t straight[CAMBER_PALETTE_MOST][4]; /* the palette as the file has it */
-    uint8_t *rows, *packed;                   /* before and after compression; WebP's rows are straight RGBA */
-    size_t row_capacity, packed_capacity;
+    uint8_t *rows;                            /* before compression; WebP's are straight RGBA */
+    size_t row_capacity;
     camber_file_bytes file;
 };
 
@@ -157,7 +157,6 @@ void camber_encoder_destroy(camber_encoder *encoder) {
     camber_quantizer_destroy(encoder->quantizer);
     camber_colors_free(&encoder->colors);
     camber_free(context, encoder->rows);
-    camber_free(context, encoder->packed);
     camber_free(context, encoder->file.bytes);
     camber_free(context, encoder);
 }
@@ -195,15 +194,25 @@ static bool make_room(camber_encoder *self, size_t size_bytes) {
     return camber_grow(self->context, &self->rows, &self->row_capacity, size_bytes, 1);
 }
 
-/* Compresses the rows and writes the whole file. */
+/* Compresses the rows into their place in the file. */
+static bool put_rows(camber_encoder *self, size_t size_bytes) {
+    camber_file_bytes *file = &self->file;
+    const size_t most =
+        CAMBER_PNG_BEFORE_DATA + camber_deflater_bound(self->deflater, size_bytes) + CAMBER_PNG_BEHIND_DATA;
+    if (!camber_grow(self->context, &file->bytes, &file->capacity, file->size + most, 1))
+        return false;
+    uint8_t *chunk = file->bytes + file->size;
+    const size_t packed =
+        camber_deflater_compress(self->deflater, self->rows, size_bytes, chunk + CAMBER_PNG_BEFORE_DATA);
+    camber_png_enclose_data(chunk, packed);
+    file->size += CAMBER_PNG_BEFORE_DATA + packed + CAMBER_PNG_BEHIND_DATA;
+    return true;
+}
+
 static camber_status finish_png(camber_encoder *self, const camber_png_head *head, size_t row_bytes) {
     const camber_sink sink = {take_bytes, &self->file};
-    const size_t size_bytes = row_bytes * head->height, most = camber_deflater_bound(self->deflater, size_bytes);
-    if (!camber_grow(self->context, &self->packed, &self->packed_capacity, most, 1))
-        return CAMBER_ERROR_MEMORY;
-    const size_t packed = camber_deflater_compress(self->deflater, self->rows, size_bytes, self->packed);
     const bool written =
-        camber_png_put_head(sink, head) && camber_png_put_data(sink, self->packed, packed) && camber_png_put_end(sink);
+        camber_png_put_head(sink, head) && put_rows(self, row_bytes * head->height) && camber_png_put_end(sink);
     return written ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 

@@ -76,6 +76,12 @@ bool camber_png_put_data(camber_sink sink, const void *bytes, size_t size_bytes)
     return put_chunk(sink, "IDAT", &(part){bytes, size_bytes}, 1);
 }
 
+void camber_png_enclose_data(uint8_t *chunk, size_t size_bytes) {
+    put_u32(chunk, (uint32_t)size_bytes);
+    memcpy(chunk + 4, "IDAT", 4);
+    put_u32(chunk + CAMBER_PNG_BEFORE_DATA + size_bytes, camber_crc32(0, chunk + 4, 4 + size_bytes));
+}
+
 bool camber_png_put_end(camber_sink sink) {
     return put_chunk(sink, "IEND", NULL, 0);
 }

@@ -29,6 +29,11 @@ bool camber_png_put_head(camber_sink sink, const camber_png_head *head);
 bool camber_png_put_data(camber_sink sink, const void *bytes, size_t size_bytes);
 bool camber_png_put_end(camber_sink sink);
 
+/* Compressed rows that are made in their place in the file have so many bytes of their chunk before and behind them. */
+enum { CAMBER_PNG_BEFORE_DATA = 8, CAMBER_PNG_BEHIND_DATA = 4 };
+/* Writes these. chunk is where the first of them goes. */
+void camber_png_enclose_data(uint8_t *chunk, size_t size_bytes);
+
 /* The bytes of a row in the file: its filter and its samples. */
 size_t camber_png_row_bytes(camber_png_kind kind, int depth, uint32_t width);
 /* Makes a row of kind RGB or RGBA of premultiplied RGBA. */

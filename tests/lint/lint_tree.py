@@ -493,6 +493,7 @@ LIBRARIES = {
     "protoc-c": ("protobuf-c-compiler", "protobuf-c-compiler", "protobuf-c"),
     "EGL": ("libegl-dev", "pkgconfig(egl)", "mesa"), "GLES3": ("libgles-dev", "pkgconfig(glesv2)", "mesa"),
     "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
+    "libisal": ("libisal-dev", "pkgconfig(libisal)", "isa-l"),
     "libwebp": ("libwebp-dev", "pkgconfig(libwebp)", "webp"),
     "libmicrohttpd": ("libmicrohttpd-dev", "pkgconfig(libmicrohttpd)", "libmicrohttpd"),
     "meshoptimizer": ("libmeshoptimizer-dev", "cmake(meshoptimizer)", "meshoptimizer"),

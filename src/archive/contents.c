@@ -62,7 +62,7 @@ camber_status camber_contents_init(camber_contents *contents, camber_context *co
         !(contents->table = camber_alloc_zero(context, contents->table_size, sizeof *contents->table)))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
-        status = camber_contents_add_store(contents, descriptor, 0, name, &own);
+        status = camber_contents_add_store(contents, descriptor, CAMBER_STORE_BEGIN, name, &own);
     if (status != CAMBER_OK)
         camber_contents_free(contents);
     return status;
@@ -85,7 +85,7 @@ void camber_contents_free(camber_contents *contents) {
 camber_status camber_contents_flush(camber_contents *contents) {
     const camber_content_store *own = &contents->stores[0];
     const camber_status status = camber_write_at(contents->context, own->name, own->descriptor, contents->tail,
-                                                 contents->tail_bytes, contents->written_bytes);
+                                                 contents->tail_bytes, own->offset + contents->written_bytes);
     if (status != CAMBER_OK)
         return status;
     contents->written_bytes += contents->tail_bytes;
@@ -105,7 +105,8 @@ static camber_status append(camber_contents *contents, const void *bytes, size_t
         contents->tail_bytes += size_bytes;
         return CAMBER_OK;
     }
-    status = camber_write_at(contents->context, own->name, own->descriptor, bytes, size_bytes, contents->written_bytes);
+    status = camber_write_at(contents->context, own->name, own->descriptor, bytes, size_bytes,
+                             own->offset + contents->written_bytes);
     if (status == CAMBER_OK)
         contents->written_bytes += size_bytes;
     return status;

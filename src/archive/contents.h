@@ -9,6 +9,9 @@ typedef struct camber_content {
     uint32_t size_bytes, store;
 } camber_content;
 
+/* Store 0 leaves room for the header and the root directory of PMTiles, so that it can become such an archive. */
+enum { CAMBER_STORE_BEGIN = 16384 };
+
 /* A file that has contents. Store 0 is the writer's own, which is appended to. */
 typedef struct camber_content_store {
     int descriptor;

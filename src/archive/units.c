@@ -176,8 +176,9 @@ static camber_status cut(reading *r) {
     camber_contents_cut(r->contents, r->contents_bytes); /* what a unit has that was not believed goes */
     if (ftruncate(units->descriptor, (off_t)units->written_bytes) != 0)
         return camber_output_fail(units->context, units->name, errno);
-    if (ftruncate(r->contents->stores[0].descriptor, (off_t)r->contents_bytes) != 0)
-        return camber_output_fail(units->context, r->contents->stores[0].name, errno);
+    const camber_content_store *own = &r->contents->stores[0];
+    if (ftruncate(own->descriptor, (off_t)(own->offset + r->contents_bytes)) != 0)
+        return camber_output_fail(units->context, own->name, errno);
     if (units->done_count)
         qsort(units->done, units->done_count, sizeof *units->done, compare_units);
     return CAMBER_OK;

@@ -1,6 +1,7 @@
-/* Writes PMTiles 3: header, root directory, metadata, leaf directories, tiles; clustered.
+/* Writes PMTiles 3: header, root directory, tiles from 16384 on, metadata, leaf directories; clustered.
  *
- * The contents come in the order in which tiles first name them. Runs become entries. Where the root directory of all
+ * The contents come in the order in which tiles first name them. Where the writer's own file has them in that order, it
+ * becomes the archive, and no tile is copied. Runs become entries. Where the root directory of all
  * entries does not fit into the first 16 KB, entries go to leaves, which grow until the root of the leaves fits. */
 #define _XOPEN_SOURCE 700 /* pread, pwrite */
 #define _FILE_OFFSET_BITS 64
@@ -15,7 +16,12 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { ROOT_BYTES = 16384 - CAMBER_PMTILES_HEADER_BYTES, LEAST_LEAF = 4096, USUAL_LEAVES = 3500, COPY_BYTES = 1 << 20 };
+enum {
+    ROOT_BYTES = CAMBER_STORE_BEGIN - CAMBER_PMTILES_HEADER_BYTES,
+    LEAST_LEAF = 4096,
+    USUAL_LEAVES = 3500,
+    COPY_BYTES = 1 << 20
+};
 
 typedef struct packed {
     camber_bytes root, leaves, metadata;
@@ -143,14 +149,16 @@ static unsigned char *put_degrees(unsigned char *at, double degrees) {
 
 static void write_header(const camber_archive_plan *plan, const packed *p, unsigned char *header) {
     const camber_tile_type type = plan->desc->type <= CAMBER_TILE_MLT ? plan->desc->type : CAMBER_TILE_OTHER;
-    const uint64_t sizes[] = {p->root.size_bytes, p->metadata.size_bytes, p->leaves.size_bytes, p->tiles_bytes};
-    uint64_t offset = CAMBER_PMTILES_HEADER_BYTES;
+    const uint64_t behind = CAMBER_STORE_BEGIN + p->tiles_bytes;
+    const camber_pmtiles_range sections[] = {{CAMBER_PMTILES_HEADER_BYTES, p->root.size_bytes},
+                                             {behind, p->metadata.size_bytes},
+                                             {behind + p->metadata.size_bytes, p->leaves.size_bytes},
+                                             {CAMBER_STORE_BEGIN, p->tiles_bytes}};
     memcpy(header, "PMTiles\3", 8);
     unsigned char *at = header + 8;
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        at = put_number(at, offset, 8);
-        at = put_number(at, sizes[i], 8);
-        offset += sizes[i];
+    for (size_t i = 0; i < sizeof sections / sizeof *sections; i++) {
+        at = put_number(at, sections[i].offset, 8);
+        at = put_number(at, sections[i].size, 8);
     }
     at = put_number(at, plan->tile_count, 8);
     at = put_number(at, plan->run_count, 8);
@@ -203,8 +211,8 @@ static camber_status copy_range(copying *c, uint32_t store, uint64_t offset, uin
 }
 
 /* Contents that lie one behind the other in a store are one range. */
-static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p, int file, uint64_t offset) {
-    copying c = {.plan = plan, .file = file, .offset = offset};
+static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p, int file) {
+    copying c = {.plan = plan, .file = file, .offset = CAMBER_STORE_BEGIN};
     const camber_content *items = plan->contents->items;
     camber_status status = CAMBER_OK;
     if (!(c.buffer = camber_alloc(plan->context, COPY_BYTES, 1)))
@@ -227,26 +235,72 @@ static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p
     return status;
 }
 
-static camber_status write_file(const camber_archive_plan *plan, const packed *p) {
-    unsigned char header[CAMBER_PMTILES_HEADER_BYTES];
-    const int file = open(plan->whole, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0)
-        return camber_output_fail(plan->context, plan->whole, errno);
-    write_header(plan, p, header);
-    camber_status status = camber_write_at(plan->context, plan->whole, file, header, sizeof header, 0);
-    uint64_t offset = sizeof header;
-    const camber_bytes *const parts[] = {&p->root, &p->metadata, &p->leaves};
+/* Whether the writer's own file has the contents, and nothing else, where the archive has them. */
+static bool has_order(const camber_archive_plan *plan, const packed *p) {
+    const camber_contents *contents = plan->contents;
+    for (size_t i = 0; i < p->content_count; i++) {
+        const camber_content *item = &contents->items[p->order[i]];
+        if (item->store != 0 || item->offset != p->offsets[p->order[i]])
+            return false;
+    }
+    return p->tiles_bytes > 0 && p->tiles_bytes == contents->written_bytes;
+}
+
+/* ---- The file ---- */
+
+/* Writes all but the tiles, which lie between. */
+static camber_status write_around(const camber_archive_plan *plan, const packed *p, int file) {
+    unsigned char head[CAMBER_STORE_BEGIN] = {0};
+    uint64_t offset = sizeof head + p->tiles_bytes;
+    write_header(plan, p, head);
+    memcpy(head + CAMBER_PMTILES_HEADER_BYTES, p->root.data, p->root.size_bytes);
+    camber_status status = camber_write_at(plan->context, plan->whole, file, head, sizeof head, 0);
+    const camber_bytes *const parts[] = {&p->metadata, &p->leaves};
     for (size_t i = 0; i < sizeof parts / sizeof *parts && status == CAMBER_OK; i++) {
         status = camber_write_at(plan->context, plan->whole, file, parts[i]->data, parts[i]->size_bytes, offset);
         offset += parts[i]->size_bytes;
     }
+    if (status == CAMBER_OK && ftruncate(file, (off_t)offset) != 0)
+        status = camber_output_fail(plan->context, plan->whole, errno);
+    return status;
+}
+
+static camber_status write_copy(const camber_archive_plan *plan, const packed *p) {
+    const int file = open(plan->whole, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0)
+        return camber_output_fail(plan->context, plan->whole, errno);
+    camber_status status = copy_tiles(plan, p, file);
     if (status == CAMBER_OK)
-        status = copy_tiles(plan, p, file, offset);
+        status = write_around(plan, p, file);
     if (status != CAMBER_OK) {
         close(file);
         return status;
     }
     return camber_sync_and_close(plan->context, plan->whole, file);
+}
+
+/* The file of the tiles gets a second name. It keeps the first, by which an interrupted run finds it. Some file systems
+ * know no second names; then *linked is false. */
+static camber_status write_around_own(const camber_archive_plan *plan, const packed *p, bool *linked) {
+    const camber_content_store *own = &plan->contents->stores[0];
+    *linked = link(own->name, plan->whole) == 0;
+    if (!*linked)
+        return CAMBER_OK;
+    const int file = dup(own->descriptor);
+    if (file < 0)
+        return camber_output_fail(plan->context, plan->whole, errno);
+    const camber_status status = write_around(plan, p, file);
+    if (status != CAMBER_OK) {
+        close(file);
+        return status;
+    }
+    return camber_sync_and_close(plan->context, plan->whole, file);
+}
+
+static camber_status write_file(const camber_archive_plan *plan, const packed *p) {
+    bool linked = false;
+    const camber_status status = has_order(plan, p) ? write_around_own(plan, p, &linked) : CAMBER_OK;
+    return linked ? status : write_copy(plan, p);
 }
 
 static camber_status pack_metadata(const camber_archive_plan *plan, packed *p) {

@@ -102,6 +102,14 @@ bool camber_archive_beside(const char *path, size_t n, char *name, size_t size) 
 
 /* ---- Opening ---- */
 
+/* A run that was killed at its end may have left the file with a second name, beside it, which goes, or with the
+ * archive's. */
+static bool is_archive(const camber_archive_writer *writer, int file) {
+    struct stat about;
+    (void)unlink(writer->beside[BESIDE_WHOLE]);
+    return fstat(file, &about) == 0 && about.st_nlink > 1;
+}
+
 /* Opens and locks a file. It may have been removed between the two, by the writer that had it. */
 static camber_status open_locked(camber_archive_writer *writer) {
     const char *name = writer->beside[BESIDE_TILES];
@@ -116,7 +124,7 @@ static camber_status open_locked(camber_archive_writer *writer) {
                                "%s: another process is writing it; wait for that, or name another file", writer->path);
         }
         if (fstat(file, &opened) == 0 && stat(name, &there) == 0 && opened.st_ino == there.st_ino &&
-            opened.st_dev == there.st_dev) {
+            opened.st_dev == there.st_dev && !(is_archive(writer, file) && unlink(name) == 0)) {
             writer->tiles = file;
             writer->keeps = writer->desc.resume; /* until it is known what is there */
             return CAMBER_OK;

@@ -17,6 +17,9 @@
 #include <math.h>
 #include <stdio.h>
 
+/* More points than this take so much memory that they go when they can. */
+static const size_t MANY_POINTS = (size_t)1 << 23;
+
 typedef struct pyramid {
     camber_context *context;
     camber_tiles_engine *engine;
@@ -207,26 +210,38 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
     return status;
 }
 
-/* Drops the points that neither this zoom nor any before it draws. Where a style asks for lengths along lines, all
- * points count. */
+/* Whether points go as soon as no zoom is left that draws them. Where a style asks for lengths along lines, all points
+ * count; and few points are not worth it. */
+static bool spends_points(const pyramid *p) {
+    return p->desc->spent && !p->schedule.has_arc_length && p->engine->features->point_count > MANY_POINTS;
+}
+
+/* Drops the points that neither this zoom nor any before it draws. */
 static camber_status spend_points(pyramid *p, int zoom) {
     camber_engine_zoom *opened;
-    if (!p->desc->spent || p->schedule.has_arc_length)
-        return CAMBER_OK;
     const camber_status status = camber_engine_plan_zoom(p->engine, zoom, &opened);
     return status == CAMBER_OK ? camber_features_thin(p->desc->spent, opened->plan->least_importance) : status;
 }
 
-/* Draws the deepest zoom first: where points may go, each zoom leaves the next one fewer, and the first zooms, whose
- * networks have all lines, are drawn when least is held. */
+/* Draws zoom by zoom, in the order of the archive, which then need not copy the tiles. Where points go, the deepest
+ * zoom comes first: each leaves the next one fewer, and the first zooms, whose networks have all lines, are drawn when
+ * least is held. */
 static camber_status draw_all(pyramid *p) {
     const camber_schedule *s = &p->schedule;
+    const bool spends = spends_points(p);
+    size_t first = spends ? s->count : 0, end = first;
     camber_status status = CAMBER_OK;
-    for (size_t end = s->count, first; end > 0 && status == CAMBER_OK; end = first) {
-        for (first = end; first > 0 && s->tasks[first - 1].zoom == s->tasks[end - 1].zoom; first--)
-            ;
-        status = spend_points(p, s->tasks[first].zoom);
-        if (status == CAMBER_OK)
+    for (int n = p->area.min_zoom; n <= p->area.max_zoom && status == CAMBER_OK; n++) {
+        const int zoom = spends ? p->area.min_zoom + p->area.max_zoom - n : n;
+        if (spends)
+            for (end = first; first > 0 && s->tasks[first - 1].zoom == zoom; first--)
+                ;
+        else
+            for (first = end; end < s->count && s->tasks[end].zoom == zoom; end++)
+                ;
+        if (spends && first < end)
+            status = spend_points(p, zoom);
+        if (status == CAMBER_OK && first < end)
             status = draw_zoom(p, first, end);
     }
     while (status == CAMBER_OK && camber_encode_queue_is_busy(p->queue))

@@ -1,10 +1,11 @@
 /* Writes an archive of made-up tiles by the writer that draws use, for the tests from outside.
  *
- *     make_archive OUT COUNT [shard=K/N] [style=NAME] [resume] [force] [pause=MICROSECONDS] [lossy]
+ *     make_archive OUT COUNT [shard=K/N] [style=NAME] [resume] [force] [pause=MICROSECONDS] [lossy] [forward]
  *
  * The tiles are those of the numbers 0 to COUNT - 1, in units of 1024, from the last unit to the first and from each
- * unit's last tile to its first. pause: time to kill it, after each unit. lossy: every 7th tile is left out. Exit
- * statuses are the tool's: 74 where writing failed, 65 where units are of another run. */
+ * unit's last tile to its first; forward: from the first to the last, as an archive has them. pause: time to kill it,
+ * after each unit. lossy: every 7th tile is left out. Exit statuses are the tool's: 74 where writing failed, 65 where
+ * units are of another run. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
@@ -21,7 +22,7 @@ typedef struct making {
     camber_archive_writer *writer;
     uint64_t count;
     long pause_us;
-    bool lossy;
+    bool lossy, forward;
 } making;
 
 static void print_log(void *user, camber_log_level level, const char *message) {
@@ -34,7 +35,8 @@ static camber_status add_unit(const making *m, uint64_t unit) {
     const uint64_t first = unit * UNIT_TILES, end = first + UNIT_TILES < m->count ? first + UNIT_TILES : m->count;
     unsigned char bytes[MADE_TILE_BYTES];
     camber_status status = CAMBER_OK;
-    for (uint64_t number = end; number-- > first && status == CAMBER_OK;) {
+    for (uint64_t i = 0; i < end - first && status == CAMBER_OK; i++) {
+        const uint64_t number = m->forward ? first + i : end - 1 - i;
         const int zoom = camber_archive_zoom(number);
         camber_tile_index tile;
         if (m->lossy && number % 7 == 0)
@@ -53,7 +55,8 @@ static camber_status make(const making *m, uint32_t shard, uint32_t shards) {
     camber_status status = CAMBER_OK;
     if (camber_archive_writer_is_done(m->writer))
         return CAMBER_OK;
-    for (uint64_t unit = end; unit-- > first && status == CAMBER_OK;) {
+    for (uint64_t i = 0; i < end - first && status == CAMBER_OK; i++) {
+        const uint64_t unit = m->forward ? first + i : end - 1 - i;
         if (camber_archive_writer_has_unit(m->writer, unit))
             continue;
         status = add_unit(m, unit);
@@ -84,6 +87,7 @@ int main(int argc, char **argv) {
             m.pause_us = strtol(argv[i] + 6, NULL, 10);
         desc.resume = desc.resume || strcmp(argv[i], "resume") == 0;
         desc.force = desc.force || strcmp(argv[i], "force") == 0;
+        m.forward = m.forward || strcmp(argv[i], "forward") == 0;
         m.lossy = m.lossy || strcmp(argv[i], "lossy") == 0;
     }
     camber_status status = camber_archive_writer_create(context, &desc, &m.writer);

@@ -415,10 +415,11 @@ def test_killed():
         make(f"calm{ending}", count)
         wanted = read(f"calm{ending}")
         name = f"killed{ending}"
-        for round_ in range(5 if ending == ".pmtiles" else 2):
+        for round_ in range(8 if ending == ".pmtiles" else 2):
             kills = 0
+            way = ["forward"] if round_ % 2 else []
             while True:
-                child = subprocess.Popen([MAKER, name, str(count), "resume", f"pause={pause}"],
+                child = subprocess.Popen([MAKER, name, str(count), "resume", f"pause={pause}"] + way,
                                          stderr=subprocess.DEVNULL)
                 try:
                     child.wait(chance.uniform(0.002, 0.2) if kills < 4 else None)
@@ -433,9 +434,9 @@ def test_killed():
             os.unlink(name)
 
 
-def stop_half_way(name, count):
+def stop_half_way(name, count, *options):
     """Kills a run that has ended a unit. Returns the size of its journal."""
-    child = subprocess.Popen([MAKER, name, str(count), "resume", "pause=20000"])
+    child = subprocess.Popen([MAKER, name, str(count), *(options or ["resume"]), "pause=20000"])
     journal = name + ".camber-units"
     while not os.path.exists(journal) or os.path.getsize(journal) < 100000:
         time.sleep(0.005)
@@ -477,6 +478,40 @@ def test_resume():
     expect("differs in its style" in line and "part.pmtiles" in line, line)
     line = make("part.pmtiles", count, status=74)
     expect("exists" in line, line)
+
+
+def test_second_names():
+    """Where tiles come in the archive's order, their file becomes it; a run that is killed then leaves second names."""
+    count, journal, own = 30000, "named.pmtiles.camber-units", "named.pmtiles.camber-tiles"
+    wanted = read("calm.pmtiles")
+    child = subprocess.Popen([MAKER, "named.pmtiles", str(count), "forward", "pause=2000"])
+    while not os.path.exists(journal) or os.path.getsize(journal) < 1000:
+        time.sleep(0.001)
+    number = os.stat(own).st_ino
+    child.wait()
+    expect(os.stat("named.pmtiles").st_ino == number, "the tiles were copied")
+    expect(read("named.pmtiles") == wanted, "in order: other bytes than out of it")
+    # It is whole and has its name: another run must not write into it before its own is.
+    os.link("named.pmtiles", own)
+    stop_half_way("named.pmtiles", count, "force", "forward")
+    expect(read("named.pmtiles") == wanted, "a run wrote into the archive that it was to replace")
+    make("named.pmtiles", count, "resume", "force", "forward")
+    expect(read("named.pmtiles") == wanted, "replaced: other bytes")
+    os.link("named.pmtiles", own)
+    make("named.pmtiles", count, "resume")
+    expect(read("named.pmtiles") == wanted, "a whole archive with a second name has changed")
+    alone("named.pmtiles")
+    # It is whole, and has no name yet: a run goes on with it.
+    os.unlink("named.pmtiles")
+    before = stop_half_way("named.pmtiles", count, "forward")
+    os.link(own, "named.pmtiles.camber-whole")
+    child = subprocess.Popen([MAKER, "named.pmtiles", str(count), "resume", "forward", "pause=5000"])
+    while not os.path.exists(journal) or os.path.getsize(journal) <= before:
+        expect(child.poll() is None and os.path.getsize(journal) >= before, "a run did not go on")
+        time.sleep(0.001)
+    child.wait()
+    expect(read("named.pmtiles") == wanted, "gone on after the end: other bytes")
+    alone("named.pmtiles")
 
 
 def test_locked():
@@ -525,7 +560,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="camber-archives-") as folder:
         os.chdir(folder)
         tests = [test_readers, test_pmtiles_rules, test_mbtiles_rules, test_folder_rules, test_merge, test_killed,
-                 test_resume, test_locked, test_full, test_million]
+                 test_resume, test_second_names, test_locked, test_full, test_million]
         named = [test for test in tests if test.__name__[5:] in sys.argv[4:]]
         for test in named or tests:
             start = time.monotonic()

@@ -49,9 +49,18 @@ camber_status camber_write_at(camber_context *context, const char *name, int fil
     return CAMBER_OK;
 }
 
+/* A file system that cannot sync says EINVAL. */
+static int sync_file(int file) {
+    return fsync(file) != 0 && errno != EINVAL ? errno : 0;
+}
+
+camber_status camber_sync(camber_context *context, const char *name, int file) {
+    const int unsynced = sync_file(file);
+    return unsynced ? camber_output_fail(context, name, unsynced) : CAMBER_OK;
+}
+
 camber_status camber_sync_and_close(camber_context *context, const char *name, int file) {
-    /* A file system that cannot sync says EINVAL. */
-    const int unsynced = fsync(file) != 0 && errno != EINVAL ? errno : 0;
+    const int unsynced = sync_file(file);
     const int unclosed = close(file) != 0 ? errno : 0;
     if (!unsynced && !unclosed)
         return CAMBER_OK;
@@ -116,8 +125,10 @@ static int give_name(camber_context *context, const char *whole, const char *pat
     if (force || S_ISDIR(about.st_mode))
         return rename(whole, path) == 0 ? 0 : errno;
     /* A link fails where a file has appeared meanwhile. */
-    if (link(whole, path) == 0)
-        return unlink(whole) == 0 ? 0 : errno;
+    if (link(whole, path) == 0) {
+        (void)unlink(whole);
+        return 0;
+    }
     if (errno == EEXIST || errno == ENOSPC || errno == EIO)
         return errno;
     return rename(whole, path) == 0 ? 0 : errno;

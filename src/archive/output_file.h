@@ -9,6 +9,8 @@ camber_status camber_output_fail(camber_context *context, const char *name, int 
 /* Writes bytes at an offset of an open file, all of them. */
 camber_status camber_write_at(camber_context *context, const char *name, int file, const void *bytes, size_t size_bytes,
                               uint64_t offset);
+/* Syncs an open file. */
+camber_status camber_sync(camber_context *context, const char *name, int file);
 /* Syncs an open file, and closes it in any case. */
 camber_status camber_sync_and_close(camber_context *context, const char *name, int file);
 /* Gives a file or folder that is whole its name. force: it replaces what has that name; a folder's old one is removed.

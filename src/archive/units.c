@@ -22,7 +22,7 @@ typedef struct head {
     char key[KEY_BYTES];
 } head;
 
-static const char MAGIC[24] = "camber finished units 1";
+static const char MAGIC[24] = "camber finished units 2";
 
 /* ---- Writing ---- */
 

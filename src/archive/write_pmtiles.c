@@ -13,6 +13,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -266,41 +267,40 @@ static camber_status write_around(const camber_archive_plan *plan, const packed 
 }
 
 static camber_status write_copy(const camber_archive_plan *plan, const packed *p) {
-    const int file = open(plan->whole, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int file = open(plan->whole, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0)
         return camber_output_fail(plan->context, plan->whole, errno);
     camber_status status = copy_tiles(plan, p, file);
     if (status == CAMBER_OK)
         status = write_around(plan, p, file);
-    if (status != CAMBER_OK) {
-        close(file);
-        return status;
-    }
-    return camber_sync_and_close(plan->context, plan->whole, file);
+    if (status == CAMBER_OK)
+        return camber_sync_and_close(plan->context, plan->whole, file);
+    close(file);
+    return status;
 }
 
-/* The file of the tiles gets a second name. It keeps the first, by which an interrupted run finds it. Some file systems
- * know no second names; then *linked is false. */
-static camber_status write_around_own(const camber_archive_plan *plan, const packed *p, bool *linked) {
+/* Gives the file of the tiles a second name; by the first an interrupted run finds it. Some file systems know no second
+ * names, and the first may be a link to another folder. */
+static bool give_second_name(const camber_archive_plan *plan) {
     const camber_content_store *own = &plan->contents->stores[0];
-    *linked = link(own->name, plan->whole) == 0;
-    if (!*linked)
-        return CAMBER_OK;
-    const int file = dup(own->descriptor);
-    if (file < 0)
-        return camber_output_fail(plan->context, plan->whole, errno);
+    struct stat first, second;
+    (void)link(own->name, plan->whole);
+    if (lstat(plan->whole, &second) != 0)
+        return false;
+    if (fstat(own->descriptor, &first) == 0 && first.st_ino == second.st_ino && first.st_dev == second.st_dev)
+        return true;
+    (void)unlink(plan->whole);
+    return false;
+}
+
+static camber_status finish_in_place(const camber_archive_plan *plan, const packed *p) {
+    const int file = plan->contents->stores[0].descriptor;
     const camber_status status = write_around(plan, p, file);
-    if (status != CAMBER_OK) {
-        close(file);
-        return status;
-    }
-    return camber_sync_and_close(plan->context, plan->whole, file);
+    return status == CAMBER_OK ? camber_sync(plan->context, plan->whole, file) : status;
 }
 
 static camber_status write_file(const camber_archive_plan *plan, const packed *p) {
-    bool linked = false;
-    const camber_status status = has_order(plan, p) ? write_around_own(plan, p, &linked) : CAMBER_OK;
-    return linked ? status : write_copy(plan, p);
+    return has_order(plan, p) && give_second_name(plan) ? finish_in_place(plan, p) : write_copy(plan, p);
 }
 
 static camber_status pack_metadata(const camber_archive_plan *plan, packed *p) {

@@ -2,7 +2,8 @@
  *
  * Tiles go to two files beside the archive: their bytes, each content once, and a journal of finished units. When all
  * is there, the tiles are sorted by number (zoom, then the Hilbert curve), runs are joined, and a function for the
- * format writes the archive to a third path beside it, which then gets the archive's name. */
+ * format writes the archive to a third path beside it, which then gets the archive's name. PMTiles whose tiles came in
+ * order are not written: the first file becomes the archive, of which the third path is a second name. */
 #define _DEFAULT_SOURCE /* flock */
 #define _FILE_OFFSET_BITS 64
 
@@ -102,12 +103,15 @@ bool camber_archive_beside(const char *path, size_t n, char *name, size_t size) 
 
 /* ---- Opening ---- */
 
-/* A run that was killed at its end may have left the file with a second name, beside it, which goes, or with the
- * archive's. */
+/* Whether a file of tiles, which is locked, has become the archive: a run that was killed at its end leaves it so. A
+ * second name beside it goes. */
 static bool is_archive(const camber_archive_writer *writer, int file) {
-    struct stat about;
+    struct stat opened, there;
     (void)unlink(writer->beside[BESIDE_WHOLE]);
-    return fstat(file, &about) == 0 && about.st_nlink > 1;
+    if (fstat(file, &opened) != 0)
+        return true;
+    return opened.st_nlink > 1 ||
+           (stat(writer->path, &there) == 0 && opened.st_ino == there.st_ino && opened.st_dev == there.st_dev);
 }
 
 /* Opens and locks a file. It may have been removed between the two, by the writer that had it. */
@@ -123,13 +127,16 @@ static camber_status open_locked(camber_archive_writer *writer) {
             return camber_fail(writer->context, CAMBER_ERROR_IO,
                                "%s: another process is writing it; wait for that, or name another file", writer->path);
         }
-        if (fstat(file, &opened) == 0 && stat(name, &there) == 0 && opened.st_ino == there.st_ino &&
-            opened.st_dev == there.st_dev && !(is_archive(writer, file) && unlink(name) == 0)) {
+        const bool same = fstat(file, &opened) == 0 && stat(name, &there) == 0 && opened.st_ino == there.st_ino &&
+                          opened.st_dev == there.st_dev;
+        if (same && !is_archive(writer, file)) {
             writer->tiles = file;
             writer->keeps = writer->desc.resume; /* until it is known what is there */
             return CAMBER_OK;
         }
         close(file);
+        if (same && unlink(name) != 0 && errno != ENOENT)
+            return camber_output_fail(writer->context, name, errno);
     }
     return camber_output_fail(writer->context, name, EBUSY);
 }

@@ -20,7 +20,8 @@ camber_status camber_igzip_create(camber_context *context, camber_igzip **igzip)
 /* Begins another block. */
 void camber_igzip_begin(camber_igzip *igzip);
 /* Takes of the input, up to all of it, and returns how many bytes it wrote. Where there was no more room (below 2^32)
- * there may be more to write: call it again. last: no input comes behind this. */
+ * there may be more to write: call it again. last: no input comes behind this. The first of several inputs has more
+ * than 8 bytes. */
 size_t camber_igzip_compress(camber_igzip *igzip, camber_uncompressed *input, bool last, uint8_t *to,
                              size_t room_bytes);
 /* The bytes that a block of this size comes to at most. */

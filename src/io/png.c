@@ -1,5 +1,5 @@
 /* Writes a PNG of rows that come as they are drawn. Small pictures are held, and an encoder makes the file of the
- * whole. Large ones are a stream, of which no more than a row and what zlib needs are in memory. */
+ * whole. Large ones are a stream, of which no more than a row and what compressing needs are in memory. */
 #include "io/deflate.h"
 #include "io/encoder.h"
 #include "io/png_chunks.h"

@@ -33,9 +33,9 @@ typedef struct encode_thread {
     size_t number;
 } encode_thread;
 
-static double thread_ms(void) {
+static double clock_ms(clockid_t clock) {
     struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    clock_gettime(clock, &now);
     return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
@@ -123,12 +123,11 @@ static void work_on(camber_encode_queue *queue, size_t number, camber_encode_job
     const unsigned tile = first_tile(job->waiting);
     job->waiting &= job->waiting - 1;
     pthread_mutex_unlock(&queue->mutex);
-    const double start_ms = camber_now_ms(), start_cpu_ms = thread_ms();
+    const double start_ms = camber_now_ms();
     const camber_status status = encode_tile(queue, number, job, tile);
-    const double wall_ms = camber_now_ms() - start_ms, cpu_ms = thread_ms() - start_cpu_ms;
+    const double wall_ms = camber_now_ms() - start_ms;
     pthread_mutex_lock(&queue->mutex);
     queue->times.wall_ms += wall_ms;
-    queue->times.cpu_ms += cpu_ms;
     queue->times.tiles += job->tiles[tile].size_bytes > 0;
     queue->times.bytes += job->tiles[tile].size_bytes;
     if (status != CAMBER_OK && job->status == CAMBER_OK) {
@@ -280,8 +279,10 @@ void camber_encode_queue_put(camber_encode_queue *queue, camber_encode_job *job)
         job->left++;
     queue->put++;
     pthread_cond_broadcast(&queue->work);
+    const double start_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID);
     while (queue->thread_count == 0 && job->waiting)
         work_on(queue, 0, job);
+    queue->times.cpu_ms += queue->thread_count == 0 ? clock_ms(CLOCK_THREAD_CPUTIME_ID) - start_ms : 0.0;
     pthread_mutex_unlock(&queue->mutex);
 }
 
@@ -312,7 +313,12 @@ bool camber_encode_queue_is_busy(const camber_encode_queue *queue) {
 
 camber_encode_times camber_encode_queue_get_times(camber_encode_queue *queue) {
     pthread_mutex_lock(&queue->mutex);
-    const camber_encode_times times = queue->times;
+    camber_encode_times times = queue->times;
     pthread_mutex_unlock(&queue->mutex);
+    for (size_t i = 0; i < queue->thread_count; i++) {
+        clockid_t clock;
+        if (pthread_getcpuclockid(queue->threads[i], &clock) == 0)
+            times.cpu_ms += clock_ms(clock);
+    }
     return times;
 }

@@ -132,8 +132,12 @@ static camber_status make_blank(pyramid *p, int zoom) {
 
 /* Writes a metatile that no line touches: its tiles are kept as blanks, or removed. */
 static camber_status write_blanks(pyramid *p, const camber_tile_task *task, const camber_tiles_picture *picture) {
-    const bool keeps = p->desc->keep_empty;
-    camber_status status = keeps && p->blank_zoom != task->zoom ? make_blank(p, task->zoom) : CAMBER_OK;
+    const bool keeps = p->desc->keep_empty, makes = keeps && p->blank_zoom != task->zoom;
+    camber_status status = CAMBER_OK;
+    while (makes && status == CAMBER_OK && camber_encode_queue_is_busy(p->queue))
+        status = write_ready(p, true); /* the tiles before it come first */
+    if (makes && status == CAMBER_OK)
+        status = make_blank(p, task->zoom);
     for (uint32_t bit = 0; bit < picture->side * picture->side && status == CAMBER_OK; bit++) {
         if (!(task->wanted >> bit & 1))
             continue;

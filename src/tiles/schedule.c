@@ -18,10 +18,10 @@
 
 /* A metatile takes so many microseconds of one processor: PICTURE_US, whatever it has; SHARE_US by the root of its
  * points times its tiles, since points beside each other share pixels and bytes; CROWDED_US for each point and each
- * doubling from CROWD points a tile to its own. So 462 metatiles of zooms 0 to 14 are told within 12 %, root of the
- * mean square (10 million points, 2026-11-26, Intel Xeon, AVX-512). */
-static const double PICTURE_US = 1.1e3, SHARE_US = 29.0, CROWDED_US = 0.045;
-enum { LEAST_POINTS = 50, CROWD = 2048 }; /* of a tile; a line that crosses it has no point there */
+ * doubling from CROWD points a tile to its own. So 462 metatiles of zooms 0 to 14 are told within 11 %, root of the
+ * mean square (10 million points, 2026-11-27, Intel Xeon, AVX-512). */
+static const double PICTURE_US = 1.2e3, SHARE_US = 15.6, CROWDED_US = 0.037;
+enum { LEAST_POINTS = 50, CROWD = 512 }; /* of a tile; a line that crosses it has no point there */
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which

@@ -512,6 +512,12 @@ def test_second_names():
     child.wait()
     expect(read("named.pmtiles") == wanted, "gone on after the end: other bytes")
     alone("named.pmtiles")
+    # The tiles lie in another folder: a second name would be that of the link.
+    os.mkdir("scratch")
+    os.symlink("scratch/tiles", own)
+    make("named.pmtiles", count, "force", "forward")
+    expect(not os.path.islink("named.pmtiles") and read("named.pmtiles") == wanted, "an archive is a link")
+    alone("named.pmtiles")
 
 
 def test_locked():

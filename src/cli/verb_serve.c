@@ -358,8 +358,18 @@ static int listen_there(camber_session *session, camber_server **server, char ur
     return CAMBER_EXIT_DONE;
 }
 
+/* Whoever listens at all addresses has clients to which that address says nothing. */
+static void tell_public_url(camber_session *session, const camber_server *server) {
+    const char *address = camber_server_get_address(server);
+    if (!session->options->public_url && (strncmp(address, "0.0.0.0:", 8) == 0 || strncmp(address, "[::]:", 5) == 0))
+        camber_report_say(session->report,
+                          "tiles.json names %s, where other machines find nothing; tell what they know by --public-url",
+                          camber_server_get_url(server));
+}
+
 static int announce(camber_session *session, const camber_server *server) {
     const char *metrics = camber_server_get_metrics_address(server);
+    tell_public_url(session, server);
     if (session->options->json) {
         json_t *object = json_pack("{s:s, s:s, s:s?}", "url", camber_server_get_url(server), "listen",
                                    camber_server_get_address(server), "metrics", metrics);

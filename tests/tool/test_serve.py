@@ -152,6 +152,22 @@ def test_usage():
     server.stop()
 
 
+def test_public_url():
+    """Who listens everywhere is told that tiles.json names an address that is of use here alone."""
+    write_map("map.json")
+    for options in ((), ("--public-url", "https://tiles.example.org")):
+        child = subprocess.Popen([TOOL, "serve", "map.json", "--listen", "0.0.0.0:0", *options], stderr=subprocess.PIPE,
+                                 text=True)
+        said = ""
+        while "ready after" not in said:
+            line = child.stderr.readline()
+            expect(line, f"it ended: {said}")
+            said += line
+        child.terminate()
+        child.wait()
+        expect(("--public-url" in said) != bool(options), said)
+
+
 def test_caching():
     write_map("map.json")
     server = Server("map.json")

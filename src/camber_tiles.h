@@ -235,8 +235,9 @@ typedef struct camber_tiles_draw_desc {
     const char *schedule_path;
     const char *const *inputs; /* with schedule_path: input_count files that the features were read of */
     size_t input_count;
-    /* The engine's own features, where nothing else is drawn of them: where there are many points, they go as soon as
-     * no zoom is left that draws them, and the engine draws nothing more. NULL: they stay. */
+    /* The engine's own features, where nothing else is drawn of them: points go as soon as no zoom is left that draws
+     * them, and the engine draws nothing more. That takes the deepest zoom first, so that PMTiles are copied at the
+     * end. NULL: they stay. */
     camber_features *spent;
     /* Is called once no other process writes this output (camber_tiles_beside). NULL: not told. */
     void (*begun)(void *user);

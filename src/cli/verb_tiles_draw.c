@@ -200,6 +200,12 @@ static void begin(void *user) {
     camber_tiles_files_guard(&j->files);
 }
 
+/* Whether points take so much memory that they go when they can, for which PMTiles are copied at the end. */
+static bool has_many_points(const job *j) {
+    enum { MANY_POINTS = 1 << 23 };
+    return camber_features_get_stats(j->input.features).points > MANY_POINTS;
+}
+
 static camber_tiles_draw_desc describe(job *j) {
     const camber_options *options = j->session->options;
     const camber_view_desc *view = &options->view;
@@ -227,7 +233,7 @@ static camber_tiles_draw_desc describe(job *j) {
                                     .schedule_path = options->dry_run ? options->schedule : NULL,
                                     .inputs = options->inputs,
                                     .input_count = options->input_count,
-                                    .spent = j->input.features,
+                                    .spent = has_many_points(j) ? j->input.features : NULL,
                                     .begun = begin,
                                     .user = j};
 }

@@ -17,9 +17,6 @@
 #include <math.h>
 #include <stdio.h>
 
-/* More points than this take so much memory that they go when they can. */
-static const size_t MANY_POINTS = (size_t)1 << 23;
-
 typedef struct pyramid {
     camber_context *context;
     camber_tiles_engine *engine;
@@ -215,9 +212,9 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
 }
 
 /* Whether points go as soon as no zoom is left that draws them. Where a style asks for lengths along lines, all points
- * count; and few points are not worth it. */
+ * count. */
 static bool spends_points(const pyramid *p) {
-    return p->desc->spent && !p->schedule.has_arc_length && p->engine->features->point_count > MANY_POINTS;
+    return p->desc->spent && !p->schedule.has_arc_length;
 }
 
 /* Drops the points that neither this zoom nor any before it draws. */

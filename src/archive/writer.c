@@ -103,22 +103,24 @@ bool camber_archive_beside(const char *path, size_t n, char *name, size_t size) 
 
 /* ---- Opening ---- */
 
+static bool leads_to(const char *name, int file) {
+    struct stat opened, there;
+    return fstat(file, &opened) == 0 && stat(name, &there) == 0 && opened.st_ino == there.st_ino &&
+           opened.st_dev == there.st_dev;
+}
+
 /* Whether a file of tiles, which is locked, has become the archive: a run that was killed at its end leaves it so. A
  * second name beside it goes. */
 static bool is_archive(const camber_archive_writer *writer, int file) {
-    struct stat opened, there;
+    struct stat opened;
     (void)unlink(writer->beside[BESIDE_WHOLE]);
-    if (fstat(file, &opened) != 0)
-        return true;
-    return opened.st_nlink > 1 ||
-           (stat(writer->path, &there) == 0 && opened.st_ino == there.st_ino && opened.st_dev == there.st_dev);
+    return fstat(file, &opened) != 0 || opened.st_nlink > 1 || leads_to(writer->path, file);
 }
 
 /* Opens and locks a file. It may have been removed between the two, by the writer that had it. */
 static camber_status open_locked(camber_archive_writer *writer) {
     const char *name = writer->beside[BESIDE_TILES];
     for (int attempt = 0; attempt < 100; attempt++) {
-        struct stat opened, there;
         const int file = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (file < 0)
             return camber_output_fail(writer->context, name, errno);
@@ -127,8 +129,7 @@ static camber_status open_locked(camber_archive_writer *writer) {
             return camber_fail(writer->context, CAMBER_ERROR_IO,
                                "%s: another process is writing it; wait for that, or name another file", writer->path);
         }
-        const bool same = fstat(file, &opened) == 0 && stat(name, &there) == 0 && opened.st_ino == there.st_ino &&
-                          opened.st_dev == there.st_dev;
+        const bool same = leads_to(name, file);
         if (same && !is_archive(writer, file)) {
             writer->tiles = file;
             writer->keeps = writer->desc.resume; /* until it is known what is there */

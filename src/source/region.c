@@ -56,11 +56,12 @@ static bool segment_touches(const camber_region *box, const double *from, const 
 
 static bool part_touches(const camber_region *box, const double *points, size_t count) {
     double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        x0 = fmin(x0, points[2 * i]);
-        x1 = fmax(x1, points[2 * i]);
-        y0 = fmin(y0, points[2 * i + 1]);
-        y1 = fmax(y1, points[2 * i + 1]);
+    for (size_t i = 0; i < count; i++) { /* as fmin and fmax would, which are calls */
+        const double x = points[2 * i], y = points[2 * i + 1];
+        x0 = x < x0 ? x : x0;
+        x1 = x > x1 ? x : x1;
+        y0 = y < y0 ? y : y0;
+        y1 = y > y1 ? y : y1;
     }
     if (!(x0 <= box->x1 && x1 >= box->x0 && y0 <= box->y1 && y1 >= box->y0))
         return false;

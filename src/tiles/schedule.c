@@ -7,8 +7,8 @@
  * zooms each metatile comes before those below it, along the Hilbert curve: so a part reads one stretch.
  *
  * Wide tasks are packed, the largest first, each into the first part that has room; deep ones are a run that is cut. At
- * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, what it
- * reads included. */
+ * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, and then
+ * the other kind's. */
 #include "tiles/schedule.h"
 
 #include "source/pmtiles.h"
@@ -16,17 +16,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A metatile takes so many microseconds of one processor: PICTURE_US, whatever it has; SHARE_US by the root of its
- * points times its tiles, since points beside each other share pixels and bytes; CROWDED_US for each point and each
- * doubling from CROWD points a tile to its own. So 462 metatiles of zooms 0 to 14 are told within 11 %, root of the
- * mean square (10 million points, 2026-11-27, Intel Xeon, AVX-512). */
-static const double PICTURE_US = 1.2e3, SHARE_US = 15.6, CROWDED_US = 0.037;
-enum { LEAST_POINTS = 50, CROWD = 512 }; /* of a tile; a line that crosses it has no point there */
+/* A metatile takes so many microseconds of one processor: PICTURE_US whatever it has, and TILE_US and POINT_US for each
+ * of its tiles and points, looking where they are included. With a quarter of a second for each part's start and its
+ * reading, which all have alike, parts of 8, 16 and 32 are told within 7 %, root of the mean square (10 million points,
+ * 2026-11-27, Intel Xeon, AVX-512). */
+static const double PICTURE_US = 1.3e3, TILE_US = 120.0, POINT_US = 0.58;
+/* A part that has a wide metatile holds all points. If it has deep ones, too, it looks at all of them for each zoom. */
+static const double LOOK_US = 0.0175;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
-/* A part passes over all points of the deepest zoom in the file of features. For each of its zooms it looks in which
- * tiles the points lie that it holds: all of the zoom's from wide zooms on, else those that it draws. */
-static const double SKIP_US = 0.044, LOOK_US = 0.052;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
 enum { CUT_STEPS = 24 }; /* to less than a millionth of all */
@@ -38,19 +36,10 @@ static unsigned count_tiles(uint64_t tiles) {
     return count;
 }
 
-/* How often a number has doubled from 1 on, about. Machines that share a schedule have to find the same, and their
- * libraries' logarithms differ in the last bits. */
-static double count_doublings(double number) {
-    int exponent;
-    const double part = frexp(number, &exponent); /* from 1/2 to 1 */
-    return number > 1.0 ? exponent - 2 + 2.0 * part : 0.0;
-}
-
 double camber_task_cost(const camber_tile_task *task) {
     if (!task->touched)
         return 0.0;
-    const double tiles = count_tiles(task->touched), points = (double)task->points + LEAST_POINTS * tiles;
-    return PICTURE_US + SHARE_US * sqrt(points * tiles) + CROWDED_US * points * count_doublings(points / tiles / CROWD);
+    return PICTURE_US + TILE_US * count_tiles(task->touched) + POINT_US * (double)task->points;
 }
 
 static camber_status add_task(camber_schedule *schedule, const camber_tile_task *task) {
@@ -213,19 +202,12 @@ typedef struct turn {
     size_t task;
 } turn;
 
-/* The work of a part. */
-typedef struct load {
-    double cost;
-    uint32_t looked; /* a bit for each zoom of which it looks at all points that it holds */
-} load;
-
 typedef struct walk {
     const camber_schedule *schedule;
-    size_t *order;                               /* of the tasks: wide ones, then deep ones */
-    size_t wide;                                 /* so many are wide */
-    double points[CAMBER_LARGEST_TILE_ZOOM + 1]; /* of each zoom */
-    double skip_all;
-    load *loads;     /* shards of them */
+    size_t *order;   /* of the tasks: wide ones, then deep ones */
+    size_t wide;     /* so many are wide */
+    double joining;  /* the cost of deep tasks in a part that has a wide one, beyond their own */
+    double *costs;   /* of the parts: shards of them */
     uint32_t shards; /* no more than tasks */
 } walk;
 
@@ -234,19 +216,19 @@ static int compare_turns(const void *left, const void *right) {
     return a->place != b->place ? (a->place < b->place ? -1 : 1) : a->task < b->task ? -1 : a->task > b->task;
 }
 
-/* Finds out what the walk is like: the tasks come by zoom, and a deep zoom has no wide one below it. */
-static void measure(walk *w) {
-    const camber_schedule *s = w->schedule;
+/* Counts the wide tasks: they come by zoom, and a deep zoom has no wide one below it. */
+static size_t count_wide(const camber_schedule *s) {
+    size_t wide = 0;
     for (size_t first = 0, end; first < s->count; first = end) {
-        double *all = w->points + s->tasks[first].zoom, most = 0.0;
+        double all = 0.0, most = 0.0;
         for (end = first; end < s->count && s->tasks[end].zoom == s->tasks[first].zoom; end++) {
-            *all += (double)s->tasks[end].points;
+            all += (double)s->tasks[end].points;
             most = fmax(most, (double)s->tasks[end].points);
         }
-        if (most > WIDE_SHARE * *all)
-            w->wide = end;
-        w->skip_all = SKIP_US * *all;
+        if (most > WIDE_SHARE * all)
+            wide = end;
     }
+    return wide;
 }
 
 static camber_status order_tasks(walk *w) {
@@ -274,54 +256,55 @@ static camber_status order_tasks(walk *w) {
     return CAMBER_OK;
 }
 
-/* How much longer a part takes with a task. A part that has a wide task holds all points. */
-static double added_cost(const walk *w, const load *part, const camber_tile_task *task, bool holds_all) {
-    const double looks = !holds_all                       ? (double)task->points
-                         : part->looked >> task->zoom & 1 ? 0.0
-                                                          : w->points[task->zoom];
-    return camber_task_cost(task) + LOOK_US * looks;
-}
+/* What a part takes at most, unless it is a single task: of parts to which a wide task is added, and a deep one. */
+typedef struct limits {
+    double wide, deep;
+} limits;
 
-/* Fills parts, none of which takes longer than most unless it is a single task. parts gets each task's, from 1; NULL:
- * none is wanted. Returns whether there are enough parts. */
-static bool fill(const walk *w, double most, uint32_t *parts) {
+/* Fills parts. parts gets each task's, from 1; NULL: none is wanted. Returns whether there are enough parts. */
+static bool fill(const walk *w, limits most, uint32_t *parts) {
     uint32_t count = 0;
-    bool holds_all = false; /* the last part */
     for (size_t i = 0; i < w->schedule->count; i++) {
-        const camber_tile_task *task = w->schedule->tasks + w->order[i];
-        uint32_t at = i < w->wide || count == 0 ? 0 : count - 1;
-        while (at < count && w->loads[at].cost + added_cost(w, w->loads + at, task, holds_all) > most)
+        const double cost = camber_task_cost(w->schedule->tasks + w->order[i]);
+        const bool wide = i < w->wide;
+        const double room = (wide ? most.wide : most.deep) - cost, joining = i == w->wide ? w->joining : 0.0;
+        uint32_t at = wide || count == 0 ? 0 : count - 1;
+        while (at < count && w->costs[at] + joining > room)
             at++;
-        if (at == count) {
-            if (count == w->shards)
-                return false;
-            holds_all = i < w->wide;
-            w->loads[count++] = (load){.cost = w->skip_all};
-        }
-        w->loads[at].cost += added_cost(w, w->loads + at, task, holds_all);
-        w->loads[at].looked |= UINT32_C(1) << task->zoom;
+        if (at < count)
+            w->costs[at] += joining;
+        else if (count < w->shards)
+            w->costs[count++] = 0.0;
+        else
+            return false;
+        w->costs[at] += cost;
         if (parts)
             parts[w->order[i]] = at + 1;
     }
     return true;
 }
 
-/* Finds the least time that the longest part takes. */
-static double find_most(const walk *w) {
-    double low = 0.0, high = w->skip_all;
-    for (int z = 0; z <= CAMBER_LARGEST_TILE_ZOOM; z++)
-        high += LOOK_US * w->points[z];
-    for (size_t i = 0; i < w->schedule->count; i++)
-        high += camber_task_cost(w->schedule->tasks + i);
-    high *= 2.0; /* so one part is enough, however sums are rounded */
+/* Halves what lies between until they are the least with which there are enough parts: both of them, or one. */
+static limits lower_limits(const walk *w, limits high, bool wide, bool deep) {
+    limits low = {wide ? 0.0 : high.wide, deep ? 0.0 : high.deep};
     for (int i = 0; i < CUT_STEPS; i++) {
-        const double middle = 0.5 * (low + high);
+        const limits middle = {0.5 * (low.wide + high.wide), 0.5 * (low.deep + high.deep)};
         if (fill(w, middle, NULL))
             high = middle;
         else
             low = middle;
     }
     return high;
+}
+
+/* First the longest part is made as short as can be, then the longest one that the other kind has. */
+static limits find_limits(const walk *w) {
+    double all = 0.0;
+    for (size_t i = 0; i < w->schedule->count; i++)
+        all += camber_task_cost(w->schedule->tasks + i);
+    all *= 2.0; /* so one part is enough, however sums are rounded */
+    const limits both = lower_limits(w, (limits){all, all}, true, true);
+    return lower_limits(w, lower_limits(w, both, false, true), true, false);
 }
 
 static void keep_part(camber_schedule *schedule, const uint32_t *parts, uint32_t shard) {
@@ -342,16 +325,18 @@ camber_status camber_schedule_choose(camber_schedule *schedule, uint32_t shard, 
         keep_part(schedule, NULL, shard);
         return CAMBER_OK;
     }
-    measure(&w);
     uint32_t *parts = camber_alloc(schedule->context, schedule->count, sizeof *parts);
-    w.loads = camber_alloc(schedule->context, w.shards, sizeof *w.loads);
-    const camber_status status = parts && w.loads ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
+    w.wide = count_wide(schedule);
+    for (size_t i = w.wide; i < schedule->count; i++)
+        w.joining += LOOK_US * (double)schedule->tasks[i].points;
+    w.costs = camber_alloc(schedule->context, w.shards, sizeof *w.costs);
+    const camber_status status = parts && w.costs ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK) {
-        (void)fill(&w, find_most(&w), parts);
+        (void)fill(&w, find_limits(&w), parts);
         keep_part(schedule, parts, shard);
     }
     camber_free(schedule->context, w.order);
-    camber_free(schedule->context, w.loads);
+    camber_free(schedule->context, w.costs);
     camber_free(schedule->context, parts);
     return status;
 }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define MAJOR "'motorway','trunk','primary','motorway_link','trunk_link','primary_link'"
 #define MIDDLE "'secondary','tertiary','secondary_link','tertiary_link'"
@@ -110,6 +111,7 @@ json_t *bench_pyramid_draw(const bench *b, const bench_pyramid *p, const char *n
     snprintf(high, sizeof high, "%d", p->max_zoom);
     while (*options && count < sizeof arguments / sizeof *arguments - 1)
         arguments[count++] = *options++;
+    (void)unlink(output); /* to replace the last run's would take time by its size, in one thread */
     const bench_child child = bench_child_run(arguments, NULL, NULL);
     json_t *said = child.output ? json_loads(child.output, 0, NULL) : NULL;
     free(child.output);

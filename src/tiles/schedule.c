@@ -256,7 +256,7 @@ static camber_status order_tasks(walk *w) {
     return CAMBER_OK;
 }
 
-/* What a part takes at most, unless it is a single task: of parts to which a wide task is added, and a deep one. */
+/* The most that a part takes, unless it is a single task: of parts to which a wide task is added, and a deep one. */
 typedef struct limits {
     double wide, deep;
 } limits;

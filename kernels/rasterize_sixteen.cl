@@ -56,10 +56,13 @@ static inline __attribute__((always_inline)) void take_edge(const edge_table *fr
     TAKE(owner_b);
     TAKE(flat_a);
     TAKE(flat_b);
+    TAKE(tip_a);
+    TAKE(tip_b);
 #undef TAKE
     p->thin = ((const int *)&all->thin)[lane];
+    p->tips = ((const int *)&all->tips)[lane];
     p->capped = ((const int *)&all->capped)[lane];
-    p->tips = p->sharp = 0; /* those are odd */
+    p->sharp = 0; /* those are odd */
 }
 
 /* ---- Cells ---- */
@@ -285,7 +288,7 @@ static inline void take_segments(global const float *segments, const uint *which
     p->side.curve = WORD(CURVE);
     f->reach = WORD(REACH);
     camber_edge_finish(CAMBER_AS_WORDS(WORD(FLAGS)), p);
-    CAMBER_STORE(CAMBER_AS_WORDS(p->tips) | ((one << p->end_a | one << p->end_b) & CAMBER_SECOND_ENDS), v, all->odd);
+    CAMBER_STORE((one << p->end_a | one << p->end_b) & CAMBER_SECOND_ENDS, v, all->odd);
 #undef WORD
 }
 

@@ -20,15 +20,10 @@ typedef struct sixteen {
 #define draw_sixteen(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* The coefficients of sixteen segments. */
-typedef struct edge_table {
-    camber_edges edges[CAMBER_VECTORS];
-    uint odd[SIXTEEN]; /* ends that need more than the drawing of a list can do: camber_edge_area has to be asked */
-} edge_table;
-
-static inline __attribute__((always_inline)) void take_edge(const edge_table *from, uint k, camber_edge *p) {
-    const camber_edges *all = from->edges + k / CAMBER_LANES;
-    const uint lane = k % CAMBER_LANES;
+/* Takes one of sixteen segments' coefficients, but for those of sharp joins. */
+static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
+    const camber_edges *all = from + k / CAMBER_LANES;
+    const int lane = (int)(k % CAMBER_LANES);
 #define TAKE(name) p->name = ((const float *)&all->name)[lane]
     TAKE(ax);
     TAKE(ay);
@@ -59,10 +54,10 @@ static inline __attribute__((always_inline)) void take_edge(const edge_table *fr
     TAKE(tip_a);
     TAKE(tip_b);
 #undef TAKE
-    p->thin = ((const int *)&all->thin)[lane];
-    p->tips = ((const int *)&all->tips)[lane];
-    p->capped = ((const int *)&all->capped)[lane];
-    p->sharp = 0; /* those are odd */
+    p->thin = camber_integer_of(&all->thin, lane);
+    p->tips = camber_integer_of(&all->tips, lane);
+    p->capped = camber_integer_of(&all->capped, lane);
+    p->sharp = 0;
 }
 
 /* ---- Cells ---- */
@@ -164,16 +159,21 @@ static inline ulong list_all(const sixteen_sets *sets, uint count, ulong shut, c
 /* All that a list is drawn from. */
 typedef struct list_source {
     const positions *at;
-    const edge_table *all;
-    global const float *segments;
-    const uint *which;
+    const camber_edges *all; /* of sixteen segments */
 } list_source;
 
-static __attribute__((noinline)) camber_real odd_area(const list_source *d, uint lane, camber_real x, camber_real y) {
-    global const float *segment = d->segments + (size_t)CAMBER_SEGMENT_WORDS * d->which[lane];
+/* The area of pixels near an end where a sharp join may cut them. It is apart: with the joins' function in it, the
+ * drawing of a list would keep all that it knows of a pixel in memory. */
+static __attribute__((noinline)) camber_real sharp_area(const list_source *d, uint k, camber_real x, camber_real y) {
+    const camber_edges *all = d->all + k / CAMBER_LANES;
+    const int lane = (int)(k % CAMBER_LANES);
     camber_edge p;
     camber_pixel at;
-    camber_edge_of(segment, as_uint(segment[CAMBER_SEGMENT_FLAGS]), &p);
+    take_edge(d->all, k, &p);
+    p.end_a = ((const uint *)&all->end_a)[lane];
+    p.end_b = ((const uint *)&all->end_b)[lane];
+    p.linear = camber_integer_of(&all->linear, lane);
+    p.sharp = 1;
     camber_look(&p, x, y, &at);
     return camber_edge_area(&p, &at);
 }
@@ -197,10 +197,10 @@ static inline __attribute__((always_inline)) void find_areas(const list_source *
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++)
             area[v] = camber_edge_side(&p, list_x(d, i), list_y(d, i, v));
-    } else if (d->all->odd[lane]) {
+    } else if (camber_integer_of(&d->all[lane / CAMBER_LANES].sharp, (int)(lane % CAMBER_LANES))) {
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            area[v] = odd_area(d, lane, list_x(d, i), list_y(d, i, v));
+            area[v] = sharp_area(d, lane, list_x(d, i), list_y(d, i, v));
     } else {
         take_edge(d->all, lane, &p);
 #pragma unroll
@@ -259,12 +259,10 @@ static inline void draw_list(camber_tile_state *c, const list_source *d, const c
 /* ---- Sixteen segments ---- */
 
 /* Reads vector v of sixteen segments, a lane each, and works out their coefficients. */
-static inline void take_segments(global const float *segments, const uint *which, size_t v, edge_table *all,
+static inline void take_segments(global const float *segments, const uint *which, size_t v, camber_edges *p,
                                  camber_footprint *f) {
 #define WORD(name) words[CAMBER_SEGMENT_##name]
     camber_real words[CAMBER_SEGMENT_WORDS];
-    camber_edges *p = all->edges + v;
-    const camber_words one = (camber_words)(1u);
 #pragma unroll
     for (size_t from = 0; from < CAMBER_VECTORS; from++) {
 #pragma unroll
@@ -288,17 +286,16 @@ static inline void take_segments(global const float *segments, const uint *which
     p->side.curve = WORD(CURVE);
     f->reach = WORD(REACH);
     camber_edge_finish(CAMBER_AS_WORDS(WORD(FLAGS)), p);
-    CAMBER_STORE((one << p->end_a | one << p->end_b) & CAMBER_SECOND_ENDS, v, all->odd);
 #undef WORD
 }
 
 static __attribute__((noinline)) void draw_sixteen(camber_tile_state *c, const positions *at,
                                                    global const float *segments, camber_tile_rows where, sixteen *b) {
     const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    edge_table all;
+    camber_edges all[CAMBER_VECTORS];
     sixteen_sets sets;
     cell_list list;
-    const list_source from = {at, &all, segments, b->which};
+    const list_source from = {at, all};
     if (b->count == 0)
         return;
     for (uint k = b->count; k < SIXTEEN; k++)
@@ -307,9 +304,9 @@ static __attribute__((noinline)) void draw_sixteen(camber_tile_state *c, const p
         const camber_mask wanted = CAMBER_LOAD(v, numbers) < (int)b->count;
         camber_footprint footprint;
         camber_cell_boxes boxes;
-        take_segments(segments, b->which, v, &all, &footprint);
+        take_segments(segments, b->which, v, all + v, &footprint);
         camber_cell_boxes_of(&footprint, where, wanted, &boxes);
-        find_sets(all.edges + v, &boxes, where, v, &sets);
+        find_sets(all + v, &boxes, where, v, &sets);
     }
     camber_tile_take_cells(c, list_all(&sets, b->count, c->done | c->filled, &list));
     draw_list(c, &from, &list);

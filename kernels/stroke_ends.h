@@ -44,9 +44,6 @@
     (((end) & (CAMBER_JOIN_END_MASK | 3u << CAMBER_END_CLASS_SHIFT)) ==                                                \
      (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << CAMBER_END_CLASS_SHIFT))
 
-/* The ends (CAMBER_ENDS_*) that a second line cuts, a bit each. */
-#define CAMBER_SECOND_ENDS                                                                                             \
-    (1u << CAMBER_ENDS_MITER | 1u << CAMBER_ENDS_BEVEL | 1u << CAMBER_ENDS_SPLIT_BEVEL | 1u << CAMBER_ENDS_SPLIT_MITER)
 /* Flags of a segment: 13 bits of the end at A (stroke_ends.h), as many of that at B, then the flags below. LINEAR:
  * coverage is a linear ramp. */
 #define CAMBER_SEGMENT_END_BITS 13

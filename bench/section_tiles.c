@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { TILES_RUNS_MAX = 3, SHARDS = 16 };
 
@@ -166,11 +167,13 @@ typedef struct shard_times {
 
 /* By medians: of sixteen single runs the slowest would be the one that something else held up. */
 static bool draw_shard(const bench *b, const bench_pyramid *p, const char *schedule, int k, shard_times *t) {
-    char shard[32];
+    char shard[32], part[128];
     bench_series ms = {.count = 0}, cpu_ms = {.count = 0};
     snprintf(shard, sizeof shard, "%d/%d", k, SHARDS);
+    snprintf(part, sizeof part, "%s/country.%d-of-%d.pmtiles", p->folder, k, SHARDS);
     const char *const options[] = {"--threads", "1", "--schedule", schedule, "--shard", shard, NULL};
     for (size_t run = 0; run < (b->runs < TILES_RUNS_MAX ? b->runs : TILES_RUNS_MAX); run++) {
+        (void)unlink(part); /* as bench_pyramid_draw does where there is one part */
         json_t *said = bench_pyramid_draw(b, p, "country.pmtiles", options);
         if (!said)
             return false;

@@ -20,7 +20,7 @@ typedef struct sixteen {
 #define draw_sixteen(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* Takes one of sixteen segments' coefficients, but for those of sharp joins. */
+/* Takes one of sixteen segments' coefficients, as if no join of it were sharp. */
 static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
     const camber_edges *all = from + k / CAMBER_LANES;
     const int lane = (int)(k % CAMBER_LANES);
@@ -54,6 +54,9 @@ static inline __attribute__((always_inline)) void take_edge(const camber_edges *
     TAKE(tip_a);
     TAKE(tip_b);
 #undef TAKE
+    p->end_a = ((const uint *)&all->end_a)[lane];
+    p->end_b = ((const uint *)&all->end_b)[lane];
+    p->linear = camber_integer_of(&all->linear, lane);
     p->thin = camber_integer_of(&all->thin, lane);
     p->tips = camber_integer_of(&all->tips, lane);
     p->capped = camber_integer_of(&all->capped, lane);
@@ -119,10 +122,10 @@ static inline void find_sets(const camber_edges *p, const camber_cell_boxes *b, 
 
 #define CELL_NEAR_END 64u
 #define CELL_FULL 128u
-#define CELL_LANE 8
+#define CELL_SEGMENT 8
 
 typedef struct cell_list {
-    uint words[SIXTEEN * CAMBER_CELLS + 4]; /* cell | CELL_NEAR_END or CELL_FULL | lane << CELL_LANE */
+    uint words[SIXTEEN * CAMBER_CELLS + 4]; /* cell | CELL_NEAR_END or CELL_FULL | k << CELL_SEGMENT */
     uint count;
 } cell_list;
 
@@ -145,11 +148,11 @@ static inline ulong list_all(const sixteen_sets *sets, uint count, ulong shut, c
         const ulong cells = sets->partial[k] & ~shut, nears = sets->near_end[k] & cells, inside = sets->full[k] & cells;
         const ulong sides = cells & ~(nears | inside);
         listed |= cells;
-        list_cells(list, nears, k << CELL_LANE | CELL_NEAR_END);
+        list_cells(list, nears, k << CELL_SEGMENT | CELL_NEAR_END);
         if (sides)
-            list_cells(list, sides, k << CELL_LANE);
+            list_cells(list, sides, k << CELL_SEGMENT);
         if (inside)
-            list_cells(list, inside, k << CELL_LANE | CELL_FULL);
+            list_cells(list, inside, k << CELL_SEGMENT | CELL_FULL);
     }
     return listed;
 }
@@ -165,14 +168,9 @@ typedef struct list_source {
 /* The area of pixels near an end where a sharp join may cut them. It is apart: with the joins' function in it, the
  * drawing of a list would keep all that it knows of a pixel in memory. */
 static __attribute__((noinline)) camber_real sharp_area(const list_source *d, uint k, camber_real x, camber_real y) {
-    const camber_edges *all = d->all + k / CAMBER_LANES;
-    const int lane = (int)(k % CAMBER_LANES);
     camber_edge p;
     camber_pixel at;
     take_edge(d->all, k, &p);
-    p.end_a = ((const uint *)&all->end_a)[lane];
-    p.end_b = ((const uint *)&all->end_b)[lane];
-    p.linear = camber_integer_of(&all->linear, lane);
     p.sharp = 1;
     camber_look(&p, x, y, &at);
     return camber_edge_area(&p, &at);
@@ -190,19 +188,19 @@ static inline camber_real list_y(const list_source *d, int i, int v) {
  * as it loads them. */
 static inline __attribute__((always_inline)) void find_areas(const list_source *d, uint word, camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
-    const uint lane = word >> CELL_LANE;
+    const uint k = word >> CELL_SEGMENT;
     camber_edge p;
     if (!(word & CELL_NEAR_END)) {
-        take_edge(d->all, lane, &p);
+        take_edge(d->all, k, &p);
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++)
             area[v] = camber_edge_side(&p, list_x(d, i), list_y(d, i, v));
-    } else if (camber_integer_of(&d->all[lane / CAMBER_LANES].sharp, (int)(lane % CAMBER_LANES))) {
+    } else if (camber_integer_of(&d->all[k / CAMBER_LANES].sharp, (int)(k % CAMBER_LANES))) {
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            area[v] = sharp_area(d, lane, list_x(d, i), list_y(d, i, v));
+            area[v] = sharp_area(d, k, list_x(d, i), list_y(d, i, v));
     } else {
-        take_edge(d->all, lane, &p);
+        take_edge(d->all, k, &p);
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++) {
             camber_pixel at;
@@ -217,7 +215,7 @@ static inline __attribute__((always_inline)) void unite(camber_tile_state *c, co
                                                         const camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
     camber_edge p;
-    take_edge(d->all, word >> CELL_LANE, &p);
+    take_edge(d->all, word >> CELL_SEGMENT, &p);
     const camber_mask thick = CAMBER_ALL_LANES(p.half_width > CAMBER_UNION_PX);
 #pragma unroll
     for (int v = 0; v < CAMBER_VECTORS; v++) {

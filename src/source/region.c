@@ -111,8 +111,9 @@ bool camber_region_meets_area(const camber_region *region, const double *points,
                               size_t ring_count) {
     double west = INFINITY, east = -INFINITY;
     for (size_t i = offsets[0]; i < offsets[ring_count]; i++) {
-        west = fmin(west, points[2 * i]);
-        east = fmax(east, points[2 * i]);
+        const double x = points[2 * i];
+        west = x < west ? x : west;
+        east = x > east ? x : east;
     }
     const double first = ceil(region->x0 - east), worlds = fmin(floor(region->x1 - west) - first, MOST_WORLDS);
     for (double world = 0.0; world <= worlds; world += 1.0) {

@@ -224,25 +224,31 @@ static camber_status spend_points(pyramid *p, int zoom) {
     return status == CAMBER_OK ? camber_features_thin(p->desc->spent, opened->plan->least_importance) : status;
 }
 
+/* Finds the tasks of a zoom, which lie together. */
+static size_t find_tasks(const camber_schedule *schedule, int zoom, size_t *end) {
+    size_t first = 0;
+    while (first < schedule->count && schedule->tasks[first].zoom < zoom)
+        first++;
+    for (*end = first; *end < schedule->count && schedule->tasks[*end].zoom == zoom;)
+        ++*end;
+    return first;
+}
+
 /* Draws zoom by zoom, in the order of the archive, which then need not copy the tiles. Where points go, the deepest
  * zoom comes first: each leaves the next one fewer, and the first zooms, whose networks have all lines, are drawn when
  * least is held. */
 static camber_status draw_all(pyramid *p) {
-    const camber_schedule *s = &p->schedule;
     const bool spends = spends_points(p);
-    size_t first = spends ? s->count : 0, end = first;
     camber_status status = CAMBER_OK;
-    for (int n = p->area.min_zoom; n <= p->area.max_zoom && status == CAMBER_OK; n++) {
-        const int zoom = spends ? p->area.min_zoom + p->area.max_zoom - n : n;
+    for (int n = 0; n <= p->area.max_zoom - p->area.min_zoom && status == CAMBER_OK; n++) {
+        const int zoom = spends ? p->area.max_zoom - n : p->area.min_zoom + n;
+        size_t end;
+        const size_t first = find_tasks(&p->schedule, zoom, &end);
+        if (first == end)
+            continue;
         if (spends)
-            for (end = first; first > 0 && s->tasks[first - 1].zoom == zoom; first--)
-                ;
-        else
-            for (first = end; end < s->count && s->tasks[end].zoom == zoom; end++)
-                ;
-        if (spends && first < end)
             status = spend_points(p, zoom);
-        if (status == CAMBER_OK && first < end)
+        if (status == CAMBER_OK)
             status = draw_zoom(p, first, end);
     }
     while (status == CAMBER_OK && camber_encode_queue_is_busy(p->queue))

@@ -19,9 +19,10 @@
 /* A metatile takes so many microseconds of one processor: PICTURE_US whatever it has, and TILE_US and POINT_US for each
  * of its tiles and points, looking where they are included. With a quarter of a second for each part's start and its
  * reading, which all have alike, parts of 8, 16 and 32 are told within 7 %, root of the mean square (10 million points,
- * 2026-11-27, Intel Xeon, AVX-512). */
+ * 2026-11-27, 9412da4, Intel Xeon, AVX-512). */
 static const double PICTURE_US = 1.3e3, TILE_US = 120.0, POINT_US = 0.58;
-/* A part that has a wide metatile holds all points. If it has deep ones, too, it looks at all of them for each zoom. */
+/* A part that has a wide metatile holds all points. If it has deep ones, too, it looks at all of them for each of their
+ * zooms. What it looks at for wide zooms is in POINT_US: a metatile of them has much of the points. */
 static const double LOOK_US = 0.0175;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
@@ -205,9 +206,10 @@ typedef struct turn {
 typedef struct walk {
     const camber_schedule *schedule;
     size_t *order;   /* of the tasks: wide ones, then deep ones */
+    double *costs;   /* of each of them, in that order */
     size_t wide;     /* so many are wide */
     double joining;  /* the cost of deep tasks in a part that has a wide one, beyond their own */
-    double *costs;   /* of the parts: shards of them */
+    double *loads;   /* of the parts: shards of them */
     uint32_t shards; /* no more than tasks */
 } walk;
 
@@ -235,7 +237,8 @@ static camber_status order_tasks(walk *w) {
     const camber_schedule *s = w->schedule;
     int deepest = 0;
     turn *list = camber_alloc(s->context, s->count, sizeof *list);
-    if (!list || !(w->order = camber_alloc(s->context, s->count, sizeof *w->order))) {
+    if (!list || !(w->order = camber_alloc(s->context, s->count, sizeof *w->order)) ||
+        !(w->costs = camber_alloc(s->context, s->count, sizeof *w->costs))) {
         camber_free(s->context, list);
         return CAMBER_ERROR_MEMORY;
     }
@@ -250,8 +253,10 @@ static camber_status order_tasks(walk *w) {
     }
     qsort(list, w->wide, sizeof *list, compare_turns);
     qsort(list + w->wide, s->count - w->wide, sizeof *list, compare_turns);
-    for (size_t i = 0; i < s->count; i++)
+    for (size_t i = 0; i < s->count; i++) {
         w->order[i] = list[i].task;
+        w->costs[i] = camber_task_cost(s->tasks + list[i].task);
+    }
     camber_free(s->context, list);
     return CAMBER_OK;
 }
@@ -265,28 +270,26 @@ typedef struct limits {
 static bool fill(const walk *w, limits most, uint32_t *parts) {
     uint32_t count = 0;
     for (size_t i = 0; i < w->schedule->count; i++) {
-        const double cost = camber_task_cost(w->schedule->tasks + w->order[i]);
         const bool wide = i < w->wide;
-        const double room = (wide ? most.wide : most.deep) - cost, joining = i == w->wide ? w->joining : 0.0;
+        const double room = (wide ? most.wide : most.deep) - w->costs[i], joining = i == w->wide ? w->joining : 0.0;
         uint32_t at = wide || count == 0 ? 0 : count - 1;
-        while (at < count && w->costs[at] + joining > room)
+        while (at < count && w->loads[at] + joining > room)
             at++;
         if (at < count)
-            w->costs[at] += joining;
+            w->loads[at] += joining;
         else if (count < w->shards)
-            w->costs[count++] = 0.0;
+            w->loads[count++] = 0.0;
         else
             return false;
-        w->costs[at] += cost;
+        w->loads[at] += w->costs[i];
         if (parts)
             parts[w->order[i]] = at + 1;
     }
     return true;
 }
 
-/* Halves what lies between until they are the least with which there are enough parts: both of them, or one. */
-static limits lower_limits(const walk *w, limits high, bool wide, bool deep) {
-    limits low = {wide ? 0.0 : high.wide, deep ? 0.0 : high.deep};
+/* Finds the least limits between low and high with which there are enough parts. */
+static limits lower_limits(const walk *w, limits low, limits high) {
     for (int i = 0; i < CUT_STEPS; i++) {
         const limits middle = {0.5 * (low.wide + high.wide), 0.5 * (low.deep + high.deep)};
         if (fill(w, middle, NULL))
@@ -299,12 +302,13 @@ static limits lower_limits(const walk *w, limits high, bool wide, bool deep) {
 
 /* First the longest part is made as short as can be, then the longest one that the other kind has. */
 static limits find_limits(const walk *w) {
-    double all = 0.0;
+    double all = w->joining;
     for (size_t i = 0; i < w->schedule->count; i++)
-        all += camber_task_cost(w->schedule->tasks + i);
+        all += w->costs[i];
     all *= 2.0; /* so one part is enough, however sums are rounded */
-    const limits both = lower_limits(w, (limits){all, all}, true, true);
-    return lower_limits(w, lower_limits(w, both, false, true), true, false);
+    const limits both = lower_limits(w, (limits){0.0, 0.0}, (limits){all, all});
+    const limits deep = lower_limits(w, (limits){both.wide, 0.0}, both);
+    return lower_limits(w, (limits){0.0, deep.deep}, deep);
 }
 
 static void keep_part(camber_schedule *schedule, const uint32_t *parts, uint32_t shard) {
@@ -329,14 +333,15 @@ camber_status camber_schedule_choose(camber_schedule *schedule, uint32_t shard, 
     w.wide = count_wide(schedule);
     for (size_t i = w.wide; i < schedule->count; i++)
         w.joining += LOOK_US * (double)schedule->tasks[i].points;
-    w.costs = camber_alloc(schedule->context, w.shards, sizeof *w.costs);
-    const camber_status status = parts && w.costs ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
+    w.loads = camber_alloc(schedule->context, w.shards, sizeof *w.loads);
+    const camber_status status = parts && w.loads ? order_tasks(&w) : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK) {
         (void)fill(&w, find_limits(&w), parts);
         keep_part(schedule, parts, shard);
     }
     camber_free(schedule->context, w.order);
     camber_free(schedule->context, w.costs);
+    camber_free(schedule->context, w.loads);
     camber_free(schedule->context, parts);
     return status;
 }

@@ -7,8 +7,8 @@
  * zooms each metatile comes before those below it, along the Hilbert curve: so a part reads one stretch.
  *
  * Wide tasks are packed, the largest first, each into the first part that has room; deep ones are a run that is cut. At
- * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, and then
- * the other kind's. */
+ * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, and with
+ * that done, so does the longest part of the other kind. */
 #include "tiles/schedule.h"
 
 #include "source/pmtiles.h"

@@ -84,13 +84,23 @@ static void test_joining(void **state) {
 }
 
 /* Measured in parts of a run: 1.02 to 1.32 s of a processor for two million points in one tile, 12 to 13 ms for twelve
- * thousand in 32. */
+ * thousand in 32. A cost grows with the tiles, and with the points, by no more than they do plus a fifth. */
 static void test_cost(void **state) {
     (void)state;
     const camber_tile_task one = {.touched = 1, .points = 2000000}, many = {.touched = UINT32_MAX, .points = 12000};
     assert_true(camber_task_cost(&one) > 1.0e6 && camber_task_cost(&one) < 1.35e6);
     assert_true(camber_task_cost(&many) > 9e3 && camber_task_cost(&many) < 16e3);
     assert_true(camber_task_cost(&(camber_tile_task){.points = 100}) == 0.0); /* nothing to draw */
+    for (uint64_t tiles = 1; tiles <= UINT64_MAX >> 3; tiles = tiles << 3 | 7) {
+        camber_tile_task task = {.touched = tiles};
+        double before = camber_task_cost(&task);
+        assert_true(before < camber_task_cost(&(camber_tile_task){.touched = tiles << 3 | 7}));
+        for (task.points = 64; task.points < 10000000; task.points += task.points / 64) {
+            const double cost = camber_task_cost(&task);
+            assert_true(cost > before && (task.points == 64 || cost < before * (1 + 1.2 / 64)));
+            before = cost;
+        }
+    }
 }
 
 /* More parts than tasks: each has one at most, and parts without any take no memory. */

@@ -12,6 +12,8 @@
 /* A tenth of a pixel does not show, and drops a fifth to a third of a city's points. */
 #define DRAWN_SIMPLIFY_PX 0.1
 
+enum { NAME_LETTERS = 32 }; /* of the longest option that a mistyped one is compared with */
+
 /* ---- Help ---- */
 
 const char *camber_option_help(const camber_option_spec *spec, camber_verb verb) {
@@ -270,11 +272,53 @@ static bool takes(const camber_option_spec *spec, camber_verb verb) {
     return spec->verbs & 1 << verb;
 }
 
+/* How many letters of a name were added, left out, changed or swapped with their neighbour. */
+static size_t count_slips(const char *typed, size_t length, const char *name) {
+    size_t rows[3][NAME_LETTERS + 1], *above = rows[0], *row = rows[1], *spare = rows[2];
+    const size_t width = strlen(name);
+    if (length > NAME_LETTERS || width > NAME_LETTERS)
+        return SIZE_MAX;
+    for (size_t k = 0; k <= width; k++)
+        row[k] = k;
+    for (size_t i = 1; i <= length; i++) {
+        size_t *const twice_above = above;
+        above = row;
+        row = spare;
+        spare = twice_above;
+        row[0] = i;
+        for (size_t k = 1; k <= width; k++) {
+            size_t least = above[k - 1] + (typed[i - 1] != name[k - 1]);
+            least = above[k] + 1 < least ? above[k] + 1 : least;
+            least = row[k - 1] + 1 < least ? row[k - 1] + 1 : least;
+            if (i > 1 && k > 1 && typed[i - 1] == name[k - 2] && typed[i - 2] == name[k - 1])
+                least = twice_above[k - 2] + 1 < least ? twice_above[k - 2] + 1 : least;
+            row[k] = least;
+        }
+    }
+    return row[width];
+}
+
+/* The verb's option that a name was most likely meant to be. NULL: none is close. */
+static const char *find_meant(camber_verb verb, const char *typed, size_t length) {
+    const char *meant = NULL;
+    size_t least = length / 3 + 1;
+    for (size_t i = 0; i < camber_option_count; i++) {
+        const size_t slips = count_slips(typed, length, camber_option_specs[i].name);
+        if (!takes(&camber_option_specs[i], verb) || slips >= least)
+            continue;
+        least = slips;
+        meant = camber_option_specs[i].name;
+    }
+    return meant;
+}
+
 static int unknown_option(const camber_option_reader *p, const char *name) {
     const camber_verb verb = p->options->verb;
-    const char *gap = verb == CAMBER_VERB_NONE ? "" : " ";
-    return camber_options_refuse(p, "%s: no such option of camber%s%s; `camber%s%s --help` lists them", name, gap,
-                                 verb_name(verb), gap, verb_name(verb));
+    const char *gap = verb == CAMBER_VERB_NONE ? "" : " ", *letters = name + strspn(name, "-");
+    const char *meant = find_meant(verb, letters, strcspn(letters, "="));
+    return camber_options_refuse(p, "%s: no such option of camber%s%s; %s%s%s`camber%s%s --help` lists them", name, gap,
+                                 verb_name(verb), meant ? "did you mean --" : "", meant ? meant : "", meant ? "? " : "",
+                                 gap, verb_name(verb));
 }
 
 /* --name, --name=value, --name value. *at moves over a value in an argument of its own. */

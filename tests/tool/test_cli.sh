@@ -92,6 +92,14 @@ is_png() { # FILE WIDTH HEIGHT
 expect 2 "no verb"
 expect 2 "unknown verb" frobnicate
 expect 2 "unknown option" render --bogus
+grep -q 'did you mean' "$tmp/stderr" && fail "no option is close: $(cat "$tmp/stderr")"
+# Letters left out, added, changed, swapped, and several of them.
+for typed in --sze --sizze=3x4 --zize --siez --simplfy-xp -size; do
+    expect 2 "mistyped option" render "$typed"
+    says "did you mean --\(size\|simplify-px\)? "
+done
+expect 2 "another verb's option" info --bbox
+grep -q 'did you mean' "$tmp/stderr" && fail "not one of info's: $(cat "$tmp/stderr")"
 expect 2 "unknown letter" info -z
 expect 2 "option of another verb" info --size 5x5
 expect 2 "option without its value" render "$osm" -o

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message) {
     camber_gdal_errors *errors = CPLGetErrorHandlerUserData();
@@ -221,7 +222,7 @@ static camber_status check_exists(camber_context *context, const char *path, boo
     }
     if (VSIStatL(path, &about) == 0) {
         *directory = VSI_ISDIR(about.st_mode);
-        return CAMBER_OK;
+        return access(path, R_OK) != 0 && errno == EACCES ? camber_file_fail(context, path, EACCES) : CAMBER_OK;
     }
     const int cause = errno;
     if (cause == EACCES || cause == EMFILE || cause == ENFILE)

@@ -55,6 +55,7 @@ camber_status camber_columns_find(camber_columns *columns, camber_features *feat
             columns->ids[columns->id_count++] = field;
     }
     columns->highway = find_field(schema, "highway");
+    columns->area = find_field(schema, camber_osm_area_keys[0]);
     for (size_t i = 0; osm && i < keys; i++) {
         const int field = find_field(schema, camber_osm_area_keys[i]);
         if (field >= 0)
@@ -152,10 +153,10 @@ bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, 
     if (last < 3 || OGR_G_GetX(geometry, 0) != OGR_G_GetX(geometry, last) ||
         OGR_G_GetY(geometry, 0) != OGR_G_GetY(geometry, last))
         return false;
-    if (columns->highway >= 0 && OGR_F_IsFieldSetAndNotNull(feature, columns->highway))
-        return false;
+    const bool is_highway = columns->highway >= 0 && OGR_F_IsFieldSetAndNotNull(feature, columns->highway);
     for (size_t i = 0; i < columns->area_count; i++) {
-        if (OGR_F_IsFieldSetAndNotNull(feature, columns->areas[i]) &&
+        if ((!is_highway || columns->areas[i] == columns->area) &&
+            OGR_F_IsFieldSetAndNotNull(feature, columns->areas[i]) &&
             !camber_osm_is_no(OGR_F_GetFieldAsString(feature, columns->areas[i])))
             return true;
     }

@@ -160,7 +160,7 @@ typedef struct camber_columns {
     bool plain;           /* the layer has none of the style's properties */
     int ids[4];           /* vector tiles: fields with an id, the best first */
     size_t id_count;
-    int highway;
+    int highway, area;
     int *areas; /* OSM: fields of camber_osm_area_keys */
     size_t area_count;
 } camber_columns;
@@ -175,8 +175,8 @@ camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature,
                                    camber_geometry_kind kind, uint32_t *class_index);
 /* A hash of the feature's id, the same in every tile; false: it has none. */
 bool camber_columns_id(const camber_columns *columns, OGRFeatureH feature, uint64_t *id);
-/* OSM: a closed way that is no highway and has a key of areas. The driver is told to leave them to us, for it takes
- * closed highways with such a key for areas as well. */
+/* OSM: a closed way with the key area, or with another key of areas where it is no highway. The driver is told to leave
+ * them to us, for it takes closed highways with any such key for areas. */
 bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, OGRGeometryH geometry);
 
 #endif

@@ -77,6 +77,7 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
     }
     for (size_t i = 0; i < areas; i++)
         find_key(ways, camber_osm_area_keys[i])->area = true;
+    find_key(ways, "area")->is_area = true;
     find_key(ways, "highway")->highway = true;
     find_key(ways, "type")->type = true;
     *declined = *declined || !find_filter_keys(ways);
@@ -266,7 +267,7 @@ static bool read_tags(decoder *self, camber_wire keys, camber_wire values, tag_f
                             self->failure))
         return false;
     uint32_t *set = (uint32_t *)(void *)to->sets.bytes + start;
-    uint32_t areas = 0, highways = 0;
+    uint32_t areas = 0, told = 0, highways = 0;
     camber_osm_text compared[CAMBER_OSM_WHERE_KEYS] = {{0}};
     memset(set, 0xff, self->property_count * sizeof *set);
     *facts = (tag_facts){.type = NO_STRING};
@@ -285,9 +286,11 @@ static bool read_tags(decoder *self, camber_wire keys, camber_wire values, tag_f
         }
         facts->type = known->type ? (uint32_t)value : facts->type;
         highways += known->highway;
-        areas += known->area && !is_no(to, (uint32_t)value);
+        const bool counts = known->area && !is_no(to, (uint32_t)value);
+        areas += counts;
+        told += counts && known->is_area;
     }
-    facts->area = areas && !highways;
+    facts->area = told || (areas && !highways);
     facts->passes = !self->ways->where || camber_osm_where_passes(self->ways->where, compared);
     return true;
 }

@@ -3,8 +3,8 @@
 #include <ctype.h>
 #include <strings.h>
 
-/* OGR's own list (its osmconf.ini, closed_ways_are_polygons), and "area" itself. */
-const char *const camber_osm_area_keys[] = {"aeroway",    "amenity",  "area",    "boundary", "building", "craft",
+/* "area" itself, and OGR's own list (its osmconf.ini, closed_ways_are_polygons). */
+const char *const camber_osm_area_keys[] = {"area",       "aeroway",  "amenity", "boundary", "building", "craft",
                                             "geological", "historic", "landuse", "leisure",  "military", "natural",
                                             "office",     "place",    "shop",    "sport",    "tourism",  NULL};
 

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Keys that make a closed way without a highway an area, unless their value is "no"; NULL at the end. */
+/* Keys that make a closed way an area, unless their value is "no": the first, "area", also a highway. NULL at the
+ * end. */
 extern const char *const camber_osm_area_keys[];
 bool camber_osm_is_no(const char *value);
 

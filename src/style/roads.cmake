@@ -92,11 +92,12 @@ function(road_color out level paper near far)
   endif()
 endfunction()
 
-# bridge and tunnel: "yes" and kinds of bridge and tunnel in OpenStreetMap, 0 and 1 in vector tiles.
+# bridge and tunnel: "yes" and kinds of bridge and tunnel in OpenStreetMap, 0 and 1 in vector tiles. A square that people
+# walk on is an area, and has no road around it.
 function(road_filter out level class)
   list(JOIN road_values_${class} "\", \"" values)
   set(kind "[\"coalesce\", [\"get\", \"highway\"], [\"get\", \"type\"], [\"get\", \"MTFCC\"]]")
-  set(kind "[\"match\", ${kind}, [\"${values}\"], true, false]")
+  set(kind "[\"all\", [\"!=\", [\"geometry-type\"], \"Polygon\"], [\"match\", ${kind}, [\"${values}\"], true, false]]")
   if(class STREQUAL "minor")
     set(kind "[\"any\", ${kind}, [\"==\", [\"get\", \"camber:plain\"], true]]")
   endif()

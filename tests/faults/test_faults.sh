@@ -155,6 +155,13 @@ if [ "$(id -u)" = 0 ] && setpriv --reuid=65534 --clear-groups "$tool" --version 
         "$tool" render "$tmp/lines.geojson" -qo "$tmp/theirs/out/a.png" --size 200x200 2>"$tmp/stderr" ||
         fail "exit status $?: $(head -c 300 "$tmp/stderr")"
     cmp -s "$tmp/theirs/out/a.png" "$right" || fail "another picture"
+    name="a file that others may not read"
+    for ending in geojson osm.pbf osm.gz; do
+        cp "$tmp/lines.geojson" "$tmp/theirs/closed.$ending" && chmod 600 "$tmp/theirs/closed.$ending"
+        setpriv --reuid=65534 --clear-groups "$tool" render "$tmp/theirs/closed.$ending" -o "$tmp/theirs/out/b.png" 2>"$tmp/stderr" &&
+            fail "exit status 0"
+        grep -q "closed.$ending: cannot be read: Permission denied; " "$tmp/stderr" || fail "$(head -c 300 "$tmp/stderr")"
+    done
 else
     echo "skipped: kernels of another user's: not root, no setpriv, or $tool lies where others cannot go"
 fi

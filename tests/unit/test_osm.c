@@ -199,6 +199,7 @@ static size_t finish(fixture *it, bool takes) {
 /* All that ways may be, with each style. */
 static void test_ways(void **state) {
     static const char *const square[] = {"highway", "pedestrian", "area", "yes", NULL};
+    static const char *const loop[] = {"highway", "pedestrian", "building", "yes", NULL};
     static const char *const no_house[] = {"building", "No", "barrier", "wall", NULL};
     static const char *const twice[] = {"name", "A", "name", "B", "highway", "path", NULL};
     static const char *const strange[] = {"", "", "bridge", "", NULL};
@@ -214,7 +215,8 @@ static void test_ways(void **state) {
         WAY(it, house, 10, 11, 10);          /* two segments are no area */
         WAY(it, house, 99, 10, 11, 12, 99);  /* closed, but for the node that is missing */
         WAY(it, house, 10, 98, 11, 12, 10);  /* still closed */
-        WAY(it, square, 12, 13, 14, 12);     /* closed highways are lines */
+        WAY(it, square, 12, 13, 14, 12);     /* an area, as it says */
+        WAY(it, loop, 12, 13, 14, 12);       /* other closed highways are lines */
         WAY(it, no_house, 12, 13, 14, 12);   /* "no" is no area */
         WAY(it, twice, 13, 14);              /* the last value counts */
         WAY(it, strange, 13, 15);            /* empty keys and values */
@@ -228,7 +230,7 @@ static void test_ways(void **state) {
         WAY(it, street, 22, 21);             /* from the antimeridian */
         WAY(it, street, 21, 20, 10, 11, 12); /* and on */
         const size_t count = finish(it, true);
-        assert_int_equal(count, (style % 3 == 1 ? 14 : 12) + (style >= 3 ? 2 : 0)); /* two areas */
+        assert_int_equal(count, (style % 3 == 1 ? 15 : 12) + (style >= 3 ? 3 : 0)); /* three areas */
     }
 }
 

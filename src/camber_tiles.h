@@ -249,6 +249,8 @@ typedef struct camber_tiles_stats {
     uint64_t background; /* drawn, and left out since they show the background alone */
     uint64_t units;      /* pictures that were drawn; each survives the process once its tiles are written */
     uint64_t resumed;    /* units that an earlier run had drawn */
+    uint64_t emptied;    /* renew: tiles of the list that have nothing now; the archive is without them */
+    uint64_t left_out;   /* renew: tiles of the list outside of the archive's zooms and bounds */
     uint64_t points;     /* that were drawn, once a zoom and metatile */
     uint64_t bytes;      /* of the tiles; of a dry run: expected, by pictures that were drawn to try */
     bool done;           /* resume: there was nothing left to do */

@@ -8,6 +8,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 typedef struct merging {
     camber_context *context;
@@ -29,6 +30,22 @@ CAMBER_PRINTF(2, 3) static void add_trouble(merging *m, const char *format, ...)
 
 /* ---- Whether the parts fit ---- */
 
+/* A number of the metadata, which MBTiles has as a text; 0: none. */
+static double number_of(const camber_archive *archive, const char *name) {
+    const json_t *value = json_object_get(archive->metadata, name);
+    return json_is_string(value) ? strtod(json_string_value(value), NULL) : json_number_value(value);
+}
+
+/* Tiles of two sizes make no map. An archive of another tool's may not tell its own. */
+static void compare_sizes(merging *m, const camber_archive *first, const camber_archive *part) {
+    const double px = number_of(part, "tileSize"), first_px = number_of(first, "tileSize");
+    const double ratio = number_of(part, "ratio"), first_ratio = number_of(first, "ratio");
+    if (px > 0 && first_px > 0 && px != first_px)
+        add_trouble(m, "%s has tiles of %g px, not %g as %s", part->path, px, first_px, first->path);
+    else if (ratio > 0 && first_ratio > 0 && ratio != first_ratio)
+        add_trouble(m, "%s has tiles of ratio %g, not %g as %s", part->path, ratio, first_ratio, first->path);
+}
+
 static void compare_parts(merging *m, const camber_archive *first, const camber_archive *part) {
     if (part->type != first->type)
         add_trouble(m, "%s has tiles of type %s, not %s as %s", part->path, camber_tile_type_get_name(part->type),
@@ -36,6 +53,7 @@ static void compare_parts(merging *m, const camber_archive *first, const camber_
     else if (part->gzipped != first->gzipped)
         add_trouble(m, "%s has tiles that are%s compressed, unlike %s", part->path, part->gzipped ? "" : " not",
                     first->path);
+    compare_sizes(m, first, part);
     if (part->shards != first->shards) {
         add_trouble(m, "%s is %s, unlike %s", part->path,
                     !part->shards    ? "no part of shards"

@@ -27,6 +27,7 @@ typedef struct job {
     camber_tiles_schedule *schedule; /* NULL: the engine looks where lines are */
     camber_tiles_files files;
     bool is_left; /* of an earlier run, which was cut off: what it had finished */
+    bool begun;   /* the archive is this run's */
     camber_tiles_stats stats;
     double load_ms, total_ms;
 } job;
@@ -191,13 +192,34 @@ static int open_engine(job *j) {
     return camber_report_status(session->report, camber_tiles_engine_create(j->input.features, &desc, &j->engine));
 }
 
+/* Tells of what a run that ends early has finished, if anything: it stays. Takes no signal. */
+static bool tell_kept(void *user, int number) {
+    const job *j = user;
+    struct stat about;
+    (void)number;
+    if (j->begun && !j->session->options->renewed && stat(j->files.names[0], &about) == 0 && about.st_size > 0)
+        camber_report_warn(j->session->report, "%s: what is finished is kept in %s; --resume goes on with it",
+                           j->output, j->files.names[0]);
+    return false;
+}
+
+static void heed_signals(job *j, bool heeds) {
+    camber_guard *guard = j->session->guard;
+    camber_guard_lock(guard);
+    guard->heed = heeds ? tell_kept : NULL;
+    guard->heed_user = j;
+    camber_guard_unlock(guard);
+}
+
 /* The archive is this run's alone. What an earlier one has left goes. */
 static void begin(void *user) {
     job *j = user;
     if (j->is_left)
         camber_report_warn(j->session->report,
                            "%s: what a run that was cut off had finished is drawn again; --resume keeps it", j->output);
+    j->begun = true;
     camber_tiles_files_guard(&j->files);
+    heed_signals(j, true);
 }
 
 /* Whether points take so much memory that they go when they can, for which PMTiles are copied at the end. */
@@ -266,7 +288,10 @@ static int draw(job *j) {
     camber_guard_go_first(session->guard);
     const camber_tiles_draw_desc desc = describe(j);
     const camber_status drawn = camber_tiles_draw(j->engine, &desc, &j->stats);
+    heed_signals(j, false);
     camber_report_erase_bar(session->report);
+    if (drawn != CAMBER_OK)
+        tell_kept(j, 0);
     camber_tiles_files_release(&j->files);
     return camber_report_status(session->report, drawn);
 }
@@ -292,11 +317,12 @@ static int print_json(const job *j) {
     const struct {
         const char *name;
         uint64_t count;
-    } counts[] = {{"tiles", stats->tiles},    {"background_tiles", stats->background},
-                  {"units", stats->units},    {"resumed_units", stats->resumed},
-                  {"points", stats->points},  {"points_in", j->input.points_in},
-                  {"bytes", stats->bytes},    {"shard", j->shard.number},
-                  {"shards", j->shard.count}, {"peak_rss_bytes", camber_peak_rss_bytes()}};
+    } counts[] = {{"tiles", stats->tiles},           {"background_tiles", stats->background},
+                  {"units", stats->units},           {"resumed_units", stats->resumed},
+                  {"emptied_tiles", stats->emptied}, {"left_out_tiles", stats->left_out},
+                  {"points", stats->points},         {"points_in", j->input.points_in},
+                  {"bytes", stats->bytes},           {"shard", j->shard.number},
+                  {"shards", j->shard.count},        {"peak_rss_bytes", camber_peak_rss_bytes()}};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         json_object_set_new(object, counts[i].name, camber_json_count((size_t)counts[i].count));
     const struct {
@@ -330,11 +356,21 @@ static void warn_empty(const job *j) {
                                            : "the input");
 }
 
+/* Tiles of --tiles that the archive is not to get. */
+static void warn_left_out(const job *j) {
+    const uint64_t count = j->stats.left_out;
+    if (count)
+        camber_report_warn(j->session->report,
+                           "%s: %llu tile%s of the list lie%s outside of its zooms and bounds; left out", j->output,
+                           (unsigned long long)count, camber_plural((size_t)count), count == 1 ? "s" : "");
+}
+
 static void print_text(const job *j) {
     const camber_tiles_stats *stats = &j->stats;
     camber_report *report = j->session->report;
     if (stats->done) {
-        camber_report_say(report, "%s: is whole; nothing to do", j->output);
+        camber_report_say(report, "%s: is whole; nothing to %s", j->output,
+                          j->session->options->renewed ? "renew" : "do");
         return;
     }
     camber_report_say(report, "%s: %s%llu tile%s in %llu unit%s, %llu points, %.1f MB", j->output,
@@ -342,6 +378,10 @@ static void print_text(const job *j) {
                       camber_plural((size_t)stats->tiles), (unsigned long long)stats->units,
                       camber_plural((size_t)stats->units), (unsigned long long)stats->points,
                       (double)stats->bytes / 1e6);
+    if (stats->emptied)
+        camber_report_say(report, "%llu tile%s of the list %s nothing now: the archive is without",
+                          (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied),
+                          stats->emptied == 1 ? "has" : "have");
     if (stats->resumed)
         camber_report_say(report, "%llu unit%s had been drawn before", (unsigned long long)stats->resumed,
                           camber_plural((size_t)stats->resumed));
@@ -364,6 +404,8 @@ int camber_verb_tiles_draw(camber_session *session) {
     j->total_ms = camber_clock_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE)
         warn_empty(j);
+    if (status == CAMBER_EXIT_DONE)
+        warn_left_out(j);
     if (status == CAMBER_EXIT_DONE && session->options->json)
         status = print_json(j);
     else if (status == CAMBER_EXIT_DONE)

@@ -1,6 +1,7 @@
 /* The area of a run. A tile is wanted where it overlaps the box, touches the region, or stands in the list. */
 #include "tiles/area.h"
 
+#include "archive/archive.h"
 #include "source/features.h"
 #include "source/mercator.h"
 #include "source/pmtiles.h"
@@ -163,6 +164,48 @@ static bool meets_columns(const camber_box *box, double tiles, double column) {
             return true;
     return false;
 }
+
+/* ---- An archive that is renewed ---- */
+
+static camber_box box_of(const double bounds[4]) {
+    const double most = CAMBER_MERCATOR_LATITUDE;
+    camber_box box;
+    camber_mercator_project(bounds[0], fmin(fmax(bounds[3], -most), most), &box.x0, &box.y0);
+    camber_mercator_project(bounds[2], fmin(fmax(bounds[1], -most), most), &box.x1, &box.y1);
+    return box;
+}
+
+size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoom, const double bounds[4]) {
+    const camber_box box = bounds ? box_of(bounds) : WORLD;
+    const size_t count = area->tile_count;
+    area->tile_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        const int zoom = camber_archive_zoom(area->tiles[i]);
+        const double tiles = exp2(zoom), slack = 1e-9 + 1e-6 / tiles; /* archives round bounds to 10^-7 degrees */
+        const camber_box wide = {box.x0 - slack, box.y0 - slack, box.x1 + slack, box.y1 + slack};
+        uint32_t column, row;
+        camber_pmtiles_locate(area->tiles[i] - camber_archive_first(zoom), zoom, &column, &row);
+        if (zoom >= min_zoom && zoom <= max_zoom && meets_columns(&wide, tiles, column) &&
+            row + 1.0 > wide.y0 * tiles && row < wide.y1 * tiles)
+            area->tiles[area->tile_count++] = area->tiles[i];
+    }
+    if (area->tile_count) { /* their numbers ascend with their zooms */
+        area->min_zoom = camber_archive_zoom(area->tiles[0]);
+        area->max_zoom = camber_archive_zoom(area->tiles[area->tile_count - 1]);
+    }
+    return count - area->tile_count;
+}
+
+bool camber_tiles_bounds_meet(const double bounds[4], camber_box data) {
+    const camber_box box = box_of(bounds);
+    for (double world = -1.0; world <= 1.0; world += 1.0)
+        if (data.x0 <= data.x1 && data.x0 + world <= box.x1 && data.x1 + world >= box.x0 && data.y0 <= box.y1 &&
+            data.y1 >= box.y0)
+            return true;
+    return false;
+}
+
+/* ---- Metatiles ---- */
 
 static bool wants(const camber_tiles_area *area, const camber_box *box, int zoom, uint32_t column, uint32_t row) {
     const double tiles = exp2(zoom);

@@ -75,6 +75,7 @@ static camber_status write_job(pyramid *p, const camber_encode_job *job) {
                                                tile->size_bytes);
         else if (p->renewed)
             status = camber_archive_writer_remove(p->writer, picture->zoom, tile_of(picture, bit));
+        p->stats.emptied += p->renewed && !tile->size_bytes;
         p->stats.tiles += tile->size_bytes > 0;
         p->stats.background += tile->size_bytes == 0;
         p->stats.bytes += tile->size_bytes;
@@ -142,6 +143,7 @@ static camber_status write_blanks(pyramid *p, const camber_tile_task *task, cons
         status = keeps ? camber_archive_writer_add(p->writer, task->zoom, tile, p->blank, p->blank_bytes)
                        : camber_archive_writer_remove(p->writer, task->zoom, tile);
         p->stats.tiles += keeps;
+        p->stats.emptied += !keeps;
         p->stats.bytes += keeps ? p->blank_bytes : 0;
     }
     return status == CAMBER_OK ? camber_archive_writer_end_unit(p->writer, unit_of(task, picture->side)) : status;
@@ -344,12 +346,9 @@ static camber_status fail_renewed(const pyramid *p, const char *names) {
                        p->desc->output, names);
 }
 
-/* Opens the archive whose tiles are replaced, and makes the description of what it becomes. */
-static camber_status open_renewed(pyramid *p, camber_archive_desc *whole) {
+/* Makes the description of what the archive whose tiles are replaced becomes. */
+static camber_status describe_renewed(pyramid *p, camber_archive_desc *whole) {
     char names[128], own[CAMBER_FINGERPRINT_SIZE];
-    const camber_status status = camber_archive_open(p->context, p->desc->output, &p->renewed);
-    if (status != CAMBER_OK)
-        return status;
     const camber_archive *there = p->renewed;
     if (!there->fingerprint)
         return camber_fail(p->context, CAMBER_ERROR_INPUT,
@@ -396,7 +395,7 @@ static camber_status open_writer(pyramid *p) {
                              "%s: its name tells no format; name it .pmtiles, .mbtiles, or a folder with a slash",
                              desc->output);
     if (status == CAMBER_OK && desc->renew)
-        status = open_renewed(p, &whole);
+        status = describe_renewed(p, &whole);
     if (status == CAMBER_OK)
         status = camber_archive_writer_create(p->context, &whole, &p->writer);
     if (status == CAMBER_OK && p->renewed)
@@ -462,6 +461,23 @@ static camber_status save_schedule(pyramid *p, uint64_t input, camber_box data) 
     return status == CAMBER_OK ? camber_schedule_write(&whole, desc->schedule_path, desc->force) : status;
 }
 
+/* Opens the archive whose tiles are replaced, and keeps to what it may have. */
+static camber_status open_renewed(pyramid *p, camber_box data) {
+    const camber_status status = camber_archive_open(p->context, p->desc->output, &p->renewed);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_archive *there = p->renewed;
+    const double *bounds = there->has_bounds ? there->bounds : NULL;
+    if (bounds && !camber_tiles_bounds_meet(bounds, data))
+        return camber_fail(p->context, CAMBER_ERROR_INPUT,
+                           "%s: the input has nothing where its tiles are, and they would go; give what it was drawn "
+                           "of, or draw it anew",
+                           p->desc->output);
+    p->stats.left_out = camber_tiles_area_keep(&p->area, there->min_zoom, there->max_zoom, bounds);
+    p->stats.done = p->area.tile_count == 0;
+    return CAMBER_OK;
+}
+
 /* Looks where lines are. */
 static camber_status make_schedule(pyramid *p) {
     camber_box data;
@@ -469,7 +485,9 @@ static camber_status make_schedule(pyramid *p) {
     const uint64_t input = camber_features_hash(p->engine->features, &data);
     p->stats.census_ms += camber_now_ms() - start_ms;
     camber_status status = camber_tiles_area_make(p->context, p->desc, data, &p->area);
-    if (status != CAMBER_OK)
+    if (status == CAMBER_OK && p->desc->renew)
+        status = open_renewed(p, data);
+    if (status != CAMBER_OK || p->stats.done)
         return status;
     camber_fingerprint_write(p->engine, p->desc, &p->area, input, p->fingerprint);
     status = camber_schedule_make(p->engine, &p->area, p->desc->keep_empty || p->desc->renew, &p->schedule);
@@ -502,7 +520,7 @@ static camber_status prepare(pyramid *p) {
     camber_status status = check_desc(p);
     if (status == CAMBER_OK)
         status = p->desc->schedule ? take_schedule(p) : make_schedule(p);
-    if (status != CAMBER_OK)
+    if (status != CAMBER_OK || p->stats.done)
         return status;
     camber_schedule_meet(&p->schedule, &p->area);
     if (p->desc->shards)
@@ -521,7 +539,7 @@ camber_status camber_tiles_draw(camber_tiles_engine *engine, const camber_tiles_
     assert(!desc->spent || desc->spent == engine->features);
     engine->census_ms = engine->make_ms = engine->draw_ms = 0.0;
     camber_status status = prepare(&p);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && !p.stats.done)
         status = desc->dry_run ? try_all(&p) : draw_archive(&p);
     if (p.queue) {
         const camber_encode_times times = camber_encode_queue_get_times(p.queue);

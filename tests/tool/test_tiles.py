@@ -11,6 +11,7 @@ import json
 import math
 import os
 import random
+import re
 import resource
 import signal
 import sqlite3
@@ -45,7 +46,8 @@ def camber(*arguments, status=0, **more):
     done = run(*arguments, **more)
     expect(done.returncode == status, f"{arguments}: {done.returncode}, not {status}: {done.stdout} {done.stderr}")
     if status:
-        expect(done.stderr.count("\n") == 1 and done.stderr.startswith("camber: "), f"{arguments}: {done.stderr}")
+        errors = [line for line in done.stderr.splitlines() if not line.startswith("camber: warning: ")]
+        expect(len(errors) == 1 and errors[0].startswith("camber: "), f"{arguments}: {done.stderr}")
     return done
 
 
@@ -401,6 +403,13 @@ def test_stopped():
         expect(child.returncode == 128 + number, f"signal {number}: {child.returncode}")
         expect(told.count("\n") <= 1, told)
         expect(not os.path.exists("stopped.pmtiles"), "half an archive is there")
+    child = subprocess.Popen([TOOL, *common[:-1], "-o", "kept.pmtiles"], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
+    while not os.path.exists("kept.pmtiles.camber-tiles") or os.path.getsize("kept.pmtiles.camber-tiles") == 0:
+        expect(child.poll() is None, "it has ended before a unit")
+        time.sleep(0.005)
+    child.send_signal(signal.SIGINT)
+    told = child.communicate()[1]
+    expect("what is finished is kept in kept.pmtiles.camber-tiles; --resume goes on" in told, told)
 
 
 def test_other_run():
@@ -453,10 +462,37 @@ def test_renew():
     for name in ("map.mbtiles", "map.mbtiles"):
         tiles(*options, "-o", name, "--tiles", "list")
         expect(archive(name) == new, "all tiles renewed are not all tiles drawn")
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "list").stderr
+    expect(re.search(r"\d+ tiles of the list have nothing now", said) and "left out" not in said, said)
+    with open("outside", "w") as file:
+        file.write(f"{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2000}/{ROW}\n2/1/1\n")
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside").stderr
+    expect("2 tiles of the list lie outside" in said and archive("map.mbtiles") == new, said)
+    camber("tiles", "verify", "map.mbtiles")
+    with open("outside", "w") as file:
+        file.write("2/1/1\n")
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside").stderr
+    expect("1 tile of the list lies outside" in said and "nothing to renew" in said, said)
+    # Another input, by mistake: it would empty the archive.
+    write_lines("far.geojson", [(1, [(COLUMN + 901.5, ROW + 1.5), (COLUMN + 903.5, ROW + 1.5)])])
+    said = tiles("far.geojson", *options[1:], "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
+    expect("nothing where its tiles are" in said and archive("map.mbtiles") == new, said)
     with open("list", "w") as file:
         file.write("13/1/1\n13/1\n")
     line = tiles(*options, "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
     expect("line 2" in line, line)
+
+
+def test_merged_sizes():
+    """Tiles of two sizes make no map."""
+    make_lines("lines.geojson")
+    for name, *options in (("small.pmtiles",), ("large.mbtiles", "--tile-size", "512"), ("fine.pmtiles", "--ratio", "2")):
+        tiles("lines.geojson", "-o", name, "--max-zoom", 9, *options)
+    for given, said in ((("small.pmtiles", "large.mbtiles"), "512 px, not 256"),
+                        (("large.mbtiles", "fine.pmtiles"), "ratio 2, not 1")):
+        line = camber("tiles", "merge", *given, "-o", "both.pmtiles", status=65).stderr
+        expect(said in line and not os.path.exists("both.pmtiles"), line)
+    camber("tiles", "merge", "large.mbtiles", "-o", "both.pmtiles")
 
 
 def test_area():
@@ -593,8 +629,8 @@ def test_usage():
 
 
 def main():
-    tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed, test_stopped, test_other_run,
-             test_renew, test_area, test_folders, test_metadata, test_full]
+    tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed,
+             test_stopped, test_other_run, test_renew, test_merged_sizes, test_area, test_folders, test_metadata, test_full]
     named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]
     for test in named or tests:
         with tempfile.TemporaryDirectory(prefix="camber-tiles-") as folder:

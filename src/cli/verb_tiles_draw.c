@@ -260,6 +260,15 @@ static camber_tiles_draw_desc describe(job *j) {
                                     .user = j};
 }
 
+/* West and east changed places, most likely: that is the world without the box that was meant. */
+static void warn_wide(const job *j) {
+    const camber_view_desc *view = &j->session->options->view;
+    const double width = view->east + 360.0 - view->west;
+    if (j->session->options->has_bbox && view->west > view->east && width > 180.0)
+        camber_report_warn(j->session->report,
+                           "the box goes over the antimeridian, and is %g degrees wide; --bbox is W,S,E,N", width);
+}
+
 static int draw(job *j) {
     camber_session *session = j->session;
     int status = find_output(j);
@@ -269,6 +278,8 @@ static int draw(job *j) {
         status = read_places(j);
     if (status == CAMBER_EXIT_DONE && session->options->renewed && j->place_count == 0)
         return CAMBER_EXIT_DONE; /* no tile has expired */
+    if (status == CAMBER_EXIT_DONE)
+        warn_wide(j);
     if (status != CAMBER_EXIT_DONE)
         return status;
     session->opens_beside = true;

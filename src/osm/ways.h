@@ -12,8 +12,8 @@
 typedef struct camber_osm_key {
     const char *name;
     size_t length;
-    uint32_t property; /* index into the style's properties; UINT32_MAX: none */
-    uint32_t filter;   /* index into the filter's keys; UINT32_MAX: none */
+    uint32_t property;                 /* index into the style's properties; UINT32_MAX: none */
+    uint32_t filter;                   /* index into the filter's keys; UINT32_MAX: none */
     bool area, is_area, highway, type; /* area: of areas; is_area: the key "area" itself */
 } camber_osm_key;
 

@@ -534,6 +534,9 @@ def test_area():
         json.dump({"type": "FeatureCollection", "features": []}, file)
     swapped = camber("tiles", "lines.geojson", "-o", "swapped.pmtiles", *one, "--bbox", "43,7,44,8").stderr
     expect("longitudes come first" in swapped, swapped)
+    for box, wide in (("9,50,8,51", True), ("179,50,-179,51", False)):
+        said = camber("tiles", "lines.geojson", "-o", "wide.pmtiles", "-f", "--bbox", box, "--max-zoom", 4).stderr
+        expect(("359 degrees wide" in said) == wide, said)
     done = run("tiles", "empty.geojson", "-o", "empty.pmtiles", "--max-zoom", "3")
     expect(done.returncode in (0, 65), done.stderr)
     for name in ("short", "all", "box", "kept", "region", "some"):

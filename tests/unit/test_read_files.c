@@ -157,6 +157,7 @@ static void test_real_files(void **state) {
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[1024];
         snprintf(path, sizeof path, "%s/data/%s", data, files[i].name);
+        it->style.wants_polygons = true; /* squares are areas */
         start_again(it);
         it->keep_apart = true;
         expect_ok(it, read_path(it, path));
@@ -361,20 +362,22 @@ static const char osm_xml[] =
     "<node id=\"1\" lat=\"1\" lon=\"1\"/><node id=\"2\" lat=\"1\" lon=\"2\"/>"
     "<node id=\"3\" lat=\"2\" lon=\"2\"/><node id=\"4\" lat=\"2\" lon=\"1\"/>"
     "<way id=\"1\"><nd ref=\"1\"/><nd ref=\"2\"/><nd ref=\"3\"/><nd ref=\"1\"/>"
-    "<tag k=\"highway\" v=\"pedestrian\"/><tag k=\"area\" v=\"yes\"/><tag k=\"bridge\" v=\"yes\"/></way>"
+    "<tag k=\"highway\" v=\"pedestrian\"/><tag k=\"tourism\" v=\"yes\"/><tag k=\"bridge\" v=\"yes\"/></way>"
     "<way id=\"2\"><nd ref=\"1\"/><nd ref=\"2\"/><nd ref=\"3\"/><nd ref=\"1\"/><tag k=\"building\" v=\"yes\"/></way>"
     "<way id=\"3\"><nd ref=\"1\"/><nd ref=\"2\"/><tag k=\"building\" v=\"yes\"/></way>"
     "<way id=\"4\"><nd ref=\"1\"/><nd ref=\"2\"/><nd ref=\"3\"/><nd ref=\"1\"/><tag k=\"barrier\" v=\"wall\"/></way>"
     "<way id=\"5\"><nd ref=\"4\"/><nd ref=\"2\"/><tag k=\"highway\" v=\"primary\"/><tag k=\"lanes\" v=\"3\"/>"
     "<tag k=\"layer\" v=\"-1\"/></way>"
+    "<way id=\"6\"><nd ref=\"1\"/><nd ref=\"2\"/><nd ref=\"3\"/><nd ref=\"1\"/>"
+    "<tag k=\"highway\" v=\"pedestrian\"/><tag k=\"area\" v=\"yes\"/></way>"
     "</osm>";
 
 static void test_osm(void **state) {
     fixture *it = *state;
     expect_ok(it, read_path(it, write_file(it, "a.osm", osm_xml, sizeof osm_xml - 1)));
     const camber_features *set = it->features;
-    assert_int_equal(set->feature_count, 4); /* all but the closed building */
-    assert_int_equal(camber_features_get_stats(set).skipped_features, 1);
+    assert_int_equal(set->feature_count, 4); /* all but the closed building and the square */
+    assert_int_equal(camber_features_get_stats(set).skipped_features, 2);
     assert_int_equal(count_with(set, HIGHWAY), 2);
     assert_string_equal(value_of(set, 0, BRIDGE)->string, "yes");
     assert_string_equal(value_of(set, 3, LAYER)->string, "-1");
@@ -383,8 +386,9 @@ static void test_osm(void **state) {
     it->style.wants_polygons = true;
     start_again(it);
     expect_ok(it, read_path(it, it->path));
-    assert_int_equal(it->features->feature_count, 5);
+    assert_int_equal(it->features->feature_count, 6);
     assert_int_equal(it->features->classes[it->features->feature_class[1]].geometry, CAMBER_GEOMETRY_POLYGON);
+    assert_int_equal(it->features->classes[it->features->feature_class[5]].geometry, CAMBER_GEOMETRY_POLYGON);
 
     /* A key that only the filter names. */
     start_again(it);

@@ -214,8 +214,10 @@ typedef struct camber_tiles_draw_desc {
     int min_zoom, max_zoom;
     bool has_bbox; /* only tiles that overlap bbox: west, south, east, north in degrees; west > east: across 180 */
     double bbox[4];
-    const camber_features *region;   /* only tiles that touch its polygons. NULL: all */
-    const camber_tiles_place *tiles; /* tile_count: only these, whatever the zooms above. NULL: all */
+    const camber_features *region; /* only tiles that touch its polygons. NULL: all */
+    /* tile_count: only these, whatever the zooms above; with renew those of these zooms, or, where min_zoom is below
+     * 0, those that lie in the zooms of the archive, and without a bbox or a region in its bounds. NULL: all. */
+    const camber_tiles_place *tiles;
     size_t tile_count;
     camber_encoding encoding;
     int quality;            /* WebP: 1 to 100, which is lossless. 0: 80 */
@@ -249,11 +251,11 @@ typedef struct camber_tiles_stats {
     uint64_t background; /* drawn, and left out since they show the background alone */
     uint64_t units;      /* pictures that were drawn; each survives the process once its tiles are written */
     uint64_t resumed;    /* units that an earlier run had drawn */
-    uint64_t emptied;    /* renew: tiles of the list that have nothing now; the archive is without them */
-    uint64_t left_out;   /* renew: tiles of the list outside of the archive's zooms and bounds */
+    uint64_t emptied;    /* renew: tiles that the archive had, and that have nothing now */
+    uint64_t left_out;   /* renew: tiles of the list outside of the zooms and bounds */
     uint64_t points;     /* that were drawn, once a zoom and metatile */
     uint64_t bytes;      /* of the tiles; of a dry run: expected, by pictures that were drawn to try */
-    bool done;           /* resume: there was nothing left to do */
+    bool done;           /* resume, renew: there was nothing left to do */
     double census_ms, make_ms, draw_ms, wait_ms, write_ms; /* of the calling thread; make: networks and passes */
     double encode_ms, encode_cpu_ms;                       /* of all threads that encode, and of their processors */
 } camber_tiles_stats;
@@ -261,8 +263,8 @@ typedef struct camber_tiles_stats {
 /* Draws a pyramid of tiles into an archive. The archive's bytes depend on the features, the style, the engine's desc
  * without its threads, and this desc; not on memory, on what was resumed, or on the number of shards, once these are
  * merged. stats may be NULL. Returns CAMBER_ERROR_ARGUMENT, CAMBER_ERROR_NOT_FOUND (renew: no archive is there),
- * CAMBER_ERROR_INPUT (resume, renew, schedule: another input, style, options or version), CAMBER_ERROR_IO,
- * CAMBER_ERROR_LIMIT, CAMBER_ERROR_DEVICE, CAMBER_ERROR_MEMORY. */
+ * CAMBER_ERROR_INPUT (resume, renew, schedule: another input, style, options or version; renew: an input outside of the
+ * archive's bounds), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT, CAMBER_ERROR_DEVICE, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_tiles_draw(camber_tiles_engine *engine, const camber_tiles_draw_desc *desc,
                                            camber_tiles_stats *stats);
 

@@ -105,6 +105,8 @@ camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_a
  * the path has what it had, and the units stay.
  * Returns CAMBER_ERROR_IO, CAMBER_ERROR_INPUT (unites: two tiles differ), CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_archive_writer_finish(camber_archive_writer *writer);
+/* How many tiles that were taken the finished archive is without, as they were removed. */
+uint64_t camber_archive_writer_get_removed(const camber_archive_writer *writer);
 /* Closes the files. Those beside the archive stay where a unit has ended and the archive is not finished. */
 void camber_archive_writer_destroy(camber_archive_writer *writer);
 

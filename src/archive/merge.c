@@ -36,14 +36,17 @@ static double number_of(const camber_archive *archive, const char *name) {
     return json_is_string(value) ? strtod(json_string_value(value), NULL) : json_number_value(value);
 }
 
-/* Tiles of two sizes make no map. An archive of another tool's may not tell its own. */
-static void compare_sizes(merging *m, const camber_archive *first, const camber_archive *part) {
-    const double px = number_of(part, "tileSize"), first_px = number_of(first, "tileSize");
-    const double ratio = number_of(part, "ratio"), first_ratio = number_of(first, "ratio");
-    if (px > 0 && first_px > 0 && px != first_px)
-        add_trouble(m, "%s has tiles of %g px, not %g as %s", part->path, px, first_px, first->path);
-    else if (ratio > 0 && first_ratio > 0 && ratio != first_ratio)
-        add_trouble(m, "%s has tiles of ratio %g, not %g as %s", part->path, ratio, first_ratio, first->path);
+/* Tiles of two sizes make no map. An archive of another tool's may not tell its own. before, behind: of a number in the
+ * message. */
+static void compare_numbers(merging *m, const char *name, const char *before, const char *behind) {
+    const camber_archive *first = NULL;
+    for (size_t i = 0; i < m->desc->part_count; i++) {
+        const double own = number_of(m->parts[i], name);
+        if (own > 0 && first && own != number_of(first, name))
+            add_trouble(m, "%s has tiles of %s%g%s, not %g as %s", m->parts[i]->path, before, own, behind,
+                        number_of(first, name), first->path);
+        first = own > 0 && !first ? m->parts[i] : first;
+    }
 }
 
 static void compare_parts(merging *m, const camber_archive *first, const camber_archive *part) {
@@ -53,7 +56,6 @@ static void compare_parts(merging *m, const camber_archive *first, const camber_
     else if (part->gzipped != first->gzipped)
         add_trouble(m, "%s has tiles that are%s compressed, unlike %s", part->path, part->gzipped ? "" : " not",
                     first->path);
-    compare_sizes(m, first, part);
     if (part->shards != first->shards) {
         add_trouble(m, "%s is %s, unlike %s", part->path,
                     !part->shards    ? "no part of shards"
@@ -101,10 +103,14 @@ static camber_status check_parts(merging *m) {
         compare_parts(m, m->parts[0], m->parts[i]);
     if (m->parts[0]->shards)
         count_shards(m);
+    else
+        compare_numbers(m, "tileSize", "", " px");
+    if (!m->parts[0]->shards && !m->troubles[0])
+        compare_numbers(m, "ratio", "ratio ", "");
     if (!m->troubles[0])
         return CAMBER_OK;
-    return camber_fail(m->context, CAMBER_ERROR_INPUT, "%s: cannot be merged: %s; give all parts of one run",
-                       m->desc->output, m->troubles);
+    return camber_fail(m->context, CAMBER_ERROR_INPUT, "%s: cannot be merged: %s; give %s", m->desc->output,
+                       m->troubles, m->parts[0]->shards ? "all parts of one run" : "archives of one kind");
 }
 
 /* ---- The whole ---- */

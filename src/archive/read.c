@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +36,7 @@ static bool read_numbers(const char *text, size_t count, double *numbers) {
     for (size_t i = 0; text && i < count; i++) {
         char *end;
         numbers[i] = strtod(text, &end);
-        if (end == text || *end != (i + 1 < count ? ',' : 0))
+        if (end == text || *end != (i + 1 < count ? ',' : 0) || !isfinite(numbers[i]))
             return false;
         text = end + 1;
     }

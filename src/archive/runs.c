@@ -82,6 +82,7 @@ camber_status camber_archive_resolve(camber_context *context, camber_archive_run
         const camber_archive_run *over = a < added->count ? &added->items[a] : NULL;
         if (over && (!from || over->number <= from->number)) {
             if (from && over->number == from->number) {
+                made->removed += over->content == CAMBER_NO_CONTENT;
                 from->number++;
                 from->length--;
                 t += from->length == 0;

@@ -42,6 +42,7 @@ struct camber_archive_writer {
     camber_archive_runs added, taken;
     taken_archive *archives;
     size_t archive_count, archive_capacity;
+    uint64_t removed; /* tiles of the taken archives that the finished one is without */
     bool done, keeps; /* keeps: a unit has ended, and the files beside stay */
 };
 
@@ -576,6 +577,10 @@ static camber_status write_whole(const camber_archive_plan *plan) {
     return camber_archive_write_folder(plan);
 }
 
+uint64_t camber_archive_writer_get_removed(const camber_archive_writer *writer) {
+    return writer->removed;
+}
+
 camber_status camber_archive_writer_finish(camber_archive_writer *writer) {
     camber_archive_runs runs = {0};
     camber_archive_conflict conflict = {0};
@@ -586,6 +591,7 @@ camber_status camber_archive_writer_finish(camber_archive_writer *writer) {
         status = camber_archive_resolve(writer->context, &writer->added, &writer->taken, &runs, &conflict);
     if (status == CAMBER_OK && conflict.found)
         status = fail_conflict(writer, &conflict);
+    writer->removed = runs.removed;
     camber_archive_plan plan = {.context = writer->context,
                                 .desc = &writer->desc,
                                 .whole = writer->beside[BESIDE_WHOLE],

@@ -38,6 +38,7 @@ void camber_archive_put_texts(const camber_archive_plan *plan, json_t *metadata)
 typedef struct camber_archive_runs {
     camber_archive_run *items;
     size_t count, capacity;
+    size_t removed; /* made: taken tiles that removed ones have met */
 } camber_archive_runs;
 
 typedef struct camber_archive_conflict {

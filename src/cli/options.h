@@ -79,6 +79,7 @@ typedef struct camber_options {
     uint32_t windows; /* windows of each picture that are compared with exact coverage */
     /* Tiles: */
     uint32_t min_zoom, max_zoom;
+    bool has_zooms;             /* at least one of them was given */
     int tile_size;              /* 0: 256, 1: 512 */
     camber_tiles_place *places; /* place_count, each as --tile gave it */
     size_t place_count;

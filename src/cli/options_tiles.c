@@ -69,10 +69,9 @@ static int check_action(const camber_option_reader *p, const char *action) {
 
 static int check_zooms(const camber_option_reader *p) {
     camber_options *options = p->options;
-    const bool listed = options->place_count || options->renewed;
-    if (listed && (options->min_zoom != UINT32_MAX || options->max_zoom != UINT32_MAX))
-        return camber_options_refuse(p, "--%s: its tiles say their zooms; leave out --min-zoom and --max-zoom",
-                                     options->renewed ? "tiles" : "tile");
+    options->has_zooms = options->min_zoom != UINT32_MAX || options->max_zoom != UINT32_MAX;
+    if (options->place_count && options->has_zooms && !options->renewed)
+        return camber_options_refuse(p, "--tile: its tiles say their zooms; leave out --min-zoom and --max-zoom");
     if (options->min_zoom == UINT32_MAX)
         options->min_zoom = 0;
     if (options->max_zoom == UINT32_MAX)

@@ -9,10 +9,12 @@
 
 #ifdef CAMBER_MAP
 
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct job {
     camber_session *session;
@@ -192,14 +194,17 @@ static int open_engine(job *j) {
     return camber_report_status(session->report, camber_tiles_engine_create(j->input.features, &desc, &j->engine));
 }
 
-/* Tells of what a run that ends early has finished, if anything: it stays. Takes no signal. */
+/* Tells of what a run that ends early has finished: it stays. Takes no signal. A terminal or a pipe that takes nothing
+ * must not keep the process from ending. */
 static bool tell_kept(void *user, int number) {
     const job *j = user;
     struct stat about;
-    (void)number;
+    struct pollfd errors = {.fd = STDERR_FILENO, .events = POLLOUT};
+    if (number && (sigismember(&j->session->guard->ignored, number) || poll(&errors, 1, 0) != 1))
+        return false;
     if (j->begun && !j->session->options->renewed && stat(j->files.names[0], &about) == 0 && about.st_size > 0)
-        camber_report_warn(j->session->report, "%s: what is finished is kept in %s; --resume goes on with it",
-                           j->output, j->files.names[0]);
+        camber_report_warn(j->session->report, "%s: --resume%s goes on with what is finished, which is kept in %s",
+                           j->output, j->session->options->force ? " --force" : "", j->files.names[0]);
     return false;
 }
 
@@ -232,7 +237,7 @@ static camber_tiles_draw_desc describe(job *j) {
     const camber_options *options = j->session->options;
     const camber_view_desc *view = &options->view;
     return (camber_tiles_draw_desc){.output = j->output,
-                                    .min_zoom = (int)options->min_zoom,
+                                    .min_zoom = options->renewed && !options->has_zooms ? -1 : (int)options->min_zoom,
                                     .max_zoom = (int)options->max_zoom,
                                     .has_bbox = options->has_bbox,
                                     .bbox = {view->west, view->south, view->east, view->north},
@@ -372,8 +377,9 @@ static void warn_left_out(const job *j) {
     const uint64_t count = j->stats.left_out;
     if (count)
         camber_report_warn(j->session->report,
-                           "%s: %llu tile%s of the list lie%s outside of its zooms and bounds; left out", j->output,
-                           (unsigned long long)count, camber_plural((size_t)count), count == 1 ? "s" : "");
+                           "%s: %llu tile%s of the list lie%s outside of its zooms and bounds; left out (--min-zoom, "
+                           "--max-zoom and --bbox name others)",
+                           j->output, (unsigned long long)count, camber_plural((size_t)count), count == 1 ? "s" : "");
 }
 
 static void print_text(const job *j) {
@@ -390,9 +396,8 @@ static void print_text(const job *j) {
                       camber_plural((size_t)stats->units), (unsigned long long)stats->points,
                       (double)stats->bytes / 1e6);
     if (stats->emptied)
-        camber_report_say(report, "%llu tile%s of the list %s nothing now: the archive is without",
-                          (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied),
-                          stats->emptied == 1 ? "has" : "have");
+        camber_report_say(report, "%llu tile%s taken out, since nothing is there now",
+                          (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));
     if (stats->resumed)
         camber_report_say(report, "%llu unit%s had been drawn before", (unsigned long long)stats->resumed,
                           camber_plural((size_t)stats->resumed));

@@ -30,7 +30,7 @@ set(city_water_leisure swimming_pool)
 set(city_water_waterway riverbank river canal dock)
 set(city_pier_man_made pier breakwater groyne)
 set(city_apron_aeroway apron runway taxiway helipad)
-set(city_plaza_highway pedestrian footway)
+set(city_plaza_highway pedestrian footway path steps cycleway living_street residential unclassified service track)
 
 # The classes of each kind in the layers of tiles. "*": all of the layer.
 set(city_tile_layers park landuse landcover water aeroway transportation)

@@ -92,8 +92,8 @@ function(road_color out level paper near far)
   endif()
 endfunction()
 
-# bridge and tunnel: "yes" and kinds of bridge and tunnel in OpenStreetMap, 0 and 1 in vector tiles. A square that people
-# walk on is an area, and has no road around it.
+# bridge and tunnel: "yes" and kinds of bridge and tunnel in OpenStreetMap, 0 and 1 in vector tiles. What is an area, as
+# a square that people walk on, has no road around it; the style city fills it.
 function(road_filter out level class)
   list(JOIN road_values_${class} "\", \"" values)
   set(kind "[\"coalesce\", [\"get\", \"highway\"], [\"get\", \"type\"], [\"get\", \"MTFCC\"]]")

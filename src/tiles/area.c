@@ -15,8 +15,17 @@ static double bound(double value) {
     return fmin(fmax(value, 0.0), 1.0);
 }
 
-static camber_status take_box(camber_context *context, const double bbox[4], camber_box *box) {
+/* The box of west, south, east, north in degrees, which goes over the antimeridian where the east lies before the
+ * west. */
+static camber_box box_of(const double bbox[4]) {
+    const double most = CAMBER_MERCATOR_LATITUDE;
     double x[2], y[2];
+    camber_mercator_project(bbox[0], fmin(fmax(bbox[3], -most), most), &x[0], &y[0]);
+    camber_mercator_project(bbox[2], fmin(fmax(bbox[1], -most), most), &x[1], &y[1]);
+    return (camber_box){x[0], bound(y[0]), x[1] > x[0] ? x[1] : x[1] + 1.0, bound(y[1])};
+}
+
+static camber_status take_box(camber_context *context, const double bbox[4], camber_box *box) {
     for (int i = 0; i < 4; i++)
         if (!(fabs(bbox[i]) <= (i % 2 ? 90.0 : 180.0)))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT, "tiles: %g in a bbox; give west, south, east, north",
@@ -25,10 +34,7 @@ static camber_status take_box(camber_context *context, const double bbox[4], cam
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "tiles: the bbox %g,%g,%g,%g has no area; give west, south, east, north", bbox[0], bbox[1],
                            bbox[2], bbox[3]);
-    const double most = CAMBER_MERCATOR_LATITUDE;
-    camber_mercator_project(bbox[0], fmin(fmax(bbox[3], -most), most), &x[0], &y[0]);
-    camber_mercator_project(bbox[2], fmin(fmax(bbox[1], -most), most), &x[1], &y[1]);
-    *box = (camber_box){x[0], bound(y[0]), x[1] > x[0] ? x[1] : x[1] + 1.0, bound(y[1])};
+    *box = box_of(bbox);
     return CAMBER_OK;
 }
 
@@ -57,6 +63,11 @@ static camber_status take_list(camber_context *context, const camber_tiles_draw_
         area->max_zoom = place->zoom > area->max_zoom ? place->zoom : area->max_zoom;
     }
     qsort(area->tiles, area->tile_count, sizeof *area->tiles, compare_numbers);
+    size_t count = 0;
+    for (size_t i = 0; i < area->tile_count; i++)
+        if (count == 0 || area->tiles[i] != area->tiles[count - 1])
+            area->tiles[count++] = area->tiles[i];
+    area->tile_count = count;
     return CAMBER_OK;
 }
 
@@ -167,21 +178,14 @@ static bool meets_columns(const camber_box *box, double tiles, double column) {
 
 /* ---- An archive that is renewed ---- */
 
-static camber_box box_of(const double bounds[4]) {
-    const double most = CAMBER_MERCATOR_LATITUDE;
-    camber_box box;
-    camber_mercator_project(bounds[0], fmin(fmax(bounds[3], -most), most), &box.x0, &box.y0);
-    camber_mercator_project(bounds[2], fmin(fmax(bounds[1], -most), most), &box.x1, &box.y1);
-    return box;
-}
-
 size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoom, const double bounds[4]) {
     const camber_box box = bounds ? box_of(bounds) : WORLD;
     const size_t count = area->tile_count;
     area->tile_count = 0;
     for (size_t i = 0; i < count; i++) {
         const int zoom = camber_archive_zoom(area->tiles[i]);
-        const double tiles = exp2(zoom), slack = 1e-9 + 1e-6 / tiles; /* archives round bounds to 10^-7 degrees */
+        /* The bounds reach into each tile by a thousandth of it, and archives round them to 10^-7 degrees. */
+        const double tiles = exp2(zoom), slack = zoom > 21 ? 1e-9 : 0.0;
         const camber_box wide = {box.x0 - slack, box.y0 - slack, box.x1 + slack, box.y1 + slack};
         uint32_t column, row;
         camber_pmtiles_locate(area->tiles[i] - camber_archive_first(zoom), zoom, &column, &row);

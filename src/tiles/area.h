@@ -20,10 +20,10 @@ typedef struct camber_tiles_area {
  * camber_tiles_area_free frees also what a failure left. Returns CAMBER_ERROR_ARGUMENT, CAMBER_ERROR_MEMORY. */
 camber_status camber_tiles_area_make(camber_context *context, const camber_tiles_draw_desc *desc, camber_box data,
                                      camber_tiles_area *area);
-/* Leaves out what an archive is not to get: tiles of the list outside of its zooms and bounds, in degrees. NULL: it has
- * no bounds. Returns how many. */
+/* Leaves out tiles of the list outside of zooms and of bounds in degrees. NULL: there are no bounds. Returns how many.
+ */
 size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoom, const double bounds[4]);
-/* Whether bounds, in degrees, have a part of the data. */
+/* Whether bounds, in degrees, meet the data's box. */
 bool camber_tiles_bounds_meet(const double bounds[4], camber_box data);
 void camber_tiles_area_free(camber_tiles_area *area);
 /* The tiles of a metatile that are wanted, as bits of camber_metatile. */

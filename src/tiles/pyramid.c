@@ -75,7 +75,6 @@ static camber_status write_job(pyramid *p, const camber_encode_job *job) {
                                                tile->size_bytes);
         else if (p->renewed)
             status = camber_archive_writer_remove(p->writer, picture->zoom, tile_of(picture, bit));
-        p->stats.emptied += p->renewed && !tile->size_bytes;
         p->stats.tiles += tile->size_bytes > 0;
         p->stats.background += tile->size_bytes == 0;
         p->stats.bytes += tile->size_bytes;
@@ -140,13 +139,15 @@ static camber_status write_blanks(pyramid *p, const camber_tile_task *task, cons
         if (!(task->wanted >> bit & 1))
             continue;
         const camber_tile_index tile = tile_of(picture, bit);
-        status = keeps ? camber_archive_writer_add(p->writer, task->zoom, tile, p->blank, p->blank_bytes)
-                       : camber_archive_writer_remove(p->writer, task->zoom, tile);
+        if (!p->desc->dry_run)
+            status = keeps ? camber_archive_writer_add(p->writer, task->zoom, tile, p->blank, p->blank_bytes)
+                           : camber_archive_writer_remove(p->writer, task->zoom, tile);
         p->stats.tiles += keeps;
-        p->stats.emptied += !keeps;
         p->stats.bytes += keeps ? p->blank_bytes : 0;
     }
-    return status == CAMBER_OK ? camber_archive_writer_end_unit(p->writer, unit_of(task, picture->side)) : status;
+    return status == CAMBER_OK && !p->desc->dry_run
+               ? camber_archive_writer_end_unit(p->writer, unit_of(task, picture->side))
+               : status;
 }
 
 /* ---- Drawing ---- */
@@ -340,37 +341,24 @@ static camber_tile_type type_of(const pyramid *p) {
                                               : CAMBER_TILE_PNG;
 }
 
-static camber_status fail_renewed(const pyramid *p, const char *names) {
-    return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                       "%s: differs in its %s; renew it with the options that it was drawn with, or draw it anew",
-                       p->desc->output, names);
-}
-
 /* Makes the description of what the archive whose tiles are replaced becomes. */
-static camber_status describe_renewed(pyramid *p, camber_archive_desc *whole) {
-    char names[128], own[CAMBER_FINGERPRINT_SIZE];
+static void describe_renewed(const pyramid *p, camber_archive_desc *whole) {
     const camber_archive *there = p->renewed;
-    if (!there->fingerprint)
-        return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                           "%s: does not say what it is made of, so its tiles cannot be renewed; draw it anew",
-                           p->desc->output);
-    if (there->type != whole->type)
-        return fail_renewed(p, "format");
-    if (!camber_fingerprint_renew(there->fingerprint, p->fingerprint, own, names, sizeof names))
-        return fail_renewed(p, names);
-    memcpy(p->fingerprint, own, sizeof own);
+    const double asked[4] = {whole->bounds[0], whole->bounds[1], whole->bounds[2], whole->bounds[3]};
     whole->force = true;
     whole->resume = false;
     whole->min_zoom = there->min_zoom;
     whole->max_zoom = there->max_zoom;
     if (there->has_bounds)
         memcpy(whole->bounds, there->bounds, sizeof whole->bounds);
+    /* A box or a region that was asked for says where else tiles may come. */
+    for (int i = 0; i < 4 && there->has_bounds && (p->desc->has_bbox || p->desc->region); i++)
+        whole->bounds[i] = i < 2 ? fmin(whole->bounds[i], asked[i]) : fmax(whole->bounds[i], asked[i]);
     whole->center = there->center;
     whole->center.zoom = there->whole_center_zoom;
     whole->metadata = there->metadata;
     whole->shard = there->shard;
     whole->shards = there->shards;
-    return CAMBER_OK;
 }
 
 static camber_status open_writer(pyramid *p) {
@@ -394,8 +382,8 @@ static camber_status open_writer(pyramid *p) {
         status = camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
                              "%s: its name tells no format; name it .pmtiles, .mbtiles, or a folder with a slash",
                              desc->output);
-    if (status == CAMBER_OK && desc->renew)
-        status = describe_renewed(p, &whole);
+    if (desc->renew)
+        describe_renewed(p, &whole);
     if (status == CAMBER_OK)
         status = camber_archive_writer_create(p->context, &whole, &p->writer);
     if (status == CAMBER_OK && p->renewed)
@@ -419,6 +407,8 @@ static camber_status draw_archive(pyramid *p) {
     const double drawn_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = camber_archive_writer_finish(p->writer);
+    if (status == CAMBER_OK)
+        p->stats.emptied = camber_archive_writer_get_removed(p->writer);
     p->stats.write_ms += camber_now_ms() - drawn_ms;
     return status;
 }
@@ -430,9 +420,9 @@ static camber_status check_desc(const pyramid *p) {
     if (desc->shards && (desc->shard < 1 || desc->shard > desc->shards))
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT, "tiles: part %u of %u; choose 1 to %u", desc->shard,
                            desc->shards, desc->shards);
-    if (desc->renew && (desc->shards || desc->resume))
+    if (desc->renew && (desc->shards || desc->resume || desc->dry_run || desc->schedule))
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
-                           "tiles: an archive is renewed at once; leave out shards and resuming");
+                           "tiles: an archive is renewed at once; leave out shards, resuming, dry runs and schedules");
     if (p->engine->desc.on_demand_side)
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: the engine draws tiles on demand; make one without on_demand_side");
@@ -461,19 +451,44 @@ static camber_status save_schedule(pyramid *p, uint64_t input, camber_box data) 
     return status == CAMBER_OK ? camber_schedule_write(&whole, desc->schedule_path, desc->force) : status;
 }
 
-/* Opens the archive whose tiles are replaced, and keeps to what it may have. */
-static camber_status open_renewed(pyramid *p, camber_box data) {
+static camber_status fail_renewed(const pyramid *p, const char *names) {
+    return camber_fail(p->context, CAMBER_ERROR_INPUT,
+                       "%s: differs in its %s; renew it with the options that it was drawn with, or draw it anew",
+                       p->desc->output, names);
+}
+
+/* Opens the archive whose tiles are replaced, and looks whether this run may. */
+static camber_status open_renewed(pyramid *p) {
+    char names[128], own[CAMBER_FINGERPRINT_SIZE];
     const camber_status status = camber_archive_open(p->context, p->desc->output, &p->renewed);
     if (status != CAMBER_OK)
         return status;
     const camber_archive *there = p->renewed;
-    const double *bounds = there->has_bounds ? there->bounds : NULL;
-    if (bounds && !camber_tiles_bounds_meet(bounds, data))
+    if (!there->fingerprint)
         return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                           "%s: the input has nothing where its tiles are, and they would go; give what it was drawn "
-                           "of, or draw it anew",
+                           "%s: does not say what it is made of, so its tiles cannot be renewed; draw it anew",
                            p->desc->output);
-    p->stats.left_out = camber_tiles_area_keep(&p->area, there->min_zoom, there->max_zoom, bounds);
+    if (there->type != type_of(p))
+        return fail_renewed(p, "format");
+    if (!camber_fingerprint_renew(there->fingerprint, p->fingerprint, own, names, sizeof names))
+        return fail_renewed(p, names);
+    memcpy(p->fingerprint, own, sizeof own);
+    return CAMBER_OK;
+}
+
+/* Keeps a list to what the archive is to have: to its own zooms and bounds, where the caller names no others. */
+static camber_status keep_list(pyramid *p, camber_box data) {
+    const camber_archive *there = p->renewed;
+    const camber_tiles_draw_desc *desc = p->desc;
+    const bool zooms_asked = desc->min_zoom >= 0, box_asked = desc->has_bbox || desc->region;
+    const double *bounds = there->has_bounds && !box_asked ? there->bounds : NULL;
+    if (there->has_bounds && !camber_tiles_bounds_meet(there->bounds, data))
+        return camber_fail(p->context, CAMBER_ERROR_INPUT,
+                           "%s: the input lies outside of its bounds, and its tiles would go; give what it was drawn "
+                           "of, or draw it anew",
+                           desc->output);
+    p->stats.left_out = camber_tiles_area_keep(&p->area, zooms_asked ? desc->min_zoom : there->min_zoom,
+                                               zooms_asked ? desc->max_zoom : there->max_zoom, bounds);
     p->stats.done = p->area.tile_count == 0;
     return CAMBER_OK;
 }
@@ -485,11 +500,15 @@ static camber_status make_schedule(pyramid *p) {
     const uint64_t input = camber_features_hash(p->engine->features, &data);
     p->stats.census_ms += camber_now_ms() - start_ms;
     camber_status status = camber_tiles_area_make(p->context, p->desc, data, &p->area);
-    if (status == CAMBER_OK && p->desc->renew)
-        status = open_renewed(p, data);
-    if (status != CAMBER_OK || p->stats.done)
+    if (status != CAMBER_OK)
         return status;
     camber_fingerprint_write(p->engine, p->desc, &p->area, input, p->fingerprint);
+    if (p->desc->renew)
+        status = open_renewed(p);
+    if (status == CAMBER_OK && p->desc->renew && p->desc->tile_count)
+        status = keep_list(p, data);
+    if (status != CAMBER_OK || p->stats.done)
+        return status;
     status = camber_schedule_make(p->engine, &p->area, p->desc->keep_empty || p->desc->renew, &p->schedule);
     return status == CAMBER_OK && p->desc->dry_run && p->desc->schedule_path ? save_schedule(p, input, data) : status;
 }

@@ -409,7 +409,7 @@ def test_stopped():
         time.sleep(0.005)
     child.send_signal(signal.SIGINT)
     told = child.communicate()[1]
-    expect("what is finished is kept in kept.pmtiles.camber-tiles; --resume goes on" in told, told)
+    expect("--resume goes on with what is finished, which is kept in kept.pmtiles.camber-tiles" in told, told)
 
 
 def test_other_run():
@@ -452,7 +452,8 @@ def test_renew():
     listed = [(ZOOM, COLUMN + 2, ROW + 1), (ZOOM, COLUMN - 3, ROW - 2), (ZOOM, COLUMN + 20, ROW)]
     with open("list", "w") as file:
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
-    tiles(*options, "-o", "map.mbtiles", "--tiles", "list")
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "list").stderr
+    expect(re.search(r"^1 tile taken out", said, re.M) and "1 tile of the list lies outside" in said, said)
     made = archive("map.mbtiles")
     wanted = {**old, **{key: new.get(key) for key in listed}}
     expect(made == {key: data for key, data in wanted.items() if data}, "renewed tiles, and no others, are new")
@@ -463,7 +464,7 @@ def test_renew():
         tiles(*options, "-o", name, "--tiles", "list")
         expect(archive(name) == new, "all tiles renewed are not all tiles drawn")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "list").stderr
-    expect(re.search(r"\d+ tiles of the list have nothing now", said) and "left out" not in said, said)
+    expect("taken out" not in said and "left out" not in said, said)
     with open("outside", "w") as file:
         file.write(f"{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2000}/{ROW}\n2/1/1\n")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside").stderr
@@ -473,10 +474,27 @@ def test_renew():
         file.write("2/1/1\n")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside").stderr
     expect("1 tile of the list lies outside" in said and "nothing to renew" in said, said)
+    # Zooms that are named, or a box: they say what the archive is to have.
+    with open("outside", "w") as file:
+        file.write(f"2/2/1\n{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2}/{ROW + 1}\n")
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside", *RANGE).stderr
+    expect("1 tile of the list lies outside" in said and archive("map.mbtiles") == new, said)
+    tiles(*options, "-o", "wider.mbtiles", *RANGE)
+    said = camber("tiles", *options, "-o", "wider.mbtiles", "--tiles", "outside", "--min-zoom", 0, "--max-zoom", 20).stderr
+    expect("outside" not in said and (2, 2, 1) in archive("wider.mbtiles"), said)
+    write_lines("far.geojson", after + [(1, [(COLUMN + 31.5, ROW + 1.5), (COLUMN + 33.5, ROW + 1.5)])])
+    with open("outside", "w") as file:
+        file.write(f"{ZOOM}/{COLUMN + 32}/{ROW + 1}\n")
+    far, box = ("far.geojson", *options[1:]), [*place(COLUMN - 50, ROW + 50), *place(COLUMN + 50, ROW - 50)]
+    said = camber("tiles", *far, "-o", "wider.mbtiles", "--tiles", "outside").stderr
+    expect("nothing to renew" in said and (ZOOM, COLUMN + 32, ROW + 1) not in archive("wider.mbtiles"), said)
+    tiles(*far, "-o", "wider.mbtiles", "--tiles", "outside", "--bbox", ",".join(map(str, box)))
+    expect((ZOOM, COLUMN + 32, ROW + 1) in archive("wider.mbtiles"), "a tile of the box that is named")
+    camber("tiles", "verify", "wider.mbtiles")
     # Another input, by mistake: it would empty the archive.
     write_lines("far.geojson", [(1, [(COLUMN + 901.5, ROW + 1.5), (COLUMN + 903.5, ROW + 1.5)])])
     said = tiles("far.geojson", *options[1:], "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
-    expect("nothing where its tiles are" in said and archive("map.mbtiles") == new, said)
+    expect("lies outside of its bounds" in said and archive("map.mbtiles") == new, said)
     with open("list", "w") as file:
         file.write("13/1/1\n13/1\n")
     line = tiles(*options, "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
@@ -526,6 +544,7 @@ def test_area():
     tiles("lines.geojson", "-o", "some.mbtiles", "--style", style,
           *(word for z, x, y in some for word in ("--tile", f"{z}/{x}/{y}")))
     expect(archive("some.mbtiles") == {key: whole[key] for key in some}, "--tile: other tiles")
+    camber("tiles", "lines.geojson", "-o", "dry.mbtiles", *one, "--dry-run", "--keep-empty", "--bbox", "-20,20,40,70")
     told = json.loads(camber("tiles", "lines.geojson", "-o", "dry.mbtiles", *one, "--dry-run", "--json").stdout)
     size = sum(len(data) for data in whole.values())
     expect(not os.path.exists("dry.mbtiles") and len(whole) <= told["tiles"] < 1.2 * len(whole), told)

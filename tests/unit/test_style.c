@@ -356,7 +356,8 @@ static void check_city(const camber_style *style) {
         {"", "building=no", ""},
         {"building", "", "tiles-building"},
         {"", "highway=pedestrian", "plaza"},
-        {"", "highway=residential", ""},
+        {"", "highway=residential", "plaza"},
+        {"", "highway=motorway", ""},
         {"", "natural=coastline", ""},
     };
     static const struct {

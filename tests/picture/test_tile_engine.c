@@ -348,12 +348,42 @@ static void test_spent(void **state) {
     folder_remove(folder);
 }
 
+/* Renewing without a list draws all of the zooms, and of the same lines makes the same bytes. It is done at once. */
+static void test_renewed(void **state) {
+    fixture *s = *state;
+    char folder[64], path[128];
+    size_t sizes[2];
+    double line[4] = {0.4, 0.4, 0.6, 0.5};
+    camber_tiles_stats stats;
+    made_map map;
+    folder_make(folder);
+    snprintf(path, sizeof path, "%s/x.pmtiles", folder);
+    map_open(&map, s, WIDE);
+    map_add(&map, line, 2);
+    map_start(&map, s, 0);
+    camber_tiles_draw_desc desc = {.output = path, .max_zoom = 7, .encoding = CAMBER_ENCODING_PNG};
+    assert_int_equal(camber_tiles_draw(map.engine, &desc, NULL), CAMBER_OK);
+    uint8_t *before = read_archive(path, &sizes[0]);
+    desc.renew = true;
+    assert_int_equal(camber_tiles_draw(map.engine, &desc, &stats), CAMBER_OK);
+    uint8_t *after = read_archive(path, &sizes[1]);
+    assert_true(stats.tiles > 8 && stats.emptied == 0 && stats.left_out == 0 && !stats.done);
+    assert_true(sizes[0] == sizes[1] && memcmp(before, after, sizes[0]) == 0);
+    desc.dry_run = true;
+    assert_int_equal(camber_tiles_draw(map.engine, &desc, NULL), CAMBER_ERROR_ARGUMENT);
+    assert_story(&s->h, "dry runs");
+    map_close(&map);
+    folder_remove(folder);
+    free(after);
+    free(before);
+}
+
 int main(void) {
     if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_empty),     cmocka_unit_test(test_cuts),
                                        cmocka_unit_test(test_on_demand), cmocka_unit_test(test_antimeridian),
                                        cmocka_unit_test(test_bad),       cmocka_unit_test(test_no_memory),
-                                       cmocka_unit_test(test_spent)};
+                                       cmocka_unit_test(test_spent),     cmocka_unit_test(test_renewed)};
     return cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
 }

@@ -23,7 +23,7 @@
 static const double PICTURE_US = 1.3e3, TILE_US = 120.0, POINT_US = 0.58;
 /* A part that has a wide metatile holds all points. If it has deep ones, too, it looks at all of them for each of their
  * zooms. What it looks at for wide zooms is in POINT_US: a metatile of them has much of the points. */
-static const double LOOK_US = 0.03;
+static const double LOOK_US = 0.024;
 /* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A zoom is wide if one metatile has more of its points than this share. */

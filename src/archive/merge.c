@@ -49,6 +49,12 @@ static void compare_numbers(merging *m, const char *name, const char *before, co
     }
 }
 
+static void compare_sizes(merging *m) {
+    compare_numbers(m, "tileSize", "", " px");
+    if (!m->troubles[0])
+        compare_numbers(m, "ratio", "ratio ", "");
+}
+
 static void compare_parts(merging *m, const camber_archive *first, const camber_archive *part) {
     if (part->type != first->type)
         add_trouble(m, "%s has tiles of type %s, not %s as %s", part->path, camber_tile_type_get_name(part->type),
@@ -104,9 +110,7 @@ static camber_status check_parts(merging *m) {
     if (m->parts[0]->shards)
         count_shards(m);
     else
-        compare_numbers(m, "tileSize", "", " px");
-    if (!m->parts[0]->shards && !m->troubles[0])
-        compare_numbers(m, "ratio", "ratio ", "");
+        compare_sizes(m);
     if (!m->troubles[0])
         return CAMBER_OK;
     return camber_fail(m->context, CAMBER_ERROR_INPUT, "%s: cannot be merged: %s; give %s", m->desc->output,

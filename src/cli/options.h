@@ -77,6 +77,7 @@ typedef struct camber_options {
     uint32_t quality;      /* WebP's, 1 to 100. 0: the library's default */
     uint32_t runs;
     uint32_t windows; /* windows of each picture that are compared with exact coverage */
+    const char *only; /* part of the names of the groups of checks that are made. NULL: all */
     /* Tiles: */
     uint32_t min_zoom, max_zoom;
     bool has_zooms;             /* at least one of them was given */

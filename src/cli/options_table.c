@@ -190,6 +190,8 @@ const camber_option_spec camber_option_specs[] = {
     {"pictures", 0, CAMBER_OPTION_FOLDER, VALIDATE, FIELD(pictures), "FOLDER", "write a PNG of each failure"},
     {"full", 0, CAMBER_OPTION_FLAG, VALIDATE, FIELD(full), NULL,
      "also draw with every method, join and cap, and with 1, 8 and 16 lanes; three minutes"},
+    {"only", 0, CAMBER_OPTION_TEXT, VALIDATE, FIELD(only), "TEXT",
+     "make only the groups of checks whose name has this"},
     {"windows", 0, CAMBER_OPTION_COUNT, VALIDATE, FIELD(windows), "N",
      "windows of each picture to compare with exact coverage (24)", 8, 100000},
     {"json", 0, CAMBER_OPTION_FLAG, TALKING, FIELD(json), NULL, "print one JSON object to standard output"},

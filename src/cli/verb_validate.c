@@ -55,6 +55,7 @@ static camber_validation_desc describe(run *r) {
         .full = options->full,
         .coverage = (camber_coverage)options->coverage,
         .windows = options->windows,
+        .only = options->only,
     };
 }
 
@@ -134,7 +135,11 @@ static int check(run *r) {
     camber_report_erase_bar(session->report);
     if (checked == CAMBER_OK && r->validation.results.full)
         checked = CAMBER_ERROR_MEMORY;
-    const int status = r->folder.exit_status ? r->folder.exit_status : camber_report_status(session->report, checked);
+    int status = r->folder.exit_status ? r->folder.exit_status : camber_report_status(session->report, checked);
+    if (status == CAMBER_EXIT_DONE && !r->validation.results.wanted)
+        status = camber_report_fail(
+            session->report, CAMBER_EXIT_USAGE,
+            "--only %s: no group of checks has that in its name; without it each group is a line", options->only);
     if (status != CAMBER_EXIT_DONE && !options->json)
         camber_tap_bail();
     return status;

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 static double now_ms(void) {
@@ -28,12 +29,15 @@ void camber_results_end(camber_results *results) {
     results->group_first = results->count;
 }
 
-void camber_results_group(camber_results *results, const char *format, ...) {
+bool camber_results_group(camber_results *results, const char *format, ...) {
     va_list list;
     camber_results_end(results);
     va_start(list, format);
     vsnprintf(results->group, sizeof results->group, format, list);
     va_end(list);
+    const bool wanted = !results->only || strstr(results->group, results->only);
+    results->wanted += wanted;
+    return wanted;
 }
 
 /* ---- Checks ---- */

@@ -68,6 +68,8 @@ typedef struct camber_results_listener {
 
 struct camber_results {
     camber_results_listener listener;
+    const char *only;   /* part of the names of the groups that are wanted. NULL: all are */
+    size_t wanted;      /* groups so far */
     char group[256];    /* name of the group under way; "": none is open */
     size_t group_first; /* its first check */
     camber_check *list; /* count */
@@ -82,8 +84,8 @@ typedef struct camber_value_text {
 
 camber_value_text camber_value_print(double value);
 
-/* Ends the group before it: what is added from now on belongs to this one. */
-void camber_results_group(camber_results *results, const char *format, ...) CAMBER_RESULTS_FORMAT(2, 3);
+/* Ends the group before it: what is added from now on belongs to this one. Whether it is wanted. */
+bool camber_results_group(camber_results *results, const char *format, ...) CAMBER_RESULTS_FORMAT(2, 3);
 /* Ends the last group. */
 void camber_results_end(camber_results *results);
 /* Starts a check on a device and a back end, NULL where there is none: its clock and its name. */

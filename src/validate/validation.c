@@ -3,16 +3,17 @@
 #include "validate/checks.h"
 #include "validate/scenes.h"
 
-static camber_status check_subject(camber_validation *v, const camber_subject *s) {
-    camber_results_group(&v->results, "%s: meshes as the CPU twin's", s->name);
-    camber_status status = camber_check_meshes(v, s);
-    camber_results_group(&v->results, "%s: pictures as the CPU twin's", s->name);
-    if (status == CAMBER_OK)
+#define NETWORKS "%s: networks under five cameras" /* a group's name */
+
+static camber_status check_lines(camber_validation *v, const camber_subject *s) {
+    camber_results *results = &v->results;
+    camber_status status = CAMBER_OK;
+    if (camber_results_group(results, "%s: meshes as the CPU twin's", s->name))
+        status = camber_check_meshes(v, s);
+    if (status == CAMBER_OK && camber_results_group(results, "%s: pictures as the CPU twin's", s->name))
         status = camber_check_drawing(v, s);
-    camber_results_group(&v->results, "%s: pixels as the oracle's", s->name);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && camber_results_group(results, "%s: pixels as the oracle's", s->name))
         status = camber_check_pixels(v, s);
-    camber_results_group(&v->results, "%s: networks under five cameras", s->name);
     return status;
 }
 
@@ -54,8 +55,8 @@ static camber_status check_scene(camber_validation *v, size_t number) {
             .width = CAMBER_SCENE_SIDE_PX,
             .height = CAMBER_SCENE_SIDE_PX,
         };
-        status = check_subject(v, &s);
-        if (status == CAMBER_OK)
+        status = check_lines(v, &s);
+        if (status == CAMBER_OK && camber_results_group(&v->results, NETWORKS, s.name))
             status = camber_check_networks(v, &s, NULL, NULL, NULL);
     }
     camber_polylines_destroy(polylines);
@@ -64,11 +65,11 @@ static camber_status check_scene(camber_validation *v, size_t number) {
 }
 
 static camber_status check_input(camber_validation *v, const camber_validation_input *input) {
-    camber_status status = check_subject(v, &input->subject);
-    if (status == CAMBER_OK)
+    const char *name = input->subject.name;
+    camber_status status = check_lines(v, &input->subject);
+    if (status == CAMBER_OK && camber_results_group(&v->results, NETWORKS, name))
         status = camber_check_networks(v, &input->subject, input->network, &input->camera, &input->strokes);
-    camber_results_group(&v->results, "%s: areas", input->subject.name);
-    if (status == CAMBER_OK && input->frame.pass_count)
+    if (status == CAMBER_OK && input->frame.pass_count && camber_results_group(&v->results, "%s: areas", name))
         status = camber_check_areas(v, &input->map, &input->frame);
     return status;
 }
@@ -76,7 +77,7 @@ static camber_status check_input(camber_validation *v, const camber_validation_i
 camber_status camber_validation_run(camber_validation *v, const camber_validation_desc *desc,
                                     const camber_validation_input *input) {
     const size_t count = input ? 1 : camber_checked_scene_count();
-    *v = (camber_validation){.desc = desc, .results.listener = desc->listener};
+    *v = (camber_validation){.desc = desc, .results = {.listener = desc->listener, .only = desc->only}};
     camber_results_group(&v->results, "devices and back ends");
     camber_status status = camber_checked_devices_open(v);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
@@ -84,11 +85,9 @@ camber_status camber_validation_run(camber_validation *v, const camber_validatio
             desc->host.progress(desc->host.user, (double)i / (double)count);
         status = input ? check_input(v, input) : check_scene(v, i);
     }
-    camber_results_group(&v->results, "lines beside others");
-    if (status == CAMBER_OK && !input)
+    if (status == CAMBER_OK && !input && camber_results_group(&v->results, "lines beside others"))
         status = camber_check_offsets(v);
-    camber_results_group(&v->results, "along lines: pixels");
-    if (status == CAMBER_OK && !input)
+    if (status == CAMBER_OK && !input && camber_results_group(&v->results, "along lines: pixels"))
         status = camber_check_along(v);
     camber_results_end(&v->results);
     return status;

@@ -38,6 +38,7 @@ typedef struct camber_validation_desc {
     bool full; /* by every method, with every join and cap on each back end, and with 1, 8 and 16 lanes */
     camber_coverage coverage;
     uint32_t windows; /* of each picture, that are held against the oracle */
+    const char *only; /* part of the names of the groups that are checked. NULL: all */
 } camber_validation_desc;
 
 /* Polylines and how they are checked. */

@@ -42,21 +42,24 @@ restore() { # FILE
     cp -p "$sources/$1" "$tmp/sources/$1"
 }
 
-# Runs validate; its report is in $tmp/tap. One back end and half of the windows tell as much.
+# Runs validate; its report is in $tmp/tap. One back end and half of the windows tell as much, and a row names the group of
+# checks that tells, so that the others need not run.
 backend=auto
 drawer=()
 level=(--full)
-validate() {
-    local drawn=(--backend "$backend")
+group=
+run_validate() { # ARGUMENT...
+    local drawn=(--backend "$backend") chosen=()
     [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
-    "$tmp/build/src/camber" validate "${level[@]}" -v --windows 12 "${drawn[@]}" "$@" >"$tmp/tap" 2>"$tmp/stderr"
+    [ -z "$group" ] || chosen=(--only "$group")
+    exec "$tmp/build/src/camber" validate "${level[@]}" "${chosen[@]}" -v --windows 12 "${drawn[@]}" "$@" 2>"$tmp/stderr"
 }
+validate() { (run_validate "$@" >"$tmp/tap"); }
 
 # As validate, but no further than the first check that fails: a row needs one. Ends with 1 there too.
 validate_until_failure() {
-    local drawn=(--backend "$backend") process
-    [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
-    "$tmp/build/src/camber" validate "${level[@]}" -v --windows 12 "${drawn[@]}" "$@" >"$tmp/pipe" 2>"$tmp/stderr" &
+    local process
+    run_validate "$@" >"$tmp/pipe" &
     process=$!
     if awk '{ print } /^not ok/ { failed = 1 } failed && /^  [.][.][.]$/ { exit } END { exit !failed }' \
         <"$tmp/pipe" >"$tmp/tap"; then
@@ -75,7 +78,7 @@ look_at_failures() { # FILE METHOD
     [ "$(head -c 4 "${picture:-/dev/null}" | tail -c 3)" = PNG ] || fail "$1: no picture: '$picture'"
     [ "$(find "$tmp/pictures" -name '*.png' | wc -l)" -le 32 ] || fail "$1: more than 32 pictures"
     [ "$(grep -c '<failure ' "$tmp/junit.xml")" = "$(grep -c '^not ok' "$tmp/tap")" ] || fail "$1: JUnit has other failures"
-    "$tmp/build/src/camber" validate --full --windows 12 --backend $backend --method "$2" --json >"$tmp/json" 2>"$tmp/stderr"
+    (run_validate --method "$2" --json >"$tmp/json")
     [ $? = 1 ] || fail "$1: another exit status with --json"
     for member in '"stage": "' '"polyline": [0-9]' '"point": [0-9]' '"field": "' '"got": ' '"expected": ' '"difference": "'; do
         grep -q "$member" "$tmp/json" || fail "$1: the JSON lacks $member"
@@ -164,6 +167,7 @@ build_whole() {
 
 # ---- Kernels: the twin tells ----
 
+group=': meshes'
 mutant strip kernels/classify.cl "a neighbour off by one" 'x_before[i - 1]' 'x_before[i]'
 mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST)' \
     'point & CAMBER_POINT_FIRST'
@@ -185,6 +189,7 @@ mutant strip kernels/offset_clip.cl "what is left of a neighbour" 'camber_offset
 
 # ---- Offsets, which kernels and twin share: where points lie tells ----
 
+group='lines beside'
 mutant strip kernels/offset.h "to the other side" 'segment->ux * along - segment->uy * offset' 'segment->ux * along + segment->uy * offset'
 mutant strip kernels/offset.h "bends that hide nothing" 'return room;' 'return 0.0f;'
 mutant strip kernels/offset_clip.h "lines that hide nothing" 'if (lo >= segment->length || hi <= 0.0f)' 'if (lo < segment->length)'
@@ -192,6 +197,7 @@ mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_OFFSET_ARC
 
 # ---- Join maths, which kernels and twin share: pixels tell ----
 
+group=pixels
 mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'
 mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
@@ -203,6 +209,7 @@ mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x <
 
 # ---- Networks: the twin tells of the cull stages, pixels and the window of what they share with it ----
 
+group=networks
 mutant strip kernels/cull_count.cl "chunks that are not counted" 'counts[item] = w.at' 'counts[item] = chunk % 7u == 5u ? 0u : w.at'
 mutant strip kernels/cull_emit.cl "x in the place of y" '{x, y, importance, slot_x' '{y, x, importance, slot_x'
 mutant strip kernels/cull_emit.cl "chunks that skip where there is something" 'bases[item + 1u] > bases[item]' \
@@ -229,6 +236,7 @@ mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' 
 
 # ---- Shaders ----
 
+group=pixels
 mutant strip shaders/stroke.vert "cuts at the tangent of another angle" 'return 2.0 * q / ' 'return q / '
 mutant strip shaders/stroke.vert "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
 mutant strip shaders/stroke.vert "butt ends without a pad" '? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX, side' '? 0.0 : CAMBER_NO_LIMIT_PX, side'
@@ -260,6 +268,13 @@ mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 
     'in_y = CAMBER_FABS(at->y) * scale'
 mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area * (1.0 - area)), area, area)' \
     'area * (1.0 - area)), 0.0, area)'
+mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
+    'cosine > 0.0f ? apart : more'
+mutant strip kernels/union.h "united lines: every two edges face alike" 'weight = CAMBER_FABS(cosine)' 'weight = one'
+mutant strip kernels/union.h "united lines: one over the other" 'weight = CAMBER_FABS(cosine)' 'weight = none'
+
+# Areas, paints along lines, and bands beside them.
+group='along lines'
 mutant strip kernels/area.h "areas: edges through a tile's left side" 't->turn = enters ? -e->down' 't->turn = enters ? 0.0f * e->down'
 mutant strip kernels/area.h "areas: pixels that an edge enters" 'rise * inner * inner' '0.0f * rise * inner'
 mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : sum' \
@@ -267,12 +282,6 @@ mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : su
 mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
-mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
-    'cosine > 0.0f ? apart : more'
-mutant strip kernels/union.h "united lines: every two edges face alike" 'weight = CAMBER_FABS(cosine)' 'weight = one'
-mutant strip kernels/union.h "united lines: one over the other" 'weight = CAMBER_FABS(cosine)' 'weight = none'
-
-# Paints along lines, and bands beside them.
 mutant strip kernels/features.h "gaps that are not cut out" 'area > gap ? area - gap' 'area > gap ? area'
 mutant strip kernels/features.h "a fade half as wide" '(e->blur + 1.0f)' '(0.5f * e->blur + 1.0f)'
 mutant strip kernels/features.h "dashes that do not end" 'camber_cut_along(p, at, place - CAMBER_DASH_TO(e, i))' '0.0f'
@@ -293,6 +302,7 @@ mutant strip kernels/emit.cl "arc lengths of the neighbour" 'as_uint(arc_lengths
 
 drawer=(--draw cl)
 level=()
+group=pictures
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
 mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &e->before)' 'first, r, &e->before)'
@@ -324,6 +334,7 @@ mutant strip kernels/rasterize.cl "areas: tiles that forget the corner" 'c.windi
 
 # ---- Coverage, tiles and cells, which these kernels and their twin share: pixels tell ----
 
+group=pixels
 mutant strip kernels/segment.h "areas: edges that no row of tiles knows" '? 0u : CAMBER_BOX_FIRST_Y(box) + 1u' \
     '? 0u : CAMBER_BOX_LAST_Y(box) + 1u'
 mutant strip kernels/tile_state.h "cells that are done too early" 'camber_most_of(most) < CAMBER_NOTHING_PX' \

@@ -418,6 +418,9 @@ static void compare_lanes(const fixture *e, uint32_t lanes) {
 
 /* The lanes that the device itself has are those of all other tests. */
 static void test_lanes(void **state) {
+#ifdef __SANITIZE_ADDRESS__ /* which knows nothing of kernels, and the twin has one lane */
+    skip();
+#endif
     const fixture *e = *state;
     if (camber_device_get_info(e->on.device).type != CAMBER_DEVICE_TYPE_CPU)
         skip(); /* a GPU has one lane, and its compiler takes minutes over vectors */

@@ -615,13 +615,13 @@ is_json() {
 }
 
 lines=$tmp/in/lines.bin
-expect 0 "validate, a line a group" validate --polylines "$lines" --method strip --windows 8
+expect 0 "validate, a line a group" validate --polylines "$lines" --draw cl --method strip --windows 8
 passes 4
 has "$tmp/stdout" ': meshes as the CPU twin.s: [0-9]* checks' ': pictures as the CPU twin' ': pixels as the oracle' ': networks under five cameras'
 says ' checks in [0-9]* s: 0 failed, .*; --full '
 head -c 4 "$lines" >"$tmp/in/short.bin"
-expect 0 "validate" validate -v --method strip --windows 8 --junit built-in.xml --pictures pictures
-passes 100
+expect 0 "validate" validate -v --only roads --method strip --windows 8 --junit built-in.xml --pictures pictures
+passes 60
 has "$tmp/stdout" ': as the CPU twin, on ' ': the same bytes from run to run, on ' ': the same bytes in work-groups of 64, on ' \
     ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean ' ': network, zoomed out: strip: as the CPU twin, on ' \
     ': network, cut: strip: the same bytes in parts, on ' ': network, within a segment: no point far outside the picture' \
@@ -638,10 +638,15 @@ expect 73 "a JUnit file in no folder" validate --polylines "$lines" --junit none
 expect 73 "a folder as the JUnit file" validate --polylines "$lines" --junit "$tmp/in" -f
 expect 2 "JUnit to standard output" validate --junit -
 expect 2 "too few windows" validate --windows 7
+expect 2 "no such group of checks" validate --polylines "$lines" --only 'no such'
+says "^camber: --only no such: no group of checks has that in its name; "
+expect 0 "one group of checks" validate --polylines "$lines" --only ': meshes' --method strip
+has "$tmp/stdout" '^ok .*: meshes as the CPU twin.s: [0-9]* checks$'
+lacks "$tmp/stdout" ' as the oracle.s:\|networks under\|: pictures as'
 expect 73 "pictures into a file" validate --polylines "$lines" --pictures "$lines"
 expect 73 "pictures into a folder with files" validate --polylines "$lines" --pictures "$tmp/in"
 expect 73 "pictures into a folder in no folder" validate --polylines "$lines" --pictures none/pictures
-expect 0 "validate polylines" validate --polylines "$lines" --json --junit built-in.xml -f --windows 8
+expect 0 "validate polylines" validate --polylines "$lines" --json --junit built-in.xml -f --only pixels --windows 8
 is_json "$tmp/stdout"
 has "$tmp/stdout" '"checks": [1-9]' '"failed": 0' '"skipped": [0-9]' '"failures": \[\]' '"skips": \[' '"pixels": \[' \
     '"reason": ' '"bounds": ' '"mean": ' '"past_64": ' '"windows": 8'
@@ -657,40 +662,40 @@ has "$tmp/stdout" ': as styled, areas and lines: drawn as by the CPU twin, on ' 
     ': layer 5 of areas: strip, filled: pixels, on .*, EGL$' '^# .* pixels: mean '
 expect 0 "validate a style of lines alone" validate -v "$here/data/monaco/monaco.osm.pbf" --style roads --method strip --size 100x100 --draw cl
 lacks "$tmp/stdout" 'of areas\|as styled, areas'
-expect 0 "validate what kernels draw" validate -v --polylines "$lines" --draw cl --windows 8
-passes 12
+expect 0 "validate what kernels draw" validate -v --polylines "$lines" --draw cl --only pixels --windows 8
+passes 3
 has "$tmp/stdout" ': pixels, on .*, OpenCL$' ': united, on .*, OpenCL$'
 lacks "$tmp/stdout" 'EGL'
 lacks "$tmp/stdout" 'OSMesa'
-expect 0 "validate what GL draws" validate -v --polylines "$lines" --draw gl --method strip --windows 8
+expect 0 "validate what GL draws" validate -v --polylines "$lines" --draw gl --only pixels --method strip --windows 8
 lacks "$tmp/stdout" ', OpenCL$'
-expect 0 "validate both" validate -v --polylines "$lines" --method strip --windows 8
+expect 0 "validate both" validate -v --polylines "$lines" --only pixels --method strip --windows 8
 has "$tmp/stdout" ': OpenCL as E\|: OpenCL as O'
-run "${without_gl[@]}" "$tool" validate -v --polylines "$lines" --method strip --windows 8
+run "${without_gl[@]}" "$tool" validate -v --polylines "$lines" --only pixels --method strip --windows 8
 name="validate without GL"
 verify 0
-passes 12
+passes 5
 has "$tmp/stdout" ': pixels, on .*, OpenCL$' '^ok .* EGL # SKIP .' '^ok .* OSMesa # SKIP .'
 name="odd names"
 odd=$tmp/in/$'a#b\\<c>&"d\'\xff\n\x01.bin'
 cp "$lines" "$odd"
-run "$tool" validate -v --polylines "$odd" --method strip --windows 8 --junit odd.xml
+run "$tool" validate -v --polylines "$odd" --only meshes --method strip --windows 8 --junit odd.xml
 verify 0
 passes 12
 has "$tmp/stdout" 'a\\#b'
 is_xml odd.xml
 has odd.xml 'a#b' '&lt;c&gt;&amp;&quot;d'
 rm -f odd.xml "$odd"
-run env POCL_DEVICES='pthread pthread' "$tool" validate -v --polylines "$lines" --method strip --windows 8
+run env POCL_DEVICES='pthread pthread' "$tool" validate -v --polylines "$lines" --only meshes --method strip --windows 8
 name="two devices of one name"
 verify 0
 if grep -q 'twin, on pthread' "$tmp/stdout"; then
     has "$tmp/stdout" ': as the CPU twin, on pthread.* (2)$'
 fi
 name="no EGL"
-run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate -v --polylines "$lines" --method strip --windows 8
+run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate -v --polylines "$lines" --only pixels --method strip --windows 8
 verify 0
-passes 12
+passes 10
 if grep -q '^ok .* EGL # SKIP .' "$tmp/stdout"; then
     run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate --polylines "$lines" --backend egl
     name="no EGL, though asked for"

@@ -42,14 +42,10 @@ static inline bool camber_point_is_valid(const float *point) {
 camber_status camber_polylines_begin(camber_context *context, size_t slots, size_t polyline_count,
                                      camber_polylines **polylines);
 
-/* Puts a ring of points, whose last is not the first again; turned: from the last to the first. false, and nothing is
- * put: there are less than three, one is invalid, or one repeats the one before. */
-bool camber_polylines_put_ring(camber_polylines *polylines, size_t polyline, const float *points, size_t count,
-                               bool turned, uint32_t row);
-
-/* Puts valid points; a ring if the last is the first again. */
-void camber_polylines_put_closed(camber_polylines *polylines, size_t polyline, const float *points, size_t count,
-                                 uint32_t row);
+/* Puts a ring of points, whose last is not the first again: an outer ring clockwise as seen, a hole the other way.
+ * Invalid points, and those that repeat the one before, are dropped. */
+void camber_polylines_put_ring(camber_polylines *polylines, size_t polyline, const float *points, size_t count,
+                               bool is_hole, uint32_t row);
 
 void camber_polylines_end(camber_polylines *polylines);
 

@@ -15,8 +15,9 @@
 #include <assert.h>
 #include <string.h>
 
-/* Points of a bundle: few enough that it stays in the first cache while it is put and looked at. */
-enum { BUNDLE_POINTS = 1024 };
+/* Points of a bundle: few enough that it stays in the first cache while it is put and looked at. And how far ahead of a
+ * ring's points memory is asked for what follows, which mostly is the next ring. */
+enum { BUNDLE_POINTS = 1024, AHEAD_POINTS = 256 };
 
 /* Points within 1e-9 px count as one. */
 static const float REPEATED_PX2 = 1e-18f;
@@ -129,15 +130,6 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
     }
 }
 
-void camber_polylines_put_closed(camber_polylines *p, size_t polyline, const float *points, size_t count,
-                                 uint32_t row) {
-    set_row(p, polyline, row);
-    p->stats.points += count;
-    p->stats.empty_polylines += count == 0;
-    if (count > 0)
-        put_stretch(p, points, count, row, true);
-}
-
 /* ---- Bundles of open polylines ---- */
 
 /* The end of the bundle of one row that begins with a polyline; the polyline itself where it is empty or closed. */
@@ -165,16 +157,11 @@ static size_t count_repeated(const float *x, const float *y, size_t count) {
     return invalid ? SIZE_MAX : repeated;
 }
 
-/* Puts the coordinates of points, from the last to the first where they are turned. */
-static void put_coordinates(const float *restrict points, size_t count, bool turned, float *restrict x,
-                            float *restrict y) {
-    for (size_t i = 0; i < count && !turned; i++) {
+/* Puts the coordinates of points. */
+static void put_coordinates(const float *restrict points, size_t count, float *restrict x, float *restrict y) {
+    for (size_t i = 0; i < count; i++) {
         x[i] = points[2 * i];
         y[i] = points[2 * i + 1];
-    }
-    for (size_t i = 0; i < count && turned; i++) {
-        x[i] = points[2 * (count - 1 - i)];
-        y[i] = points[2 * (count - 1 - i) + 1];
     }
 }
 
@@ -191,7 +178,7 @@ static size_t count_joined(const camber_polylines_desc *desc, size_t first, size
 /* Puts the polylines [first, end). false: a point is invalid, or repeats the one before it in its polyline. */
 static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, size_t first, size_t end) {
     const size_t from = desc->offsets[first], count = desc->offsets[end] - from, slot = p->slot_count + 1;
-    put_coordinates(desc->points + 2 * from, count, false, p->x + slot, p->y + slot);
+    put_coordinates(desc->points + 2 * from, count, p->x + slot, p->y + slot);
     const size_t repeated = count_repeated(p->x + slot, p->y + slot, count);
     if (repeated > 0 && repeated != count_joined(desc, first, end))
         return false;
@@ -211,33 +198,6 @@ static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, s
     return true;
 }
 
-bool camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float *points, size_t count, bool turned,
-                               uint32_t row) {
-    const size_t sentinel = p->slot_count + 1, first = sentinel + 1, end = first + count;
-    float *x = p->x, *y = p->y;
-    put_coordinates(points, count, turned, x + first, y + first);
-    x[end] = x[first];
-    y[end] = y[first];
-    if (count < 3 || count_repeated(x + first, y + first, count + 1) > 0)
-        return false;
-    x[sentinel] = x[end - 1];
-    y[sentinel] = y[end - 1];
-    x[end + 1] = x[first + 1];
-    y[end + 1] = y[first + 1];
-    for (size_t i = first; i <= end; i++)
-        p->info[i] = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
-    p->info[sentinel] = p->info[end + 1] = 0;
-    p->info[first] |= CAMBER_POINT_FIRST | CAMBER_POINT_RING;
-    p->info[end] |= CAMBER_POINT_LAST | CAMBER_POINT_RING;
-    set_row(p, polyline, row);
-    p->slot_count += count + 3;
-    p->stats.points += count + 1;
-    p->stats.kept_points += count + 1;
-    p->stats.kept_segments += count;
-    p->stats.rings++;
-    return true;
-}
-
 static void put_polylines(camber_polylines *p, const camber_polylines_desc *desc) {
     for (size_t i = 0; i < desc->polyline_count;) {
         const size_t end = find_bundle_end(desc, i);
@@ -248,6 +208,103 @@ static void put_polylines(camber_polylines *p, const camber_polylines_desc *desc
                 put_polyline(p, desc, i);
             while (++i < end);
     }
+}
+
+/* ---- Rings of areas ---- */
+
+/* Puts the coordinates of a ring's points, whose x and y lie `step` apart. Returns twice the area that they wind
+ * around, clockwise as seen; NAN where one is invalid or repeats the one before. One loop does it all: most rings are
+ * short. */
+static inline double put_around(const float *from_x, const float *from_y, size_t step, size_t count, float *x,
+                                float *y) {
+    uint32_t irregular = 0;
+    double area = 0.0;
+    float ax = from_x[step * (count - 1)], ay = from_y[step * (count - 1)];
+    for (size_t i = 0; i < count; i++) {
+        __builtin_prefetch(from_x + step * (i + AHEAD_POINTS));
+        const float bx = from_x[step * i], by = from_y[step * i], dx = bx - ax, dy = by - ay;
+        irregular |= !(fabsf(bx) <= CAMBER_FARTHEST_PX) | !(fabsf(by) <= CAMBER_FARTHEST_PX) |
+                     (dx * dx + dy * dy <= REPEATED_PX2);
+        area += (double)ax * (double)by - (double)bx * (double)ay;
+        x[i] = ax = bx;
+        y[i] = ay = by;
+    }
+    return irregular ? (double)NAN : area;
+}
+
+/* Drops the points of a ring that are invalid or repeat the one before. Returns how many are left. */
+static size_t drop_irregular(camber_polylines_stats *stats, float *x, float *y, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float point[2] = {x[i], y[i]};
+        const bool valid = camber_point_is_valid(point);
+        const bool repeated = valid && kept && is_repeated((const float[2]){x[kept - 1], y[kept - 1]}, point);
+        stats->invalid_points += !valid;
+        stats->repeated_points += repeated;
+        x[kept] = point[0];
+        y[kept] = point[1];
+        kept += valid && !repeated;
+    }
+    for (; kept > 1 && is_repeated((const float[2]){x[kept - 1], y[kept - 1]}, (const float[2]){x[0], y[0]}); kept--)
+        stats->repeated_points++;
+    return kept;
+}
+
+static void turn_over(float *values, size_t count) {
+    for (size_t first = 0, end = count; first + 1 < end; first++, end--) {
+        const float kept = values[first];
+        values[first] = values[end - 1];
+        values[end - 1] = kept;
+    }
+}
+
+/* Puts what is left of a ring of less than two points. */
+static void put_rest(camber_polylines *p, const float *x, const float *y, size_t count, uint32_t row) {
+    p->stats.empty_polylines += count == 0;
+    if (count == 0)
+        return;
+    put_slot(p, (const float[2]){*x, *y},
+             row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL | CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+    p->stats.kept_points++;
+    p->stats.dots++;
+}
+
+void camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float *points, size_t count, bool is_hole,
+                               uint32_t row) {
+    const size_t sentinel = p->slot_count + 1;
+    float *x = p->x + sentinel + 1, *y = p->y + sentinel + 1;
+    uint32_t *info = p->info + sentinel + 1;
+    set_row(p, polyline, row);
+    p->stats.points += count;
+    double area = count ? put_around(points, points + 1, 2, count, x, y) : 0.0;
+    if (isnan(area)) {
+        count = drop_irregular(&p->stats, x, y, count);
+        area = count ? put_around(x, y, 1, count, x, y) : 0.0;
+    }
+    if (count < 2) {
+        put_rest(p, x, y, count, row);
+        return;
+    }
+    if (is_hole ? area > 0.0 : area < 0.0) {
+        turn_over(x, count);
+        turn_over(y, count);
+    }
+    x[count] = x[0];
+    y[count] = y[0];
+    p->x[sentinel] = x[count - 1];
+    p->y[sentinel] = y[count - 1];
+    x[count + 1] = x[1];
+    y[count + 1] = y[1];
+    for (size_t i = 0; i <= count; i++)
+        info[i] = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
+    info[0] |= CAMBER_POINT_FIRST | CAMBER_POINT_RING;
+    info[count] |= CAMBER_POINT_LAST | CAMBER_POINT_RING;
+    p->info[sentinel] = info[count + 1] = 0;
+    p->slot_count += count + 3;
+    p->stats.points++; /* the first again */
+    p->stats.kept_points += count + 1;
+    p->stats.kept_segments += count;
+    p->stats.rings++;
 }
 
 /* Puts sentinels to the end of the last block, and one behind it. They lie at the origin, so that no kernel meets a

@@ -498,8 +498,9 @@ CAMBER_API camber_status camber_mesh_create(camber_device *device, camber_render
 CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
 
 /* Tessellates on the device, and replaces what the mesh held. The output is in input order, and is the same bytes from
- * run to run. The mesh keeps the uploaded polylines: another call with the same object and other strokes uploads
- * nothing.
+ * run to run. The mesh keeps the polylines: another call with the same object and other strokes uploads nothing.
+ * Where the device works in the host's memory it reads them in place, so that after camber_polylines_destroy they take
+ * memory until the mesh takes others or is destroyed.
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
  * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs
  * more than the largest buffer, or than half of what the device's meshes may hold), CAMBER_ERROR_MEMORY,

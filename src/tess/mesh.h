@@ -43,6 +43,7 @@ typedef struct camber_mesh_part {
     uint32_t *chunk_bases; /* one for each chunk, and one behind the last */
     size_t chunk_capacity;
     bool uploaded;
+    bool lent; /* x, y and info are arrays of the polylines, which kernels read in place */
     cl_mem x, y, info, joins, offsets, sums, bases;
     cl_mem lengths, arc_lengths; /* only with arc lengths: sums of chunks; a camber_arc_length a slot */
     size_t slot_capacity;
@@ -67,7 +68,8 @@ struct camber_mesh {
     size_t remade_parts;    /* since the last tessellation */
     bool is_full; /* since the last tessellation a part was evicted, or could not be made for lack of memory */
 
-    /* The source of the parts; NULL for a network. The mesh holds it where parts may have to be made again. */
+    /* The source of the parts; NULL for a network. The mesh holds it where parts may have to be made again, or
+     * where kernels read its arrays. */
     const camber_polylines *polylines;
     bool holds_polylines;
     /* About the source that was last tessellated. first_slots has polyline_count + 1 entries, where each polyline
@@ -164,6 +166,8 @@ size_t camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 /* Uploads the part's slots, unless they have been. */
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
+/* No kernel reads arrays of the polylines any more. */
+void camber_mesh_return_points(camber_mesh *mesh);
 void camber_mesh_release_parts(camber_mesh *mesh);
 /* Releases all buffers of a part, on device and host. It keeps its polylines. */
 void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);

@@ -13,21 +13,28 @@
 
 #include <string.h>
 
-enum { INPUTS = 9 };
+enum { INPUTS = 9, POINT_INPUTS = 3 };
 
-/* Lists a part's input buffers; the last two are there only with arc lengths. */
+/* Lists a part's input buffers. The first three may be lent by polylines, the last two are there only with arc
+ * lengths. */
 static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
     cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,      &part->offsets,
                                   &part->sums, &part->bases, &part->lengths, &part->arc_lengths};
     memcpy(mems, list, sizeof list);
 }
 
-/* Releases the input buffers that classify reads or writes, and leaves those of source lines. */
-static void release_slots(const camber_device *device, camber_mesh_part *part) {
+/* Releases the first `count` of the input buffers. */
+static void release_inputs(const camber_device *device, camber_mesh_part *part, size_t count) {
     cl_mem *mems[INPUTS];
     list_input(part, mems);
-    for (size_t i = 0; i < INPUTS; i++)
+    for (size_t i = 0; i < count; i++)
         camber_release_buffer(device, mems[i]);
+    part->lent = false;
+}
+
+/* Releases the input buffers that classify reads or writes, and leaves those of source lines. */
+static void release_slots(const camber_device *device, camber_mesh_part *part) {
+    release_inputs(device, part, INPUTS);
     part->slot_capacity = 0;
     part->uploaded = part->made = false;
 }
@@ -50,6 +57,8 @@ void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
         from->buffers[i] = (camber_buffer){0};
     }
     part->slot_capacity = from->slot_capacity;
+    part->lent = from->lent;
+    from->lent = false;
     part->source_line = from->source_line;
     from->source_line = (camber_source_line_buffers){0};
     part->host_bases = from->host_bases;
@@ -62,14 +71,16 @@ void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
     from->uploaded = from->made = false;
 }
 
-/* Whether the input buffers are large enough, and those of arc lengths are there where they are wanted. */
-static bool has_input(const camber_mesh_part *part, bool has_arc_length, size_t slots) {
-    return slots <= part->slot_capacity && (!has_arc_length || part->arc_lengths);
+/* Whether the input buffers are large enough, and those of arc lengths are there where they are wanted. lent: points
+ * need no buffers of the part's own. */
+static bool has_input(const camber_mesh_part *part, bool has_arc_length, size_t slots, bool lent) {
+    return slots <= part->slot_capacity && (!has_arc_length || part->arc_lengths) && (lent || (part->x && !part->lent));
 }
 
+/* lent: points need no buffers. */
 static camber_status reserve_input(const camber_device *device, bool has_arc_length, camber_mesh_part *part,
-                                   size_t slots) {
-    if (has_input(part, has_arc_length, slots))
+                                   size_t slots, bool lent) {
+    if (has_input(part, has_arc_length, slots, lent))
         return CAMBER_OK;
     const bool uploaded =
         part->uploaded && part->source_line.x; /* slots were uploaded to the source lines' buffers, which stay */
@@ -92,7 +103,7 @@ static camber_status reserve_input(const camber_device *device, bool has_arc_len
         {&part->arc_lengths, sizeof(camber_arc_length) * slots},
     };
     const size_t count = has_arc_length ? INPUTS : INPUTS - 2;
-    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
+    for (size_t i = lent ? POINT_INPUTS : 0; i < count && status == CAMBER_OK; i++)
         status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
     if (status != CAMBER_OK) {
         release_slots(device, part);
@@ -111,24 +122,28 @@ static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *
            2 * (16 * (blocks + 1) + 4 * chunks) + 256;
 }
 
-camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+static camber_status reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool lent) {
     const camber_device *device = mesh->device;
     const bool has_arc_length = mesh->mesh_info.has_arc_length;
     const uint64_t wanted = bytes_of_slots(mesh, part, slots);
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
     camber_status status = CAMBER_OK;
-    if (!has_input(part, has_arc_length, slots))
+    if (!has_input(part, has_arc_length, slots, lent))
         status = camber_mesh_make_room(
             mesh, part,
             wanted - camber_input_bytes(device, false, slots > part->slot_capacity ? part->slot_capacity : 0));
     if (status == CAMBER_OK)
-        status = reserve_input(device, has_arc_length, part, slots);
+        status = reserve_input(device, has_arc_length, part, slots, lent);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
         status = CAMBER_ERROR_MEMORY;
     camber_part_count_bytes(mesh, part);
     return status;
+}
+
+camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+    return reserve(mesh, part, slots, false);
 }
 
 camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
@@ -287,7 +302,7 @@ static camber_status lay_out_parts(camber_mesh *mesh) {
 }
 
 static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines) {
-    mesh->holds_polylines = mesh->device->memory_bytes > 0;
+    mesh->holds_polylines = mesh->device->memory_bytes > 0 || mesh->device->host_memory;
     mesh->polylines = polylines;
     if (mesh->holds_polylines) /* only the count of holders changes, not the polylines */
         camber_polylines_hold((camber_polylines *)(uintptr_t)polylines);
@@ -322,6 +337,30 @@ static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *
     return !mesh->mesh_info.has_arc_length || (mesh->has_offsets ? part->source_line.arc_lengths : part->arc_lengths);
 }
 
+void camber_mesh_return_points(camber_mesh *mesh) {
+    for (size_t i = 0; i < mesh->part_capacity; i++)
+        if (mesh->parts[i].lent) {
+            release_inputs(mesh->device, mesh->parts + i, POINT_INPUTS);
+            mesh->parts[i].uploaded = false;
+        }
+}
+
+/* Lets kernels read the polylines' arrays in place, which begin with the part's sentinel. */
+static camber_status borrow_points(const camber_mesh *mesh, camber_mesh_part *part, size_t words) {
+    const camber_polylines *polylines = mesh->polylines;
+    const struct {
+        cl_mem *mem;
+        const void *words;
+    } arrays[POINT_INPUTS] = {{&part->x, polylines->x}, {&part->y, polylines->y}, {&part->info, polylines->info}};
+    camber_status status = CAMBER_OK;
+    release_inputs(mesh->device, part, POINT_INPUTS);
+    for (size_t i = 0; i < POINT_INPUTS && status == CAMBER_OK; i++)
+        status = camber_make_buffer(mesh->device, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, 4 * words, arrays[i].words,
+                                    arrays[i].mem);
+    part->lent = true;
+    return status;
+}
+
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     static const cl_uint zeros[CAMBER_BLOCK + 2];
     const camber_device *device = mesh->device;
@@ -329,10 +368,14 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     part->slot_count = part->given_count;
     if (part->given_count == 0 || (part->uploaded && has_upload_buffers(mesh, part)))
         return CAMBER_OK;
-    camber_status status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, part->given_count)
-                                             : camber_part_reserve(mesh, part, part->given_count);
     const camber_source_line_buffers *source_line = &part->source_line;
     const size_t words = part->given_count + 2, first = part->first_slot;
+    const bool lent =
+        device->host_memory && !mesh->has_offsets && mesh->part_count == 1 && words == polylines->slot_count + 2;
+    camber_status status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, part->given_count)
+                                             : reserve(mesh, part, part->given_count, lent);
+    if (status == CAMBER_OK && lent)
+        status = borrow_points(mesh, part, words);
     const size_t end = part->first_polyline + part->polyline_count;
     /* The words of a part are the one before its first slot, its slots, and sentinels. The last part takes sentinels
      * from the polylines' own padding; other parts, and what is still missing, get zeros. */
@@ -344,7 +387,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     } arrays[] = {{mesh->has_offsets ? source_line->x : part->x, polylines->x + first},
                   {mesh->has_offsets ? source_line->y : part->y, polylines->y + first},
                   {mesh->has_offsets ? source_line->info : part->info, polylines->info + first}};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays && !lent; i++) {
         if (status == CAMBER_OK)
             status = camber_write_buffer_later(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
         if (status == CAMBER_OK && given < words)

@@ -25,6 +25,7 @@ void camber_section_release(const camber_mesh *mesh, camber_section *section) {
 
 void camber_mesh_release_source(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
+    camber_mesh_return_points(mesh);
     if (mesh->holds_polylines)
         camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
     mesh->polylines = NULL;

@@ -287,7 +287,8 @@ static result again(fixture *b, const camber_polylines *polylines, const camber_
 }
 
 /* Other strokes and methods over the same polylines, other polylines between: the same bytes as of a new mesh.
- * Polylines that are there are not uploaded again: strokes once, and the bases of each part. */
+ * Polylines that are there are not uploaded again: strokes once, and the bases of each part. A device that works in the
+ * host's memory reads those of a single part in place. */
 static void test_again(void **state) {
     (void)state;
     static const uint64_t limits[] = {0, 100000};
@@ -325,7 +326,7 @@ static void test_again(void **state) {
             if (same)
                 assert_int_equal(count, 1 + parts);
             else if (!i || steps[i].scene != steps[i - 1].scene)
-                assert_true(count >= 1 + 6 * parts);
+                assert_true(count >= 1 + (parts == 1 && b.on.device->host_memory ? 3 : 6) * parts);
             if (i == 4) /* what the fan needed is kept for the strip */
                 assert_true(same);
             free_result(&r);

@@ -39,22 +39,14 @@ static camber_status check_rings(camber_context *context, const camber_areas_des
     return CAMBER_OK;
 }
 
-/* Without the last point where it is the first again. */
-static size_t count_open(const float *points, size_t count) {
-    if (count < 2)
-        return count;
-    const float *last = points + 2 * (count - 1);
-    return count - (points[0] == last[0] && points[1] == last[1]);
-}
-
 static void put_areas(camber_polylines *made, const camber_areas_desc *desc) {
     const size_t count = desc->rings ? desc->area_count : desc->ring_count;
     for (size_t i = 0; i < count; i++) {
         const size_t first = desc->rings ? desc->rings[i] : i, end = desc->rings ? desc->rings[i + 1] : i + 1;
         for (size_t ring = first; ring < end; ring++) {
             const float *points = desc->points + 2 * (size_t)desc->offsets[ring];
-            const size_t open = count_open(points, desc->offsets[ring + 1] - desc->offsets[ring]);
-            camber_polylines_put_ring(made, ring, points, open, ring > first, desc->rows ? desc->rows[i] : 0);
+            const size_t points_of_ring = desc->offsets[ring + 1] - desc->offsets[ring];
+            camber_polylines_put_ring(made, ring, points, points_of_ring, ring > first, desc->rows ? desc->rows[i] : 0);
         }
     }
 }

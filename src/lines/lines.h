@@ -14,7 +14,7 @@
 struct camber_polylines {
     camber_context *context;
     size_t holders;  /* meshes that hold them, beside the creator */
-    uint64_t serial; /* unique in the context: tells a mesh whether it has uploaded these already */
+    uint64_t serial; /* unique in the context: tells a mesh whether it has these already */
     /* slot_count + 2 each: a sentinel before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
     float *x, *y;
     uint32_t *info;
@@ -42,7 +42,7 @@ static inline bool camber_point_is_valid(const float *point) {
 camber_status camber_polylines_begin(camber_context *context, size_t slots, size_t polyline_count,
                                      camber_polylines **polylines);
 
-/* Puts a ring of points, whose last is not the first again: an outer ring clockwise as seen, a hole the other way.
+/* Puts a ring of points, whose last may be the first again: an outer ring clockwise as seen, a hole the other way.
  * Invalid points, and those that repeat the one before, are dropped. */
 void camber_polylines_put_ring(camber_polylines *polylines, size_t polyline, const float *points, size_t count,
                                bool is_hole, uint32_t row);

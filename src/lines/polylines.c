@@ -2,8 +2,8 @@
  *
  * Input: points in px, where each polyline begins, rows of the style table. Output: camber_polylines (lines.h). Main
  * idea: everything irregular is settled here, so that kernels need no branch for it. An invalid point (NaN, or too far
- * away) splits its polyline into stretches. A point that repeats the one before is dropped. A ring, whose first point
- * is its last, gets sentinels that continue it past its seam:
+ * away) splits its polyline into stretches; in a ring of an area it is left out. A point that repeats the one before is
+ * dropped. A ring, whose first point is its last, gets sentinels that continue it past its seam:
  *
  *     points       A B C D A           the last point is the first again
  *     slots    (D) A B C D A (B)       in brackets: sentinels, so that neighbours are always i - 1 and i + 1
@@ -269,8 +269,10 @@ static void put_rest(camber_polylines *p, const float *x, const float *y, size_t
     p->stats.dots++;
 }
 
-void camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float *points, size_t count, bool is_hole,
+void camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float *points, size_t given, bool is_hole,
                                uint32_t row) {
+    const bool repeats = given > 1 && points[0] == points[2 * given - 2] && points[1] == points[2 * given - 1];
+    size_t count = given - repeats;
     const size_t sentinel = p->slot_count + 1;
     float *x = p->x + sentinel + 1, *y = p->y + sentinel + 1;
     uint32_t *info = p->info + sentinel + 1;
@@ -282,6 +284,8 @@ void camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float
         area = count ? put_around(x, y, 1, count, x, y) : 0.0;
     }
     if (count < 2) {
+        p->stats.points += repeats;
+        p->stats.repeated_points += repeats;
         put_rest(p, x, y, count, row);
         return;
     }

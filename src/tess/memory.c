@@ -28,6 +28,10 @@ uint64_t camber_input_bytes(const camber_device *device, bool has_arc_length, si
            (4 + 16) * blocks;
 }
 
+uint64_t camber_point_bytes(size_t slots) {
+    return slots ? 12 * ((uint64_t)slots + 2) : 0;
+}
+
 uint64_t camber_source_line_bytes(bool has_arc_length, size_t slots) {
     const uint64_t words = slots ? (uint64_t)slots + 2 : 0;
     const uint64_t arc_lengths =
@@ -36,8 +40,14 @@ uint64_t camber_source_line_bytes(bool has_arc_length, size_t slots) {
            (slots ? 4 * ((uint64_t)slots / CAMBER_OFFSET_CHUNK + 1) : 0);
 }
 
+uint64_t camber_part_input_bytes(const camber_mesh *mesh, const camber_mesh_part *part) {
+    const bool own = part->x && !part->lent;
+    return camber_input_bytes(mesh->device, part->arc_lengths != NULL, part->slot_capacity) -
+           (own ? 0 : camber_point_bytes(part->slot_capacity));
+}
+
 void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part) {
-    uint64_t bytes = camber_input_bytes(mesh->device, part->arc_lengths != NULL, part->slot_capacity);
+    uint64_t bytes = camber_part_input_bytes(mesh, part);
     bytes += camber_source_line_bytes(part->source_line.arc_lengths != NULL, part->source_line.slot_capacity);
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)

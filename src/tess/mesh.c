@@ -28,6 +28,7 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     if (!mesh)
         return;
     camber_context *context = mesh->device->context;
+    camber_mesh_return_points(mesh);
     camber_mesh_release_parts(mesh);
     camber_mesh_release_source(mesh);
     camber_release_buffer(mesh->device, &mesh->rows);

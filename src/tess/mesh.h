@@ -164,10 +164,12 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
 size_t camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part);
 /* Whether a scanned part's output fits the device and the part's share of memory. */
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
-/* Uploads the part's slots, unless they have been. */
+/* Uploads the part's slots, unless they have been; or lets kernels read the polylines' arrays. */
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
 /* No kernel reads arrays of the polylines any more. */
 void camber_mesh_return_points(camber_mesh *mesh);
+/* The mesh has been tessellated: it holds the polylines no longer than it needs them. */
+void camber_mesh_let_go(camber_mesh *mesh);
 void camber_mesh_release_parts(camber_mesh *mesh);
 /* Releases all buffers of a part, on device and host. It keeps its polylines. */
 void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);
@@ -221,6 +223,10 @@ void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_count_bytes(camber_mesh *mesh);
 /* How many bytes a part's input takes for so many slots. */
 uint64_t camber_input_bytes(const camber_device *device, bool has_arc_length, size_t slots);
+/* What of that x, y and info take. */
+uint64_t camber_point_bytes(size_t slots);
+/* The bytes of the input buffers that a part has: points that polylines lend it are none of its own. */
+uint64_t camber_part_input_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
 /* How many bytes the source lines of a part take for so many slots. */
 uint64_t camber_source_line_bytes(bool has_arc_length, size_t slots);
 /* Evicts parts and sections until more_bytes can be held in addition, and returns whether they now can. Never evicts

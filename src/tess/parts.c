@@ -1,7 +1,8 @@
 /* The parts of a mesh: which polylines each has, its buffers, and their upload.
  *
  * Input: polylines in slots, and the limits of the device: its largest buffer, and shares of the bound on memory.
- * Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided twice.
+ * Output: mesh->parts, each with buffers of its own; a device that works in the host's memory reads the points of a
+ * single part where they are. Main idea: polylines are divided twice.
  *
  *     before  camber_mesh_plan   by slots, which are known, so that a part's input fits
  *     after   camber_mesh_split  by the output that classify and scan have counted, where that does not fit
@@ -128,11 +129,11 @@ static camber_status reserve(camber_mesh *mesh, camber_mesh_part *part, size_t s
     const uint64_t wanted = bytes_of_slots(mesh, part, slots);
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
+    const uint64_t needed = wanted - (lent ? camber_point_bytes(slots) : 0);
+    const uint64_t there = slots > part->slot_capacity ? camber_part_input_bytes(mesh, part) : 0;
     camber_status status = CAMBER_OK;
     if (!has_input(part, has_arc_length, slots, lent))
-        status = camber_mesh_make_room(
-            mesh, part,
-            wanted - camber_input_bytes(device, false, slots > part->slot_capacity ? part->slot_capacity : 0));
+        status = camber_mesh_make_room(mesh, part, needed > there ? needed - there : 0);
     if (status == CAMBER_OK)
         status = reserve_input(device, has_arc_length, part, slots, lent);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
@@ -301,18 +302,28 @@ static camber_status lay_out_parts(camber_mesh *mesh) {
     return CAMBER_OK;
 }
 
+/* Holds the polylines, unless they are held. Only the count of holders changes, not the polylines. */
 static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines) {
-    mesh->holds_polylines = mesh->device->memory_bytes > 0 || mesh->device->host_memory;
-    mesh->polylines = polylines;
-    if (mesh->holds_polylines) /* only the count of holders changes, not the polylines */
+    if (!mesh->holds_polylines)
         camber_polylines_hold((camber_polylines *)(uintptr_t)polylines);
+    mesh->holds_polylines = true;
+    mesh->polylines = polylines;
+}
+
+void camber_mesh_let_go(camber_mesh *mesh) {
+    const bool lent = mesh->part_count > 0 && mesh->parts[0].lent;
+    if (!mesh->holds_polylines || mesh->device->memory_bytes > 0 || lent)
+        return;
+    camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
+    mesh->holds_polylines = false;
+    mesh->polylines = NULL;
 }
 
 camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines) {
     camber_context *context = mesh->device->context;
     const size_t count = polylines->polyline_count;
     if (mesh->serial == polylines->serial) {
-        mesh->polylines = polylines;
+        hold_polylines(mesh, polylines);
         return CAMBER_OK;
     }
     camber_mesh_release_source(mesh);
@@ -338,11 +349,15 @@ static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *
 }
 
 void camber_mesh_return_points(camber_mesh *mesh) {
-    for (size_t i = 0; i < mesh->part_capacity; i++)
-        if (mesh->parts[i].lent) {
-            release_inputs(mesh->device, mesh->parts + i, POINT_INPUTS);
-            mesh->parts[i].uploaded = false;
-        }
+    for (size_t i = 0; i < mesh->part_capacity; i++) {
+        camber_mesh_part *part = mesh->parts + i;
+        if (!part->lent)
+            continue;
+        clFinish(mesh->device->queue); /* nothing maps them any more */
+        release_inputs(mesh->device, part, POINT_INPUTS);
+        part->uploaded = false;
+        camber_part_count_bytes(mesh, part);
+    }
 }
 
 /* Lets kernels read the polylines' arrays in place, which begin with the part's sentinel. */
@@ -371,7 +386,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_source_line_buffers *source_line = &part->source_line;
     const size_t words = part->given_count + 2, first = part->first_slot;
     const bool lent =
-        device->host_memory && !mesh->has_offsets && mesh->part_count == 1 && words == polylines->slot_count + 2;
+        device->host_memory && !mesh->has_offsets && mesh->part_count == 1 && words <= polylines->slot_count + 2;
     camber_status status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, part->given_count)
                                              : reserve(mesh, part, part->given_count, lent);
     if (status == CAMBER_OK && lent)

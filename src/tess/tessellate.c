@@ -4,7 +4,7 @@
  * the mesh's counts. Main idea: first the sizes, then the output. So buffers are exact, no kernel needs an atomic, and
  * the same input gives the same bytes.
  *
- *     slots of the part   uploaded; or projected from a network; or made beside source lines
+ *     slots of the part   uploaded, or the polylines' own; or projected from a network; or made beside source lines
  *        |  classify      a slot: its join word, from its neighbours and its row
  *        |  scan          a chunk: vertices and indices before it in its block; a block: its sum
  *        |  the host adds the blocks' sums up, and checks that the part fits: else it is cut, and done again
@@ -375,8 +375,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         mesh->mesh_info = nothing;
         clFinish(mesh->device->queue); /* what is written later is read from the source's arrays */
     }
-    if (!mesh->holds_polylines)
-        mesh->polylines = NULL; /* read during the call only */
+    camber_mesh_let_go(mesh);
     mesh->done = status == CAMBER_OK;
     mesh->empty = mesh->mesh_info.vertex_count == 0;
     camber_free(context, rows);

@@ -80,6 +80,7 @@ camber_status camber_validation_run(camber_validation *v, const camber_validatio
     *v = (camber_validation){.desc = desc, .results = {.listener = desc->listener, .only = desc->only}};
     camber_results_group(&v->results, "devices and back ends");
     camber_status status = camber_checked_devices_open(v);
+    v->results.wanted = 0; /* devices are opened in any case */
     for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
         if (desc->host.progress)
             desc->host.progress(desc->host.user, (double)i / (double)count);

@@ -640,6 +640,7 @@ expect 2 "JUnit to standard output" validate --junit -
 expect 2 "too few windows" validate --windows 7
 expect 2 "no such group of checks" validate --polylines "$lines" --only 'no such'
 says "^camber: --only no such: no group of checks has that in its name; "
+expect 2 "no group of checks" validate --polylines "$lines" --only devices
 expect 0 "one group of checks" validate --polylines "$lines" --only ': meshes' --method strip
 has "$tmp/stdout" '^ok .*: meshes as the CPU twin.s: [0-9]* checks$'
 lacks "$tmp/stdout" ' as the oracle.s:\|networks under\|: pictures as'

@@ -190,11 +190,12 @@ typedef struct camber_tile_edges {
     camber_real down;          /* a px down, in parts of a pixel, with the edge's sign */
     camber_real rise;          /* half of how far down an edge goes a px to the side; 0 where it is upright */
     camber_real turn, turn_at; /* the left side is wound around so many times more from there on */
-    camber_mask matters;       /* they change anything in the tile, or in any row of its cells */
-    camber_mask flat;          /* they lie level in the tile, and change nothing */
-    camber_mask first, last;   /* rows of cells; the last lies before the first where an edge covers nothing */
-    camber_mask above, below;  /* the first and the last row of cells along whose tops, just below, they are;
-                                  CAMBER_TILE_CELLS: the end of the tile */
+    camber_mask matters;     /* they change anything in the tile, or in any row of its cells; or they are flat and cross
+                                sides of cells, below which other windings begin */
+    camber_mask flat;        /* they lie level in the tile, and change nothing */
+    camber_mask first, last; /* rows of cells; the last lies before the first where an edge covers nothing */
+    camber_mask above, below; /* the first and the last row of cells along whose tops, just below, they are;
+                                 CAMBER_TILE_CELLS: the end of the tile */
     camber_mask columns[CAMBER_TILE_CELLS + 1]; /* of cells, where they are at those tops; CAMBER_TILE_CELLS: right of
                                                    the tile */
 } camber_tile_edges;
@@ -240,8 +241,9 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     t->aside = CAMBER_FABS(t->slope);
     t->down = (float)CAMBER_AREA_ONE * e->down;
     t->rise = t->aside > CAMBER_AREA_UPRIGHT ? 0.5f * t->down / t->aside : CAMBER_REAL(0.0f);
-    t->matters = covers | (t->turn != 0.0f);
     t->flat = passes & ~covers;
+    const camber_mask from = camber_cell_at(e->x0, t->flat, cells), to = camber_cell_at(e->x1, t->flat, cells);
+    t->matters = covers | (t->turn != 0.0f) | (from != to);
     const camber_mask top = camber_cell_at(e->y0, covers, cells), bottom = camber_cell_at(e->y1, covers, cells);
     const camber_mask above = e->y0 > (float)CAMBER_CELL_PX * CAMBER_TO_REAL(top) ? top + 1 : top;
     const camber_mask below = e->y1 > (float)CAMBER_CELL_PX * CAMBER_TO_REAL(bottom) ? bottom : bottom - 1;
@@ -257,11 +259,15 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     }
 }
 
-/* One of them. */
+/* One of them. Where it is flat, y1 is y0, and slope is where it ends. */
 typedef struct camber_tile_edge {
     float x0, y0, y1, slope;
     int down;
 } camber_tile_edge;
+
+CAMBER_FN int camber_tile_edge_is_flat(const camber_tile_edge *e) {
+    return e->y0 == e->y1;
+}
 
 /* Where an edge is at y, px from the tile's left side, and as a column of cells. */
 CAMBER_FN float camber_edge_at(const camber_tile_edge *e, float y) {
@@ -269,8 +275,7 @@ CAMBER_FN float camber_edge_at(const camber_tile_edge *e, float y) {
     return e->x0 + (at - e->y0) * e->slope;
 }
 
-CAMBER_FN int camber_edge_column(const camber_tile_edge *e, float y) {
-    const float x = camber_edge_at(e, y);
+CAMBER_FN int camber_edge_column(float x) {
     return x > 0.0f ? (x < (float)CAMBER_TILE_PX ? (int)(x * (1.0f / CAMBER_CELL_PX)) : CAMBER_TILE_CELLS) : 0;
 }
 
@@ -286,7 +291,8 @@ CAMBER_FN void camber_edge_columns(const camber_tile_edge *e, int row, camber_ce
     columns->last = -1;
     if (e->y1 <= top || e->y0 >= bottom)
         return;
-    const int upper = camber_edge_column(e, top), lower = camber_edge_column(e, bottom);
+    const int is_flat = camber_tile_edge_is_flat(e), upper = camber_edge_column(camber_edge_at(e, top));
+    const int lower = camber_edge_column(is_flat ? e->slope : camber_edge_at(e, bottom));
     columns->first = CAMBER_LESS(upper, lower);
     columns->last = CAMBER_LESS(CAMBER_MORE(upper, lower), CAMBER_TILE_CELLS - 1);
 }
@@ -479,7 +485,8 @@ CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *
     const camber_real one = CAMBER_REAL(1.0f), way = t->turn == 0.0f         ? one
                                                      : t->turn == t->in.down ? CAMBER_REAL(CAMBER_PLACED_LEAVES)
                                                                              : CAMBER_REAL(CAMBER_PLACED_ENTERS);
-    const camber_real words[CAMBER_PLACED_WORDS] = {t->in.x0, t->in.y0, t->in.y1, t->slope, way * t->in.down};
+    const camber_real y1 = t->flat ? t->in.y0 : t->in.y1, slope = t->flat ? t->in.x1 : t->slope;
+    const camber_real words[CAMBER_PLACED_WORDS] = {t->in.x0, t->in.y0, y1, slope, way * t->in.down};
     const int all_matter = CAMBER_ALL(t->matters | (camber_numbers(0) >= (float)count));
     if (CAMBER_OWN_SIDE != 1 && all_matter && s->placed_count + count <= CAMBER_PLACED_MOST) {
         for (int i = 0; i < CAMBER_PLACED_WORDS; i++)

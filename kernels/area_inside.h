@@ -85,9 +85,15 @@ CAMBER_FN void camber_piled_cell_turn(camber_piled_cell *o, float y, float times
             o->begin[row][v] += camber_piled_cell_rows(o, row, v) > y ? CAMBER_REAL(times) : CAMBER_REAL(0.0f);
 }
 
-/* Adds an edge to a cell. What of it lies left of the cell is cut off, as at the tile's own left side. */
+/* Adds an edge to a cell. What of it lies left of the cell is cut off, as at the tile's own left side. A flat one turns
+ * no row of samples, but below it rows may begin with another winding. */
 CAMBER_FN void camber_piled_cell_add(camber_piled_cell *o, const camber_tile_edge *e) {
     const float top = (float)(CAMBER_CELL_PX * o->row), left = (float)(CAMBER_CELL_PX * o->column);
+    if (camber_tile_edge_is_flat(e)) {
+        if (o->column > 0 && (e->x0 < left) != (e->slope < left))
+            camber_piled_cell_turn(o, e->y0, (float)-e->down);
+        return;
+    }
     const float down = (float)e->down, y0 = CAMBER_MORE(e->y0, top), y1 = CAMBER_LESS(e->y1, top + CAMBER_CELL_PX);
     camber_cell_edge *to = o->edges + o->edge_count++;
     *to = (camber_cell_edge){e->x0 - left, e->y0, e->slope, e->y0, e->y1, down};

@@ -223,7 +223,7 @@ void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_count_bytes(camber_mesh *mesh);
 /* How many bytes a part's input takes for so many slots. */
 uint64_t camber_input_bytes(const camber_device *device, bool has_arc_length, size_t slots);
-/* What of that x, y and info take. */
+/* The bytes of x, y and info alone. */
 uint64_t camber_point_bytes(size_t slots);
 /* The bytes of the input buffers that a part has: points that polylines lend it are none of its own. */
 uint64_t camber_part_input_bytes(const camber_mesh *mesh, const camber_mesh_part *part);

@@ -262,17 +262,35 @@ static rings made_stars(int times, double step) {
     return r;
 }
 
+/* Upright rectangles that overlap, three in each square of 32 px, their sides on sixteenths of pixels. */
+static rings made_rectangles(double off) {
+    rings r = rings_begin(4000);
+    uint64_t seed = 11;
+    for (int i = 0; i < 3 * 225; i++) {
+        const double left = 32 * (i / 3 % 15) + 2 + floor(13 * next_number(&seed)) + off;
+        const double top = 32 * (i / 45) + 2 + floor(13 * next_number(&seed)) + off;
+        const double right = left + 3 + floor(12 * next_number(&seed));
+        const double bottom = top + 3 + floor(12 * next_number(&seed));
+        add_point(&r, left, top);
+        add_point(&r, right, top);
+        add_point(&r, right, bottom);
+        add_point(&r, left, bottom);
+        end_ring(&r, 0);
+    }
+    return r;
+}
+
 /* Apart from each other, twice over each other, three times with borders less than a pixel apart, overlapping each
- * other and themselves, and tiny ones. */
+ * other and themselves, tiny ones, and some whose edges lie level, on borders of pixels and between them. */
 static void test_truth(void **state) {
     const fixture *f = *state;
     camber_fill evenodd = BLACK;
     evenodd.rule = CAMBER_FILL_EVENODD;
-    rings all[] = {made_stars(1, 0), made_stars(2, 0), made_stars(3, 0.3), made_rings(5, 60, 200, 1),
-                   made_rings(6, 600, 60, 1)};
-    static const char *const names[] = {"apart", "twice", "moved", "overlapping", "many"};
-    static const double bounds[] = {0.15, 0.25, 0.4, 0.04, 0.15};
-    for (int i = 0; i < 5; i++) {
+    rings all[] = {made_stars(1, 0),          made_stars(2, 0),   made_stars(3, 0.3),       made_rings(5, 60, 200, 1),
+                   made_rings(6, 600, 60, 1), made_rectangles(0), made_rectangles(5.0 / 16)};
+    static const char *const names[] = {"apart", "twice", "moved", "overlapping", "many", "level", "level, between"};
+    static const double bounds[] = {0.15, 0.25, 0.4, 0.04, 0.15, 0, 0.2};
+    for (int i = 0; i < 7; i++) {
         for (int rule = 0; rule < (i == 1 ? 1 : 2); rule++) { /* by even-odd nothing is twice inside */
             picture p = draw_rings(f, all + i, rule ? &evenodd : &BLACK, 0);
             double *truth = sample_rings(all + i, rule);

@@ -153,8 +153,9 @@ static void turn_back(double *numbers, size_t count) {
     }
 }
 
-/* clockwise: the direction that a ring is to have as seen; below 0: as it is. */
-static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, int clockwise) {
+/* is_ring: it ends where it begins, also where the file leaves that out. clockwise: the direction that a ring is to
+ * have as seen; below 0: as it is. */
+static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, bool is_ring, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {
         lines->left_out = true;
@@ -174,6 +175,8 @@ static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry
             camber_world_lines_end(&lines->world);
         }
     }
+    if (is_ring && (lines->raw[0] != lines->raw[count - 1] || lines->raw[count] != lines->raw[2 * count - 1]))
+        (void)add_point(lines, lines->raw[0], lines->raw[count]);
     camber_world_lines_end(&lines->world);
     return CAMBER_OK;
 }
@@ -226,7 +229,7 @@ static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH pol
         OGRGeometryH ring = OGR_G_GetGeometryRef(polygon, i);
         const camber_status status = kind == CAMBER_GEOMETRY_AREA
                                          ? add_ring(lines, ring, i > 0)
-                                         : add_line(lines, ring, lines->directed ? i == 0 : -1);
+                                         : add_line(lines, ring, true, lines->directed ? i == 0 : -1);
         if (status != CAMBER_OK)
             return status;
     }
@@ -256,7 +259,7 @@ static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry,
     if (OGR_GT_IsNonLinear(type))
         return collect_curve(lines, geometry, kind, depth);
     switch (type) {
-    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(lines, geometry, -1) : CAMBER_OK;
+    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(lines, geometry, false, -1) : CAMBER_OK;
     case wkbPolygon:
     case wkbTriangle:
         if (kind != CAMBER_GEOMETRY_LINE)

@@ -386,8 +386,8 @@ static void warn_of_losses(const reader *self) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is no line (points, areas, empty geometry) of %zu features", path,
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s, empty geometry) of %zu features", path,
+                   self->lines.wants_areas ? "neither line nor area (points" : "no line (points, areas",
                    stats->skipped_features);
     if (stats->invalid_points)
         camber_log(self->context, CAMBER_LOG_WARNING,
@@ -410,10 +410,14 @@ static camber_status check_result(reader *self, size_t features_before) {
         return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no feature can be read: %s; get the file again",
                            self->desc->path, self->damage);
     if (self->features->feature_count == features_before && self->stats.skipped_features)
-        return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                           "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
-                           "--layer, or a style that draws outlines of polygons",
-                           self->desc->path, self->stats.skipped_features);
+        return camber_fail(
+            self->context, CAMBER_ERROR_INPUT,
+            self->lines.wants_areas
+                ? "%s: no lines, no areas: %zu features have other geometry (points, nothing); name "
+                  "another --layer"
+                : "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
+                  "--layer, or a style that draws outlines of polygons",
+            self->desc->path, self->stats.skipped_features);
     return CAMBER_OK;
 }
 

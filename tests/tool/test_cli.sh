@@ -765,7 +765,14 @@ echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$point]}" >"$tmp/in/mi
 expect 0 "a line and a point" render "$tmp/in/mixed.geojson" -o a.png --size 64x64
 lacks "$tmp/stderr" '^camber: '
 expect 0 "a line and a point, at length" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v
-says '^camber: info: .*left out what is no line .* of 1 features$'
+says '^camber: info: .*left out what is neither line nor area .* of 1 features$'
+rm -f a.png
+ring='[[0,0],[0.004,0],[0.004,0.004],[0,0.004]]' # its outline is closed, too
+echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$ring]}}" >"$tmp/in/open.geojson"
+echo '{"version":8,"sources":{},"layers":[{"id":"a","type":"fill","paint":{"fill-outline-color":"#d00"}}]}' >"$tmp/in/outline.json"
+expect 0 "an open ring" render "$tmp/in/open.geojson" --style "$tmp/in/outline.json" -o a.png
+says '^camber: warning: .*1 rings of areas do not end where they begin; closed$'
+says ' 2 polylines, 10 points,'
 rm -f a.png
 cat >"$tmp/in/roads.osm" <<'XML'
 <osm version="0.6">

@@ -44,7 +44,7 @@ camber_status camber_polylines_begin(camber_context *context, size_t slots, size
 
 /* Puts a ring of points, whose last may be the first again: an outer ring clockwise as seen, a hole the other way.
  * Invalid points, and those that repeat the one before, are dropped. */
-void camber_polylines_put_ring(camber_polylines *polylines, size_t polyline, const float *points, size_t count,
+void camber_polylines_put_ring(camber_polylines *polylines, size_t polyline, const float *points, size_t given,
                                bool is_hole, uint32_t row);
 
 void camber_polylines_end(camber_polylines *polylines);

@@ -168,6 +168,8 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
 /* No kernel reads arrays of the polylines any more. */
 void camber_mesh_return_points(camber_mesh *mesh);
+/* Forgets the polylines, and holds them no more. */
+void camber_mesh_release_polylines(camber_mesh *mesh);
 /* The mesh has been tessellated: it holds the polylines no longer than it needs them. */
 void camber_mesh_let_go(camber_mesh *mesh);
 void camber_mesh_release_parts(camber_mesh *mesh);

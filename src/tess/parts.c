@@ -310,13 +310,17 @@ static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines)
     mesh->polylines = polylines;
 }
 
-void camber_mesh_let_go(camber_mesh *mesh) {
-    const bool lent = mesh->part_count > 0 && mesh->parts[0].lent;
-    if (!mesh->holds_polylines || mesh->device->memory_bytes > 0 || lent)
-        return;
-    camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
+void camber_mesh_release_polylines(camber_mesh *mesh) {
+    if (mesh->holds_polylines)
+        camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
     mesh->holds_polylines = false;
     mesh->polylines = NULL;
+}
+
+void camber_mesh_let_go(camber_mesh *mesh) {
+    const bool lent = mesh->part_count > 0 && mesh->parts[0].lent;
+    if (mesh->device->memory_bytes == 0 && !lent)
+        camber_mesh_release_polylines(mesh);
 }
 
 camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines) {

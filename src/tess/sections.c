@@ -26,10 +26,7 @@ void camber_section_release(const camber_mesh *mesh, camber_section *section) {
 void camber_mesh_release_source(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
     camber_mesh_return_points(mesh);
-    if (mesh->holds_polylines)
-        camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
-    mesh->polylines = NULL;
-    mesh->holds_polylines = false;
+    camber_mesh_release_polylines(mesh);
     if (!held)
         return;
     for (size_t i = 0; i < held->section_count; i++)

@@ -175,7 +175,8 @@ static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry
             camber_world_lines_end(&lines->world);
         }
     }
-    if (is_ring && (lines->raw[0] != lines->raw[count - 1] || lines->raw[count] != lines->raw[2 * count - 1]))
+    if (is_ring && lines->world.open &&
+        (lines->raw[0] != lines->raw[count - 1] || lines->raw[count] != lines->raw[2 * count - 1]))
         (void)add_point(lines, lines->raw[0], lines->raw[count]);
     camber_world_lines_end(&lines->world);
     return CAMBER_OK;

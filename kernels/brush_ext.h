@@ -48,8 +48,7 @@ CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, CAMBER_GLOBAL
     e->dashes = side_table + 4 * brush_ext->first_dash;
     e->drawn = 1.0f;
     /* With a pitch dashes of any length may be small where they are seen. */
-    const float small = CAMBER_STROKE_PITCHED ? CAMBER_NEVER_PX : 2.0f;
-    if (CAMBER_HAS(e->features, CAMBER_FEATURE_DASH) && e->period < small)
+    if (CAMBER_HAS(e->features, CAMBER_FEATURE_DASH) && e->period < CAMBER_SMALL_PERIOD_PX)
         e->drawn = camber_dashes_drawn(e);
     e->ends = camber_dashes_ends(e->total);
     e->stops = side_table + 4 * brush_ext->first_stop;

@@ -133,7 +133,7 @@ CAMBER_FN void camber_cell_bounds_of(const camber_edges *p, camber_cell_bounds *
     const camber_real bend_a = CAMBER_FABS(p->sa), bend_b = CAMBER_FABS(p->sb);
     const camber_real bend = 0.25f * CAMBER_MORE(bend_a, bend_b);
     /* A sharp join may cut pixels that lie far from it. */
-    const camber_real near = p->sharp ? CAMBER_REAL(CAMBER_NEVER_PX) : reach + 0.75f;
+    const camber_real near = p->sharp ? CAMBER_REAL(CAMBER_NEVER_PX) : reach + CAMBER_PAD_PX;
     b->wide = h + p->side.extent + reach + bend;
     b->full = h > 2.0f ? h - p->side.extent - reach : always;
     b->near_a = near;

@@ -23,6 +23,8 @@
 #define CAMBER_AT(place) place
 #define CAMBER_SQRT(x) sqrt(x)
 #define CAMBER_FABS(x) abs(x)
+#define CAMBER_SIN(x) sin(x)
+#define CAMBER_COS(x) cos(x)
 #define CAMBER_BOTH(a, b) ((a) && (b))
 #define CAMBER_EITHER(a, b) ((a) || (b))
 #define CAMBER_CAST(type, x) type(x)
@@ -51,6 +53,8 @@ typedef uint64_t camber_u64;
 #define CAMBER_GLOBAL
 #define CAMBER_SQRT(x) sqrtf(x)
 #define CAMBER_FABS(x) fabsf(x)
+#define CAMBER_SIN(x) sinf(x)
+#define CAMBER_COS(x) cosf(x)
 #define CAMBER_SAME_NAME
 #endif
 typedef int camber_flag; /* 0: no */

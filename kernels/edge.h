@@ -87,7 +87,7 @@ CAMBER_FN void camber_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, 
     p->thin = CAMBER_YES;
     p->tips = CAMBER_END_IS_ROUND_CAP(end_a) || CAMBER_END_IS_ROUND_CAP(end_b);
     p->capped = p->flat_a < CAMBER_NEVER_PX || p->flat_b < CAMBER_NEVER_PX;
-    p->bends = CAMBER_FABS(p->sa) + CAMBER_FABS(p->sb) > 1e-3f;
+    p->bends = camber_line_bends(p->sa, p->sb);
     p->sharp = p->end_a == CAMBER_ENDS_MITER || p->end_a == CAMBER_ENDS_BEVEL || p->end_a > CAMBER_ENDS_SPLIT_ROUND ||
                p->end_b == CAMBER_ENDS_MITER || p->end_b == CAMBER_ENDS_BEVEL || p->end_b > CAMBER_ENDS_SPLIT_ROUND;
     p->narrow = p->wide_a < 1.0f || p->wide_b < 1.0f;
@@ -112,7 +112,7 @@ CAMBER_FN float camber_cell_reach(float nx, float ny) {
 /* Whether a join's cut may pass through a pixel of a cell, whose middle is x, y. */
 CAMBER_FN camber_mask camber_cut_is_near(const camber_seen_edge *cut, float wide, camber_real x, camber_real y) {
     return camber_seen_inside(cut, x, y) <=
-           (wide < 1.0f ? camber_cell_reach(cut->x, cut->y) + 0.75f : CAMBER_ALWAYS_PX);
+           (wide < 1.0f ? camber_cell_reach(cut->x, cut->y) + CAMBER_PAD_PX : CAMBER_ALWAYS_PX);
 }
 
 /* How cells lie to a segment, by the positions of their middles. */

@@ -82,6 +82,14 @@ CAMBER_FN float camber_dashes_ends(float total) {
     return 0.5f * total < 0.75f ? 0.5f * total : 0.75f;
 }
 
+/* Dashes of a smaller period may fade to the share that they draw. How small they are seen with a pitch differs from
+ * pixel to pixel. */
+#if CAMBER_STROKE_PITCHED
+#define CAMBER_SMALL_PERIOD_PX CAMBER_NEVER_PX
+#else
+#define CAMBER_SMALL_PERIOD_PX 2.0f
+#endif
+
 /* The share of the period that dashes draw. */
 CAMBER_FN float camber_dashes_drawn(CAMBER_IN(camber_extras) e) {
     float drawn = 0.0f;
@@ -110,7 +118,7 @@ CAMBER_FN camber_real camber_dashes_cover(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
         area += camber_cut_along(p, at, place - CAMBER_DASH_FROM(e, i)) -
                 camber_cut_along(p, at, place - CAMBER_DASH_TO(e, i));
 #if !CAMBER_STROKE_PITCHED
-    if (e->period >= 2.0f)
+    if (e->period >= CAMBER_SMALL_PERIOD_PX)
         return area;
 #endif
     const camber_real apart = camber_clamp_to_one(camber_seen_along(at, CAMBER_REAL(e->period)) - 1.0f);

@@ -54,16 +54,17 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
 
 /* tan(t/4) as 16 bits. Never 0, which marks a cap: a straight join turns by 0.007 degrees. */
 CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
-    const float q = turn.s / (1.0f + turn.c) * 32767.0f;
+    const float q = turn.s / (1.0f + turn.c) * CAMBER_LARGEST_TURN;
     const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
-    const float bounded = rounded > 32767.0f ? 32767.0f : rounded < -32767.0f ? -32767.0f : rounded;
+    const float bounded = rounded > CAMBER_LARGEST_TURN    ? CAMBER_LARGEST_TURN
+                          : rounded < -CAMBER_LARGEST_TURN ? -CAMBER_LARGEST_TURN
+                                                           : rounded;
     const camber_i32 turns = CAMBER_CAST(camber_i32, bounded);
     return turns == 0 ? 1u : CAMBER_CAST(camber_u32, turns) & 0xffffu;
 }
 
 CAMBER_FN float camber_turn_unpack(camber_u32 join) {
-    const camber_i32 q = (camber_i32)(join & 0xffffu);
-    return (float)(q >= 32768 ? q - 65536 : q) * (1.0f / 32767.0f);
+    return CAMBER_CAST(float, CAMBER_CAST(camber_i32, join << 16) >> 16) * (1.0f / CAMBER_LARGEST_TURN);
 }
 
 /* tan(t/2) from q = tan(t/4). Large, not infinite, at a full reversal. */
@@ -183,7 +184,7 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     const camber_u32 kind = camber_join_kind(join);
     const float q = camber_turn_unpack(join);
     const float cut = -end * side * camber_turn_tan_half(q);
-    const camber_u32 is_inner = side * q > 0.0f;
+    const camber_flag is_inner = side * q > 0.0f;
     if (kind > CAMBER_KIND_CUT && is_inner && method != CAMBER_FAN)
         return end;
     if (method == CAMBER_STRIP)
@@ -196,8 +197,8 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
 /* The bound on that, px: past a butt end, and past the inner side of a tight join, the pad, however wide the line. */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == CAMBER_ENDS_BUTT;
-    const camber_u32 is_inner = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) > 0.0f;
+    const camber_flag is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == CAMBER_ENDS_BUTT;
+    const camber_flag is_inner = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) > 0.0f;
     return is_butt || is_inner ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX;
 }
 
@@ -209,24 +210,24 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
  *                       the other way, as Mb lies before the line through Ma and C, and is culled; one has no area
  *   end, break, start   at a split join there */
 CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
-    const camber_u32 first = info & CAMBER_POINT_FIRST ? 1u : 0u;
-    const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
+    const camber_u32 first = CAMBER_HAS(info, CAMBER_POINT_FIRST) ? 1u : 0u;
+    const camber_u32 inner = CAMBER_HAS(info, CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
     const camber_u32 live = kind == CAMBER_KIND_SENTINEL ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
     return live + (kind > CAMBER_KIND_CUT ? inner : 0u) + (kind > CAMBER_KIND_TIGHT ? inner : 0u);
 }
 
 /* Whether a record begins a strip. */
-CAMBER_FN camber_u32 camber_record_starts(camber_u32 last) {
-    return last & (CAMBER_POINT_FIRST | CAMBER_RECORD_START) ? 1u : 0u;
+CAMBER_FN camber_flag camber_record_starts(camber_u32 last) {
+    return CAMBER_HAS(last, CAMBER_POINT_FIRST | CAMBER_RECORD_START);
 }
 
 /* Whether a start's edge on a side is that of the end before it: at a ring's cut seam, so that no pixel falls between,
  * and at the outer side of a tight join. */
-CAMBER_FN camber_u32 camber_edge_is_shared(camber_u32 join, camber_u32 last, float side) {
+CAMBER_FN camber_flag camber_edge_is_shared(camber_u32 join, camber_u32 last, float side) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 seam = last & CAMBER_POINT_RING && kind == CAMBER_KIND_CUT ? 1u : 0u;
-    const camber_u32 outer = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) < 0.0f ? 1u : 0u;
-    return last & CAMBER_POINT_FIRST ? seam : outer;
+    const camber_flag seam = CAMBER_HAS(last, CAMBER_POINT_RING) && kind == CAMBER_KIND_CUT;
+    const camber_flag outer = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) < 0.0f;
+    return CAMBER_HAS(last, CAMBER_POINT_FIRST) ? seam : outer;
 }
 
 /* The join word of kite's and fan's records. cap: of the line. */
@@ -238,15 +239,55 @@ CAMBER_FN camber_u32 camber_record_join(camber_u32 join, camber_u32 cap, float h
 /* The corner that a body begins with on a side. Cut bodies have it in common with the end before: those of kites the
  * inner one, and straight ones both. */
 CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32 method) {
-    const camber_u32 inner = method == CAMBER_KITE && side * camber_turn_unpack(join) > 0.0f;
-    const camber_u32 shared = camber_join_kind(join) == CAMBER_KIND_CUT && (inner || camber_join_triangles(join) == 0u);
-    return (shared ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_OUT_LEFT) + (side > 0.0f ? 0u : 1u);
+    const camber_flag inner = method == CAMBER_KITE && side * camber_turn_unpack(join) > 0.0f;
+    const camber_flag in_both =
+        camber_join_kind(join) == CAMBER_KIND_CUT && (inner || camber_join_triangles(join) == 0u);
+    return (in_both ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_OUT_LEFT) + (side > 0.0f ? 0u : 1u);
 }
 
 /* The i-th of a join's own vertices, of which it has triangles - 1. */
-CAMBER_FN camber_u32 camber_join_corner(camber_u32 i, camber_u32 triangles, camber_u32 is_fan) {
+CAMBER_FN camber_u32 camber_join_corner(camber_u32 i, camber_u32 triangles, camber_flag is_fan) {
     return is_fan ? CAMBER_CORNER_FAN + i + 1u : triangles == 2u ? CAMBER_CORNER_TIP : CAMBER_CORNER_IN_TIP + i;
 }
+
+/* Whether a corner is placed by the segment out of its point. */
+CAMBER_FN camber_flag camber_corner_goes_out(camber_u32 corner) {
+    return corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT || corner == CAMBER_CORNER_OUT_RIGHT ||
+           corner == CAMBER_CORNER_OUT_TIP;
+}
+
+#ifndef CAMBER_DEVICE
+/* Places a join's own vertices, along and across its segment from the point P, in units of the reach. q is
+ * tan(turn / 4); step: the row's fan_step. For host and shaders: kernels have no sine.
+ *
+ *              TIP                IN_TIP -- BISECTOR -- OUT_TIP            FAN+1 .. FAN+2
+ *            /     \                /                       \             .               .
+ *     ----- L       L' -----   --- L                         L' ---      L                 L'
+ *            \     /                 \                     /               \             /
+ *               P                               P                                 P
+ *
+ *     kite                     two kites, past 120 degrees              fan: steps on the arc
+ *
+ * L and L' are the outer edge vertices of the segments in and out. A fan's chords touch the padded arc from outside
+ * instead of cutting it, hence 1 / cos. */
+CAMBER_FN void camber_join_corner_at(camber_u32 corner, float q, float step, CAMBER_OUT(float) along,
+                                     CAMBER_OUT(float) across) {
+    const float outer = q > 0.0f ? -1.0f : 1.0f, a = CAMBER_FABS(q), scale = 1.0f / (1.0f + a * a);
+    const float angle =
+        step * CAMBER_CAST(float, CAMBER_CAST(camber_i32, corner) - CAMBER_CAST(camber_i32, CAMBER_CORNER_FAN));
+    const float arc = 1.0f / CAMBER_COS(0.5f * step), cosine = CAMBER_COS(angle) * arc;
+    CAMBER_AT(along) = corner == CAMBER_CORNER_CENTRE     ? 0.0f
+                       : corner == CAMBER_CORNER_TIP      ? camber_turn_tan_half(a)
+                       : corner == CAMBER_CORNER_IN_TIP   ? a
+                       : corner == CAMBER_CORNER_BISECTOR ? 2.0f * a * scale
+                       : corner == CAMBER_CORNER_OUT_TIP  ? -a
+                                                          : CAMBER_SIN(angle) * arc;
+    CAMBER_AT(across) = outer * (corner == CAMBER_CORNER_CENTRE     ? 0.0f
+                                 : corner == CAMBER_CORNER_BISECTOR ? (1.0f - a * a) * scale
+                                 : corner > CAMBER_CORNER_OUT_TIP   ? cosine
+                                                                    : 1.0f);
+}
+#endif
 
 /* How many vertices and indices a point emits, vertices | indices << 16. Vertices are distinct ones:
  *   strip       L, R of each start and end, but for the outer one that they have in common at a tight join
@@ -257,23 +298,24 @@ CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camb
     const camber_u32 kind = camber_join_kind(join);
     if (method == CAMBER_STRIP) {
         const camber_u32 records = camber_strip_records(kind, info);
-        const camber_u32 inside = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
-        const camber_u32 vertices = records == 3u ? 4u : inside ? 1u + records : 2u;
+        const camber_flag ends = CAMBER_HAS(info, CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+        const camber_u32 vertices = records == 3u ? 4u : ends ? 2u : 1u + records;
         return records == 0u ? 0u : vertices | records << 17;
     }
     if (kind == CAMBER_KIND_SENTINEL)
-        return 0;
+        return 0u;
     if (kind == CAMBER_KIND_DOT)
         return 4u | 6u << 16;
-    if (info & CAMBER_POINT_FIRST)
+    if (CAMBER_HAS(info, CAMBER_POINT_FIRST))
         return kind == CAMBER_KIND_CAP ? 2u : 3u;
     const camber_u32 triangles = camber_join_triangles(join);
     const camber_u32 joined = kind != CAMBER_KIND_CAP ? 1u : 0u;
     const camber_u32 centred = joined + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
     const camber_u32 inner = triangles == 0u ? 2u : method == CAMBER_KITE ? 1u : 0u;
-    const camber_u32 shared = kind == CAMBER_KIND_CUT ? inner : 0u;
-    const camber_u32 out = info & CAMBER_POINT_LAST ? (triangles ? 1u : 0u) : 2u - shared;
-    const camber_u32 vertices = 2u + joined * (1u + (triangles ? triangles - 1u : 0u) + out);
+    const camber_u32 in_both = kind == CAMBER_KIND_CUT ? inner : 0u;
+    const camber_u32 own = triangles == 0u ? 0u : triangles - 1u, last = triangles == 0u ? 0u : 1u;
+    const camber_u32 out_of = CAMBER_HAS(info, CAMBER_POINT_LAST) ? last : 2u - in_both;
+    const camber_u32 vertices = 2u + joined * (1u + own + out_of);
     return vertices | (3u * (2u + centred) + 3u * triangles) << 16;
 }
 

@@ -140,6 +140,8 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_ENDS_SPLIT_MITER 7u
 
 #define CAMBER_NO_LIMIT_PX 3.0e38f
+#define CAMBER_LARGEST_TURN 32767.0f /* what tan(turn / 4) = 1 is stored as */
+#define CAMBER_DIAGONAL 1.4143f      /* of a square whose side is 1, and a little more */
 
 #if defined(CAMBER_DEVICE)
 typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];

@@ -29,6 +29,25 @@ CAMBER_FN void camber_pitch_see(camber_eye e, camber_real x, camber_real y, CAMB
     CAMBER_AT(seen_y) = y * e.cosine * by_depth;
 }
 
+/* Clips a segment to what the camera sees: from where to where, px along it from A, which lies at ay. all_over: it may
+ * be seen anywhere in the picture, as a wide line with one side behind the camera. Returns whether it is seen. */
+CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, camber_real ay, camber_real ux, camber_real uy,
+                                        camber_real half_width, CAMBER_INOUT(camber_real) from,
+                                        CAMBER_INOUT(camber_real) to, CAMBER_OUT(camber_mask) all_over) {
+    /* A point that is nearer than the picture's bottom is not seen. One half as deep is not projected exactly. */
+    const float nearest = e.cosine / (e.cosine + e.fall * e.y), hidden = 0.5f * nearest;
+    const camber_real spread = e.fall * CAMBER_FABS(ux) * half_width, rate = e.fall * uy;
+    const camber_real room = 1.0f - e.fall * ay - spread - hidden;
+    const camber_real at_from = room - rate * CAMBER_AT(from), at_to = room - rate * CAMBER_AT(to);
+    const camber_real cut = room / (rate == 0.0f ? CAMBER_REAL(1.0f) : rate);
+    const camber_mask everywhere = CAMBER_BOTH(2.0f * spread > nearest - hidden, CAMBER_LESS(at_from, at_to) < 0.0f);
+    CAMBER_AT(to) = CAMBER_BOTH(rate > 0.0f, cut < CAMBER_AT(to)) ? cut : CAMBER_AT(to);
+    CAMBER_AT(from) = CAMBER_BOTH(rate<0.0f, cut> CAMBER_AT(from)) ? cut : CAMBER_AT(from);
+    CAMBER_AT(all_over) = everywhere;
+    const camber_mask gone = CAMBER_EITHER(CAMBER_AT(from) > CAMBER_AT(to), CAMBER_BOTH(rate == 0.0f, room < 0.0f));
+    return CAMBER_EITHER(everywhere, !gone);
+}
+
 /* The width in the picture of a line through a point of the plane, px. */
 CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_real y, camber_real ux, camber_real uy,
                                          camber_real half_width) {

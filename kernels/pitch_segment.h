@@ -3,7 +3,7 @@
  * Input: a segment in the plane and the camera (src/base/perspective.h). Output: the segment's footprint, a rectangle
  * of the picture around all that it draws, in the words of a segment; and camber_plane, which its edge needs besides.
  * Positions in the plane count from the point that the camera looks at; those seen count from the picture's middle. The
- * footprint alone counts from the picture's corner. shaders/stroke.vert holds the same formulas under PITCHED.
+ * footprint alone counts from the picture's corner. shaders/stroke.vert makes a trapezoid of it.
  *
  * A distance from a line of the plane, n . p - n . a, times by_depth (1 / depth) is linear in the picture. So straight
  * edges of the plane are straight in the picture, and far from the ends of a segment only its sides count. */
@@ -35,22 +35,6 @@ typedef struct camber_plane {
     camber_pitch_cut cut_a, cut_b;
     camber_real ends, margin, left[3], right[3];
 } camber_plane;
-
-/* Clips a segment to what the camera sees: from where to where, px along it from A. all_over: it may be seen anywhere
- * in the picture, as a wide line with one side behind the camera. Returns whether it is seen. */
-CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, const camber_segment *s, camber_real *from, camber_real *to,
-                                        camber_mask *all_over) {
-    /* A point that is nearer than the picture's bottom is not seen. One half as deep is not projected exactly. */
-    const float nearest = e.cosine / (e.cosine + e.fall * e.y), hidden = 0.5f * nearest;
-    const camber_real spread = e.fall * CAMBER_FABS(s->ux) * s->half_width, rate = e.fall * s->uy;
-    const camber_real room = 1.0f - e.fall * s->ay - spread - hidden;
-    const camber_real at_from = room - rate * *from, at_to = room - rate * *to;
-    const camber_real cut = room / (rate == 0.0f ? CAMBER_REAL(1.0f) : rate);
-    *all_over = (2.0f * spread > nearest - hidden) & (CAMBER_LESS(at_from, at_to) < 0.0f);
-    *to = ((rate > 0.0f) & (cut < *to)) ? cut : *to;
-    *from = ((rate < 0.0f) & (cut > *from)) ? cut : *from;
-    return *all_over | !((*from > *to) | ((rate == 0.0f) & (room < 0.0f)));
-}
 
 /* The footprint of a segment: the rectangle along it in the picture that holds its corners, and half a pixel around
  * them. from and to: px along the segment in the plane. */
@@ -114,7 +98,8 @@ CAMBER_FN camber_mask camber_pitch_edge_of(camber_eye e, const camber_segment *s
     const camber_real length = (s->bx - s->ax) * s->ux + (s->by - s->ay) * s->uy;
     camber_real from = CAMBER_REAL(0.0f), to = length, x0, y0, x1, y1;
     camber_mask all_over;
-    const camber_mask seen = camber_pitch_clip(e, s, &from, &to, &all_over), is_whole = to >= length;
+    const camber_mask seen = camber_pitch_clip(e, s->ay, s->ux, s->uy, s->half_width, &from, &to, &all_over),
+                      is_whole = to >= length;
     camber_pitch_see(e, s->ax + s->ux * from, s->ay + s->uy * from, &x0, &y0);
     camber_pitch_see(e, is_whole ? s->bx : s->ax + s->ux * to, is_whole ? s->by : s->ay + s->uy * to, &x1, &y1);
     camber_edge_segment(e.x + x0, e.y + y0, e.x + x1, e.y + y1, footprint);
@@ -142,7 +127,7 @@ CAMBER_FN camber_mask camber_pitch_segment_of(camber_eye e, float horizon, const
     camber_real from = none - camber_pitch_reach(end_a, ca, sa, h);
     camber_real to = along_b - along_a + camber_pitch_reach(end_b, cb, sb, h);
     camber_mask all_over;
-    const camber_mask seen = camber_pitch_clip(e, s, &from, &to, &all_over);
+    const camber_mask seen = camber_pitch_clip(e, s->ay, s->ux, s->uy, s->half_width, &from, &to, &all_over);
     *footprint = *s;
     camber_pitch_footprint(e, s, from, to, all_over, footprint, &plane->ends);
     return seen & (CAMBER_MORE(footprint->ay, footprint->by) + footprint->reach > horizon);

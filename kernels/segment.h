@@ -27,6 +27,8 @@
 /* The half width of an edge of a ring, and how far around the box of its ends tiles have to know of it, px. */
 #define CAMBER_EDGE_PX 0.0f
 #define CAMBER_EDGE_REACH_PX 0.5f
+/* The middles of pixels lie half a pixel inside their tile; a sixteenth is left for rounding. */
+#define CAMBER_INSET_PX 0.4375f
 
 /* How a brush's segments come together. */
 #define CAMBER_BRUSH_OVER 0u  /* each is drawn over the others */
@@ -112,18 +114,6 @@ CAMBER_FN camber_words camber_end_flags(camber_words end) {
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
 
-/* The bits of an end. soon: whether the line ends with the next segment; length: of the segment itself; c and s: cosine
- * and sine of half the turn. *own: camber_owner_side. */
-CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber_real length, camber_real c,
-                                     camber_real s, camber_real half_width, camber_mask *own) {
-    const camber_words none = (camber_words)(0u), end = camber_segment_end(join);
-    const camber_mask butt = soon & (CAMBER_JOIN_STUB(join) != 0u), opens = camber_opens(join, length, half_width);
-    const camber_mask keeps = opens & camber_is_longer(join, length) & (half_width > CAMBER_WIDE_PX);
-    *own = (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & camber_owner_side(soon | keeps, butt, c, s, half_width);
-    return end | camber_flat_join(join, butt, *own, opens, length) |
-           (soon ? (camber_words)(1u << CAMBER_END_LAST_SHIFT) : none);
-}
-
 /* How far an end reaches outside the box of A and B, in units of half width + pad. */
 CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     const camber_words end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
@@ -131,7 +121,7 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     const camber_real miter = (1.0f + q * q) / CAMBER_MORE(below, CAMBER_REAL(1e-3f));
     const camber_real corner = end == CAMBER_ENDS_ROUND || end == CAMBER_ENDS_BUTT || end == CAMBER_ENDS_SPLIT_ROUND
                                    ? CAMBER_REAL(1.0f)
-                                   : CAMBER_REAL(1.4143f);
+                                   : CAMBER_REAL(CAMBER_DIAGONAL);
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
@@ -203,7 +193,7 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
     const float a_tile = 1.0f / CAMBER_TILE_PX, right = (float)(columns - 1u), bottom = (float)(rows - 1u);
     /* The box reaches to the middles of pixels, and a little farther, so that no cell's box lies outside its tile's.
      * Tiles are counted from the picture's first one, and then from the area's, so that every area finds the same. */
-    const float inset = 0.4375f, from_x = left * a_tile, from_y = top * a_tile;
+    const float inset = CAMBER_INSET_PX, from_x = left * a_tile, from_y = top * a_tile;
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_real x0 = (CAMBER_LESS(s->ax, s->bx) - s->reach + inset) * a_tile - from_x;
     const camber_real x1 = (CAMBER_MORE(s->ax, s->bx) + s->reach - inset) * a_tile - from_x;
@@ -276,7 +266,7 @@ CAMBER_FN camber_u32 camber_row_span(const camber_tile_line *l, float middle, fl
 /* Whether from and to lie in the same column, or row, of tiles, as camber_segment_box counts them before the area's
  * edges cut the box. */
 CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
-    const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = 0.4375f;
+    const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = CAMBER_INSET_PX;
     const float a = (from + inset) * a_tile, b = (to - inset) * a_tile;
     const float lower = a < least ? least : a > most ? most : a, upper = b < least ? least : b > most ? most : b;
     const int first = (int)lower, last = (int)upper;

@@ -24,7 +24,6 @@
 #define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
 #define CAMBER_WIDE_PX 4.0f  /* in lines of a larger half width, what short pieces leave open is seen most */
 #define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
-#define CAMBER_LARGEST_TURN 32767.0f /* what tan(turn / 4) = 1 is stored as */
 
 /* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-11 where a join is flat (camber_flat_join), 12 the line ends with
  * the next segment. */
@@ -120,6 +119,26 @@ CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, cam
     const camber_words behind = CAMBER_BOTH(butt, camber_is_longer(join, length)) ? CAMBER_JOIN_STUB(join) : most;
     const camber_mask open = CAMBER_BOTH(own, CAMBER_EITHER(butt, opens));
     return CAMBER_EITHER(behind < most, open) ? behind << CAMBER_END_FLAT_SHIFT : none;
+}
+
+/* All bits of an end. soon: whether the line ends with the next segment; length: of the segment itself; c and s: cosine
+ * and sine of half the turn. own: camber_owner_side. */
+CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber_real length, camber_real c,
+                                     camber_real s, camber_real half_width, CAMBER_OUT(camber_mask) own) {
+    const camber_words none = CAMBER_WORD(0u), end = camber_segment_end(join);
+    const camber_words last = CAMBER_WORD(1u << CAMBER_END_LAST_SHIFT);
+    const camber_mask butt = CAMBER_BOTH(soon, CAMBER_JOIN_STUB(join) != 0u);
+    const camber_mask opens = camber_opens(join, length, half_width), wide = half_width > CAMBER_WIDE_PX;
+    const camber_mask keeps = CAMBER_BOTH(CAMBER_BOTH(opens, camber_is_longer(join, length)), wide);
+    const camber_mask more = camber_owner_side(CAMBER_EITHER(soon, keeps), butt, c, s, half_width);
+    const camber_mask owns = CAMBER_BOTH(CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT, more);
+    CAMBER_AT(own) = owns;
+    return end | camber_flat_join(join, butt, owns, opens, length) | (soon ? last : none);
+}
+
+/* Whether a segment's neighbours take the line to the side, by the sines of half its turns. */
+CAMBER_FN camber_flag camber_line_bends(float sine_a, float sine_b) {
+    return CAMBER_FABS(sine_a) + CAMBER_FABS(sine_b) > 1e-3f;
 }
 
 /* The tangent of half a turn, as images bend at joins; 0 where the line goes straight on. */

@@ -158,7 +158,7 @@ camber_edge edge_here() {
     p.fall = u_eye.w;
     p.along_a = dot(a, v_segment.zw);
     p.across_a = a.y * p.ux - a.x * p.uy;
-    p.bends = abs(p.sa) + abs(p.sb) > 1e-3;
+    p.bends = camber_line_bends(p.sa, p.sb);
     p.wide_a = v_cut_a.w;
     p.wide_b = v_cut_b.w;
     p.cut_a.x = v_cut_a.x;
@@ -236,7 +236,7 @@ camber_extras extras_here() {
     e.dash_count = uint(v_dashes.y >> 1);
     e.round_dashes = (v_dashes.y & 1) != 0;
     e.ends = camber_dashes_ends(e.total);
-    if (PITCHED != 0 || e.period < 2.0)
+    if (e.period < CAMBER_SMALL_PERIOD_PX)
         e.drawn = camber_dashes_drawn(e);
 #endif
 #if TRIM

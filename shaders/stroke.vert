@@ -9,6 +9,7 @@ precision highp int;
 
 #define CAMBER_STROKE_PITCHED PITCHED
 #define MEASURED (DASH || TRIM || RAMP || PATTERN)
+#include "join.h"
 #include "pitch.h"
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
@@ -68,8 +69,6 @@ flat out vec2 v_end;
 flat out vec4 v_cut_a, v_cut_b;
 #endif
 
-const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
-
 struct Record {
     vec2 p;
     uint join, last;
@@ -105,65 +104,17 @@ int stops_up_to(float place, ivec2 ramp, float len) {
 }
 #endif
 
-float turn_of(uint join) {
-    return camber_quarter_turn(join);
-}
-
-uint kind_of(uint join) {
-    return join >> CAMBER_JOIN_KIND_SHIFT;
-}
-
 // How a segment ends. With kite and fan the triangles say what belongs to a segment; with PITCHED they do not.
 uint end_of(uint join) {
-#if PITCHED && METHOD != 0
+#if PITCHED
     return CAMBER_END_KIND(camber_segment_end(join));
 #else
-    return join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
+    return camber_join_end(join);
 #endif
 }
-
-float tan_half(float q) {
-    return 2.0 * q / max(1.0 - q * q, 1e-6);
-}
-
-// Where a vertex lies: along its segment from its point, bounded by limit px, and across, both in units of the reach.
-struct Extrusion {
-    float along, limit, across;
-};
-
-// Places a vertex of an edge. end: 1 at the segment's end, -1 at its start. side: 1 left, -1 right.
-Extrusion edge_at(uint join, float end, float side) {
-    uint kind = kind_of(join);
-    float q = turn_of(join), cut = -end * side * tan_half(q);
-    bool inner = side * q > 0.0, ends = kind < CAMBER_KIND_CUT || (METHOD != 2 && kind > CAMBER_KIND_CUT && inner);
-    bool butt = kind < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_BUTT;
-#if METHOD == 0
-    float along = ends || kind == CAMBER_KIND_SPLIT ? end : cut;
-#else
-    float along = METHOD == 1 && kind == CAMBER_KIND_CUT && inner ? cut : ends ? end : 0.0;
-#endif
-    return Extrusion(along, butt || (kind == CAMBER_KIND_TIGHT && inner) ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX, side);
-}
-
-#if METHOD != 0
-const uint CENTRE = 0u, IN_LEFT_CORNER = 1u, OUT_LEFT_CORNER = 3u, OUT_RIGHT_CORNER = 4u, TIP = 5u, IN_TIP = 6u,
-           BISECTOR = 7u, OUT_TIP = 8u, FAN = 63u;
-
-Extrusion corner_at(uint corner, float q, float step) {
-    float outer = q > 0.0 ? -1.0 : 1.0, a = abs(q), scale = 1.0 / (1.0 + a * a);
-    float angle = step * float(int(corner) - int(FAN)), reach = 1.0 / cos(0.5 * step);
-    vec2 place = corner == CENTRE     ? vec2(0.0)
-                 : corner == TIP      ? vec2(tan_half(a), outer)
-                 : corner == IN_TIP   ? vec2(a, outer)
-                 : corner == BISECTOR ? vec2(2.0 * a, outer * (1.0 - a * a)) * scale
-                 : corner == OUT_TIP  ? vec2(-a, outer)
-                                      : vec2(sin(angle), outer * cos(angle)) * reach;
-    return Extrusion(place.x, CAMBER_NO_LIMIT_PX, place.y);
-}
-#endif
 
 bool is_round_cap(uint join) {
-    return kind_of(join) < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_ROUND;
+    return camber_join_kind(join) < CAMBER_KIND_CUT && end_of(join) == CAMBER_ENDS_ROUND;
 }
 
 #if PITCHED
@@ -171,12 +122,10 @@ camber_eye eye() {
     return camber_eye(u_eye.x, u_eye.y, u_eye.z, u_eye.w);
 }
 
-float depth_at(vec2 p) {
-    return 1.0 - u_eye.w * p.y;
-}
-
 vec2 seen_of(vec2 p) {
-    return vec2(p.x, p.y * u_eye.z) / depth_at(p);
+    vec2 seen;
+    camber_pitch_see(eye(), p.x, p.y, seen.x, seen.y);
+    return seen;
 }
 
 // The bits of an end (kernels/stroke_ends.h). soon: the bit of the join that says that the line ends with the segment.
@@ -186,7 +135,7 @@ uint end_bits(uint join, uint soon) {
 
 float end_reach(uint join, float half_width) {
     float c, s;
-    camber_half_turn(turn_of(join), c, s);
+    camber_half_turn(camber_turn_unpack(join), c, s);
     return camber_pitch_reach(camber_segment_end(join), c, s, half_width);
 }
 
@@ -194,20 +143,11 @@ float end_reach(uint join, float half_width) {
 // middle: a trapezoid along the segment as it is seen. false: nothing is seen.
 bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b, int corner, out vec2 place) {
     float from = -end_reach(join_a, half_width), to = len + end_reach(join_b, half_width);
-    // Points less deep than the picture's bottom are not seen, and those less than half as deep cannot be projected well.
-    float nearest = u_eye.z / (u_eye.z + u_eye.w * u_eye.y), hidden = 0.5 * nearest;
-    float spread = u_eye.w * abs(u.x) * half_width, rate = u_eye.w * u.y, room = depth_at(a) - spread - hidden;
-    bool right = (corner & 1) != 0, far = corner > 1;
-    place = vec2(0.0);
-    if (2.0 * spread > nearest - hidden) { // wider than that: a line whose one side is behind the camera may be seen
-        place = u_eye.xy * vec2(right ? 1.0 : -1.0, far ? 1.0 : -1.0);
-        if (min(room - rate * from, room - rate * to) < 0.0)
-            return true;
-    }
-    to = rate > 0.0 ? min(to, room / rate) : to;
-    from = rate < 0.0 ? max(from, room / rate) : from;
-    if (from > to || (rate == 0.0 && room < 0.0))
-        return false;
+    bool right = (corner & 1) != 0, far = corner > 1, all_over;
+    bool is_seen = camber_pitch_clip(eye(), a.y, u.x, u.y, half_width, from, to, all_over);
+    place = u_eye.xy * vec2(right ? 1.0 : -1.0, far ? 1.0 : -1.0);
+    if (all_over || !is_seen)
+        return is_seen;
     vec2 side = vec2(-u.y, u.x) * half_width, start = seen_of(a + u * from), run = seen_of(a + u * to) - start;
     float seen_length = length(run);
     vec2 axis = seen_length > 1e-3 ? run / seen_length : vec2(1.0, 0.0);
@@ -228,30 +168,33 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
     bool tapers = abs(far_side.x - near_side.x) > 4.0 && abs(slope) < 1.0;
     float other = max(low * (far ? left_a.y : left_b.y), low * (far ? right_a.y : right_b.y));
     float across = tapers ? max(widest, low * (near_side.y + slope * (at - near_side.x))) : max(widest, other);
-    vec2 found = vec2(at, low * (across + (tapers ? 1.4143 : 1.0) * CAMBER_PAD_PX));
+    vec2 found = vec2(at, low * (across + (tapers ? CAMBER_DIAGONAL : 1.0) * CAMBER_PAD_PX));
     place = start + axis * found.x + vec2(-axis.y, axis.x) * found.y;
     return true;
 }
 #endif
 
 #if !PITCHED
-// camber_flat_end_from and camber_owner_from of an end. Where triangles are cut along the bisector, they bound it.
+// camber_flat_end_from and camber_owner_from of an end. Triangles that are cut along the bisector bound it, and a fan's
+// need no stub.
 vec2 flat_and_owner(uint join, uint soon, vec2 turn, float len, float half_width) {
-    bool is_bounded = METHOD == 2 || kind_of(join) <= CAMBER_KIND_CUT;
-    bool ends_soon = (join & soon) != 0u, butt = METHOD != 2 && ends_soon && CAMBER_JOIN_STUB(join) != 0u;
-    bool opens = METHOD != 2 && camber_opens(join, len, half_width);
-    bool keeps = opens && camber_is_longer(join, len) && half_width > CAMBER_WIDE_PX;
-    bool own = !is_bounded && camber_owner_side(ends_soon || keeps, butt, turn.x, turn.y, half_width);
-    uint stub = camber_flat_join(join, butt, own, opens, len);
-    return vec2(camber_flat_end_from(end_of(join) | stub, half_width), camber_owner_from(is_bounded, own, stub != 0u));
+#if METHOD == 2
+    join &= ~(CAMBER_STUB_MOST << CAMBER_JOIN_STUB_SHIFT);
+    bool is_bounded = true, own;
+#else
+    bool is_bounded = camber_join_kind(join) <= CAMBER_KIND_CUT, own;
+#endif
+    uint end = camber_end_of(join, (join & soon) != 0u, len, turn.x, turn.y, half_width, own);
+    return vec2(camber_flat_end_from(end, half_width),
+                camber_owner_from(is_bounded, own, CAMBER_END_FLAT(end) != 0u));
 }
 #endif
 
 // Computes all that is constant over a segment.
 void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a, uint join_b) {
     uint end_a = end_of(join_a), end_b = end_of(join_b);
-    camber_half_turn(turn_of(join_a), v_turns.x, v_turns.y);
-    camber_half_turn(turn_of(join_b), v_turns.z, v_turns.w);
+    camber_half_turn(camber_turn_unpack(join_a), v_turns.x, v_turns.y);
+    camber_half_turn(camber_turn_unpack(join_b), v_turns.z, v_turns.w);
 #if PITCHED
     v_shape = vec4(len, half_width, camber_flat_from(end_a, half_width), camber_flat_from(end_b, half_width));
     camber_pitch_cut cut_a, cut_b;
@@ -285,8 +228,9 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
 #if PITCHED
 // Whether a segment ends at a record, from the record before it; of a dot of kite and fan, at itself.
 bool ends_segment(Record r) {
-    bool first = (r.last & FIRST) != 0u && (METHOD == 0 || kind_of(r.join) != CAMBER_KIND_DOT);
-    return kind_of(r.join) != CAMBER_KIND_SENTINEL && (r.last & (BREAK | START)) == 0u && !first;
+    uint kind = camber_join_kind(r.join);
+    bool first = (r.last & CAMBER_POINT_FIRST) != 0u && (METHOD == 0 || kind != CAMBER_KIND_DOT);
+    return kind != CAMBER_KIND_SENTINEL && (r.last & (CAMBER_RECORD_BREAK | CAMBER_RECORD_START)) == 0u && !first;
 }
 #endif
 
@@ -297,29 +241,27 @@ void main() {
     int seen_corner = place_in < 3 ? place_in : 6 - place_in;
     Record here = record_at(i);
     const bool goes_out = false;
-    int o = (METHOD != 0 && kind_of(here.join) == CAMBER_KIND_DOT) || i == 0 ? i : i - 1;
+    int o = (METHOD != 0 && camber_join_kind(here.join) == CAMBER_KIND_DOT) || i == 0 ? i : i - 1;
 #elif METHOD == 0
     int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id >> 1;
     bool right = (id & 1) != 0;
     Record here = record_at(i);
-    if ((here.last & BREAK) != 0u) { // the last vertex of the strip before, the first of that behind: no area between
+    if ((here.last & CAMBER_RECORD_BREAK) != 0u) { // the last vertex of the strip before, then the first of that behind
         i += right || i == 0 ? 1 : -1;
         right = !right;
         here = record_at(i);
     }
-    uint kind = kind_of(here.join);
-    bool is_seam = (here.last & RING) != 0u && kind == CAMBER_KIND_CUT,
-         is_outer = kind == CAMBER_KIND_TIGHT && right == (turn_of(here.join) > 0.0);
-    bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
-    bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
-    bool is_again = (here.last & START) != 0u; // the end lies between
+    float side = right ? -1.0 : 1.0;
+    bool goes_out = camber_record_starts(here.last) && !camber_edge_is_shared(here.join, here.last, side);
+    bool is_again = (here.last & CAMBER_RECORD_START) != 0u; // the end lies between
     int o = goes_out ? i + 1 : is_again ? i - 2 : i - 1;
 #else
     int table = u_table, i = gl_VertexID >> 7;
     uint corner = uint(gl_VertexID) & 127u;
     Record here = record_at(i);
-    bool goes_out = corner == CENTRE || corner == OUT_LEFT_CORNER || corner == OUT_RIGHT_CORNER || corner == OUT_TIP;
-    int o = kind_of(here.join) == CAMBER_KIND_DOT ? i : goes_out ? i + 1 : i - 1;
+    float side = (corner & 1u) != 0u ? 1.0 : -1.0;
+    bool goes_out = camber_corner_goes_out(corner);
+    int o = camber_join_kind(here.join) == CAMBER_KIND_DOT ? i : goes_out ? i + 1 : i - 1;
 #endif
     Record other = record_at(o);
 
@@ -333,14 +275,18 @@ void main() {
 
 #if PITCHED
     bool is_drawn = ends_segment(here);
-#elif METHOD == 0
-    Extrusion e = edge_at(here.join, goes_out ? -1.0 : 1.0, right ? -1.0 : 1.0);
 #else
-    bool is_edge = corner >= IN_LEFT_CORNER && corner <= OUT_RIGHT_CORNER;
-    Extrusion edge = edge_at(here.join, goes_out ? -1.0 : 1.0, (corner & 1u) != 0u ? 1.0 : -1.0);
-    Extrusion own = corner_at(corner, turn_of(here.join), row.y);
-    Extrusion e = Extrusion(is_edge ? edge.along : own.along, is_edge ? edge.limit : own.limit,
-                            is_edge ? edge.across : own.across);
+    // Along the segment from its point, bounded by limit px, and across: in units of the reach.
+    float along = camber_edge_along(here.join, goes_out ? -1.0 : 1.0, side, uint(METHOD));
+    float across = side, limit = camber_edge_limit(here.join, side);
+#if METHOD != 0
+    float own_along, own_across;
+    camber_join_corner_at(corner, camber_turn_unpack(here.join), row.y, own_along, own_across);
+    bool is_edge = corner >= CAMBER_CORNER_IN_LEFT && corner <= CAMBER_CORNER_OUT_RIGHT;
+    along = is_edge ? along : own_along;
+    across = is_edge ? across : own_across;
+    limit = is_edge ? limit : CAMBER_NO_LIMIT_PX;
+#endif
 #endif
 
     vec2 a = goes_out ? here.p : other.p, segment = goes_out ? other.p - here.p : here.p - other.p;
@@ -353,7 +299,7 @@ void main() {
     hand_over(a + middle, here.p + middle, u, len, half_width, join_a, join_b);
 #else
     float reach = half_width + CAMBER_PAD_PX;
-    vec2 place = here.p + row.zw + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
+    vec2 place = here.p + row.zw + u * clamp(along * reach, -limit, limit) + vec2(-u.y, u.x) * (across * reach);
 
     hand_over(a + row.zw, here.p, u, len, half_width, join_a, join_b);
 #endif

@@ -5,6 +5,8 @@
  * mesh needs. Kite and fan have their indices in the mesh, so a uniform says it, and each command takes a call. */
 #include "draw/renderer.h"
 
+#include "kernels/stroke_ends.h"
+
 /* A feature bit times CAMBER_VARIANT_FEATURES is the variant of the same name. */
 _Static_assert((int)CAMBER_VARIANT_GAP == (int)CAMBER_FEATURE_GAP * CAMBER_VARIANT_FEATURES &&
                    (int)CAMBER_VARIANT_PATTERN == (int)CAMBER_FEATURE_IMAGE * CAMBER_VARIANT_FEATURES &&
@@ -22,7 +24,8 @@ camber_status camber_gl_stroke_shader(camber_renderer *renderer, const camber_me
     if (variant & CAMBER_VARIANT_PITCHED)
         thinnest_px = 0.0f; /* far away all are */
     /* A pixel reaches sqrt(1/2) px along any normal; stroke.vert says where a tip ends: past where the cap does. */
-    const bool thin = thinnest_px < 1.4143f, tips = thin || (mesh->round_caps && thinnest_px < 3.7f);
+    const bool thin = thinnest_px < CAMBER_DIAGONAL,
+               tips = thin || (mesh->round_caps && thinnest_px < 2.0f * CAMBER_TIPS_PX);
     variant |=
         (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) | (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u);
     variant |= (unsigned)mesh->mesh_info.method * CAMBER_VARIANT_METHOD;

@@ -101,45 +101,20 @@ static void expand_strip(camber_mesh_data *data) {
 
 /* ---- Corners ---- */
 
-/* Places a join's own vertices, relative to the point P in units of the reach. q is tan(turn / 4).
- *
- *              TIP                IN_TIP -- BISECTOR -- OUT_TIP            FAN+1 .. FAN+2
- *            /     \                /                       \             .               .
- *     ----- L       L' -----   --- L                         L' ---      L                 L'
- *            \     /                 \                     /               \             /
- *               P                               P                                 P
- *
- *     kite                     two kites, past 120 degrees              fan: steps on the arc
- *
- * L and L' are the outer edge vertices of the segments in and out. */
-static void set_join_corner(camber_vertex *vertex, camber_u32 corner, float q, const camber_row *row) {
-    const float outer = q > 0.0f ? -1.0f : 1.0f, a = fabsf(q), scale = 1.0f / (1.0f + a * a);
-    /* The chords touch the padded arc from outside instead of cutting it, hence 1 / cos. */
-    const float angle = row->fan_step * (float)((int)corner - (int)CAMBER_CORNER_FAN),
-                arc = 1.0f / cosf(0.5f * row->fan_step);
-    switch (corner) {
-    case CAMBER_CORNER_CENTRE: break;
-    case CAMBER_CORNER_TIP: set_extrusion(vertex, camber_turn_tan_half(a), outer); break;
-    case CAMBER_CORNER_IN_TIP: set_extrusion(vertex, a, outer); break;
-    case CAMBER_CORNER_BISECTOR: set_extrusion(vertex, 2.0f * a * scale, outer * (1.0f - a * a) * scale); break;
-    case CAMBER_CORNER_OUT_TIP: set_extrusion(vertex, -a, outer); break;
-    default: set_extrusion(vertex, sinf(angle) * arc, outer * cosf(angle) * arc); break;
-    }
-}
-
 /* Makes the vertex that an index into records and corners names. */
 static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index, const camber_row *rows) {
     const camber_record *records = data->records;
     const size_t at = index >> CAMBER_CORNER_BITS;
     const camber_u32 corner = index & CORNER_MASK, join = records[at].join;
-    const bool out = corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT ||
-                     corner == CAMBER_CORNER_OUT_RIGHT || corner == CAMBER_CORNER_OUT_TIP;
+    const bool out = camber_corner_goes_out(corner);
     const bool dot = camber_join_kind(join) == CAMBER_KIND_DOT;
     const size_t other = dot ? at : neighbour(at, data->info.record_count, out);
     if (corner >= CAMBER_CORNER_IN_LEFT && corner <= CAMBER_CORNER_OUT_RIGHT)
         return make_edge(records, at, other, out, (corner & 1u) ? 1.0f : -1.0f, (camber_u32)data->info.method);
     camber_vertex vertex = make_vertex(records, at, other, out);
-    set_join_corner(&vertex, corner, camber_turn_unpack(join), rows + vertex.row);
+    float along, across;
+    camber_join_corner_at(corner, camber_turn_unpack(join), rows[vertex.row].fan_step, &along, &across);
+    set_extrusion(&vertex, along, across);
     return vertex;
 }
 

@@ -199,7 +199,7 @@ mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_OFFSET_ARC
 
 group=pixels
 mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'
-mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
+mutant strip kernels/join.h "turns of half the angle" 'turn.c) * CAMBER_LARGEST_TURN' 'turn.c) * 0.5f * CAMBER_LARGEST_TURN'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
 mutant strip kernels/join.h "split miters cut like bevels" 'split_end = miter   ?' 'split_end = !miter ?'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
@@ -237,11 +237,11 @@ mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' 
 # ---- Shaders ----
 
 group=pixels
-mutant strip shaders/stroke.vert "cuts at the tangent of another angle" 'return 2.0 * q / ' 'return q / '
-mutant strip shaders/stroke.vert "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
-mutant strip shaders/stroke.vert "butt ends without a pad" '? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX, side' '? 0.0 : CAMBER_NO_LIMIT_PX, side'
-mutant kite shaders/stroke.vert "kites cut on the outer side" 'CUT && inner ? cut' 'CUT && !inner ? cut'
-mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer * cos(angle))' 'vec2(-sin(angle), outer * cos(angle))'
+mutant strip kernels/join.h "cuts at the tangent of another angle" 'return 2.0f * q / ' 'return q / '
+mutant strip kernels/join.h "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
+mutant strip kernels/join.h "butt ends without a pad" '? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX' '? 0.0f : CAMBER_NO_LIMIT_PX'
+mutant kite kernels/join.h "kites cut on the outer side" 'CUT && is_inner)' 'CUT && !is_inner)'
+mutant fan kernels/join.h "a fan that turns back" ': CAMBER_SIN(angle) * arc' ': -CAMBER_SIN(angle) * arc'
 mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
 mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
 mutant strip shaders/stroke.vert "a tight start placed by the end of no length" 'is_again ? i - 2' 'is_again ? i - 1'
@@ -261,7 +261,6 @@ mutant strip kernels/stroke_setup.inl "square caps of a whole width" 'CAMBER_END
 mutant strip kernels/stroke.h "bevels that reach too far" 'l->bevel ? half_width * c' 'l->bevel ? half_width'
 mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
 mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
-mutant kite shaders/stroke.vert "kites that lie over each other" 'CUT && inner ? cut : ends' 'CUT && inner ? 0.5 * cut : ends'
 mutant strip shaders/stroke.frag "united lines: no edge between whole and part" '* (area * (1.0 - area)), area, area)' \
     '* area, area, area)'
 mutant strip kernels/stroke_flat.h "united lines: both sides face the same way" 'in_y = at->y * scale' \

@@ -22,7 +22,8 @@ VARIANT = dict(CAMBER_GLSL=1, METHOD=0, TIPS=1, THIN=1, LINEAR=0, COUNT=0, UNION
 FLAGS = {'SHARP': ['SHARP_JOINS'], 'FLAT': ['FLAT_CAPS'], 'RICH': ['GAP', 'BLUR', 'DASH']}
 # The page calls these itself. It has a main of its own for vertices, since its records are others.
 CALLED = {'stroke.vert': ['row_texel', 'camber_turn_between', 'camber_line_ends', 'camber_stub_pack',
-                          'camber_join_word', 'camber_cap_word', 'tan_half', 'hand_over'],
+                          'camber_join_word', 'camber_cap_word', 'camber_turn_tan_half', 'camber_join_kind',
+                          'camber_join_end', 'camber_turn_unpack', 'hand_over'],
           'stroke.frag': ['main']}
 
 
@@ -30,7 +31,7 @@ def preprocess(compiler, shader, variant):
     defines = [f'-D{name}={value}' for name, value in variant.items()]
     command = [*compiler.split(), '-E', '-P', '-undef', '-x', 'c', *defines, '-I', str(ROOT / 'kernels'), '-I',
                str(ROOT / 'shaders'), '-']
-    text = f'#include "{shader}"\n#include "join.h"\n'
+    text = f'#include "{shader}"\n'
     return subprocess.run(command, check=True, capture_output=True, text=True, input=text).stdout.replace('->', '.')
 
 

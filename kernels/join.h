@@ -94,12 +94,12 @@ CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
     return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
 }
 
-/* The stub of a join word. cap: of the line, camber_cap. */
+/* The bits of a join word that tell of the stub and the caps. cap: of the line, camber_cap. */
 CAMBER_FN camber_u32 camber_stub_pack(camber_u32 cap, float half_shorter) {
     const float longest = 0.5f * CAMBER_STUB_PX, bounded = half_shorter < longest ? half_shorter : longest;
     const camber_u32 stub =
         1u + CAMBER_CAST(camber_u32, bounded * (CAMBER_CAST(float, CAMBER_STUB_MOST - 1u) / longest));
-    return cap == CAMBER_CAPS_BUTT ? stub << CAMBER_JOIN_STUB_SHIFT : 0u;
+    return stub << CAMBER_JOIN_STUB_SHIFT | (cap == CAMBER_CAPS_BUTT ? CAMBER_JOIN_BUTT : 0u);
 }
 
 /* camber_end past a cap: round 0, butt 1, square 2. */

@@ -22,7 +22,6 @@
 #define CAMBER_NEVER_PX 1e6f /* past an end by more px than any pixel lies there */
 #define CAMBER_ALWAYS_PX (-1e30f)
 #define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
-#define CAMBER_WIDE_PX 4.0f  /* in lines of a larger half width, what short pieces leave open is seen most */
 #define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
 
 /* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-11 where a join is flat (camber_flat_join), 12 the line ends with
@@ -82,19 +81,20 @@ CAMBER_FN void camber_half_turn(camber_real q, CAMBER_OUT(camber_real) c, CAMBER
 }
 
 /* A join has the length of the shorter of its segments in units of this, and 1 more: its stub. */
-#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 126.0f)
+#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 62.0f)
 
-/* Whether the other segment of a join is the shorter one, whose length its stub says. length: of the segment itself. */
+/* Whether the other segment of a join is the shorter one, and a stub. length: of the segment itself. */
 CAMBER_FN camber_mask camber_is_longer(camber_words join, camber_real length) {
-    return length > (CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) + 1.0f) * CAMBER_STUB_UNIT_PX;
+    const camber_mask stub = CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST;
+    return CAMBER_BOTH(stub, length > (CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) + 1.0f) * CAMBER_STUB_UNIT_PX);
 }
 
-/* Whether the segments of a join are so short that nothing may cover what one of a length leaves past the bisector: the
- * other one is a stub, or in a wide line either. In thin lines that is too little to be seen. */
-CAMBER_FN camber_mask camber_opens(camber_words join, camber_real length, camber_real half_width) {
-    const camber_words most = CAMBER_WORD(CAMBER_STUB_MOST - 1u);
-    const camber_mask longer = CAMBER_BOTH(half_width > CAMBER_TIPS_PX, camber_is_longer(join, length));
-    return CAMBER_BOTH(CAMBER_JOIN_STUB(join) - 1u < most, CAMBER_EITHER(half_width > CAMBER_WIDE_PX, longer));
+/* Whether nothing may cover what a segment leaves past the bisector: where the join is tight, or one of its segments a
+ * stub. In thin lines that is too little to be seen. */
+CAMBER_FN camber_mask camber_opens(camber_words join, camber_real half_width) {
+    const camber_mask is_tight = join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT;
+    const camber_mask is_short = CAMBER_EITHER(is_tight, CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST);
+    return CAMBER_BOTH(half_width > CAMBER_TIPS_PX, is_short);
 }
 
 /* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
@@ -110,9 +110,9 @@ CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_mask butt,
 }
 
 /* The bits of an end that say where a join is flat: camber_cut_end. Before a butt cap the next segment may be too short
- * to cover what lies past the body on its inner side; beside a stub, too. A segment that is no longer than the stub
- * does not know the other one's length: it is taken for a long one. butt: the line ends with the next segment, in a
- * butt cap; own: camber_owner_side; opens: camber_opens; length: of the segment itself. */
+ * to cover what lies past the body on its inner side, and so where the join opens. A segment that is no longer than the
+ * stub does not know the other one's length: it is taken for a long one. butt: the line ends with the next segment, in
+ * a butt cap; own: camber_owner_side; opens: camber_opens; length: of the segment itself. */
 CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, camber_mask own, camber_mask opens,
                                         camber_real length) {
     const camber_words none = CAMBER_WORD(0u), most = CAMBER_WORD(CAMBER_STUB_MOST);
@@ -127,9 +127,9 @@ CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber
                                      camber_real s, camber_real half_width, CAMBER_OUT(camber_mask) own) {
     const camber_words none = CAMBER_WORD(0u), end = camber_segment_end(join);
     const camber_words last = CAMBER_WORD(1u << CAMBER_END_LAST_SHIFT);
-    const camber_mask butt = CAMBER_BOTH(soon, CAMBER_JOIN_STUB(join) != 0u);
-    const camber_mask opens = camber_opens(join, length, half_width), wide = half_width > CAMBER_WIDE_PX;
-    const camber_mask keeps = CAMBER_BOTH(CAMBER_BOTH(opens, camber_is_longer(join, length)), wide);
+    const camber_mask butt = CAMBER_BOTH(soon, CAMBER_HAS(join, CAMBER_JOIN_BUTT));
+    const camber_mask opens = camber_opens(join, half_width);
+    const camber_mask keeps = CAMBER_BOTH(opens, camber_is_longer(join, length));
     const camber_mask more = camber_owner_side(CAMBER_EITHER(soon, keeps), butt, c, s, half_width);
     const camber_mask owns = CAMBER_BOTH(CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT, more);
     CAMBER_AT(own) = owns;

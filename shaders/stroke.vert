@@ -175,18 +175,16 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
 #endif
 
 #if !PITCHED
-// camber_flat_end_from and camber_owner_from of an end. Triangles that are cut along the bisector bound it, and a fan's
-// need no stub.
+// camber_flat_end_from and camber_owner_from of an end. Triangles that are cut along the bisector bound it.
 vec2 flat_and_owner(uint join, uint soon, vec2 turn, float len, float half_width) {
 #if METHOD == 2
-    join &= ~(CAMBER_STUB_MOST << CAMBER_JOIN_STUB_SHIFT);
-    bool is_bounded = true, own;
+    return vec2(camber_flat_from(end_of(join), half_width), CAMBER_NEVER_PX);
 #else
     bool is_bounded = camber_join_kind(join) <= CAMBER_KIND_CUT, own;
-#endif
     uint end = camber_end_of(join, (join & soon) != 0u, len, turn.x, turn.y, half_width, own);
     return vec2(camber_flat_end_from(end, half_width),
                 camber_owner_from(is_bounded, own, CAMBER_END_FLAT(end) != 0u));
+#endif
 }
 #endif
 

@@ -96,10 +96,10 @@ CAMBER_STRUCT(camber_row) {
 
 /* A point's join word, what classify writes and scan and emit read:
  *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 camber_end; 19-25 join triangles (in the words of
- *   strips, and in records: 19-24 the stub, 25 the line has butt caps); 26 the point before is its line's first; 27 that behind is its last; 28-31 kind.
- * The stub: 1 + the length of the shorter of its two segments in units of CAMBER_STUB_PX / 62, and 63 from
- * CAMBER_STUB_PX on. The kind comes last, so that no mask narrows it to
- * three bits: oclgrind 21.10 gets such integers wrong. */
+ *   strips, and in records: 19-24 the stub, 25 the line has butt caps); 26 the point before is its line's first; 27
+ * that behind is its last; 28-31 kind. The stub: 1 + the length of the shorter of its two segments in units of
+ * CAMBER_STUB_PX / 62, and 63 from CAMBER_STUB_PX on. The kind comes last, so that no mask narrows it to three bits:
+ * oclgrind 21.10 gets such integers wrong. */
 #define CAMBER_JOIN_END_SHIFT 16
 #define CAMBER_JOIN_END_MASK 7u
 #define CAMBER_JOIN_TRIANGLES_SHIFT 19

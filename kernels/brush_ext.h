@@ -47,7 +47,6 @@ CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, CAMBER_GLOBAL
     e->round_dashes = brush_ext->round_dashes != 0u;
     e->dashes = side_table + 4 * brush_ext->first_dash;
     e->drawn = 1.0f;
-    /* With a pitch dashes of any length may be small where they are seen. */
     if (CAMBER_HAS(e->features, CAMBER_FEATURE_DASH) && e->period < CAMBER_SMALL_PERIOD_PX)
         e->drawn = camber_dashes_drawn(e);
     e->ends = camber_dashes_ends(e->total);

@@ -1,5 +1,5 @@
 /* Join maths, the one place where a formula of a join stands. Only + - * / sqrt, each correctly rounded, so that
- * device and twin agree to the last bit where the device rounds correctly.
+ * device and twin agree to the last bit where the device rounds correctly; but for the corners, which no kernel places.
  *
  * u and w are the directions into and out of a point, t the angle from u to w, positive from x to y. The half
  * turn's cosine c and sine s give all that a join needs:
@@ -96,9 +96,10 @@ CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
 
 /* The bits of a join word that tell of the stub and the caps. cap: of the line, camber_cap. */
 CAMBER_FN camber_u32 camber_stub_pack(camber_u32 cap, float half_shorter) {
-    const float longest = 0.5f * CAMBER_STUB_PX, bounded = half_shorter < longest ? half_shorter : longest;
-    const camber_u32 stub =
-        1u + CAMBER_CAST(camber_u32, bounded * (CAMBER_CAST(float, CAMBER_STUB_MOST - 1u) / longest));
+    const float units = 2.0f * half_shorter * (1.0f / CAMBER_STUB_UNIT_PX),
+                longest = CAMBER_CAST(float, CAMBER_STUB_MOST - 2u);
+    const camber_u32 part = CAMBER_CAST(camber_u32, units < longest ? units : longest);
+    const camber_u32 stub = 2.0f * half_shorter < CAMBER_STUB_PX ? 1u + part : CAMBER_STUB_MOST;
     return stub << CAMBER_JOIN_STUB_SHIFT | (cap == CAMBER_CAPS_BUTT ? CAMBER_JOIN_BUTT : 0u);
 }
 

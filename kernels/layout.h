@@ -95,11 +95,16 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_CORNER_FAN 63u
 
 /* A point's join word, what classify writes and scan and emit read:
- *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 camber_end; 19-25 join triangles (in the words of
- *   strips, and in records: 19-24 the stub, 25 the line has butt caps); 26 the point before is its line's first; 27
- * that behind is its last; 28-31 kind. The stub: 1 + the length of the shorter of its two segments in units of
- * CAMBER_STUB_PX / 62, and 63 from CAMBER_STUB_PX on. The kind comes last, so that no mask narrows it to three bits:
- * oclgrind 21.10 gets such integers wrong. */
+ *
+ *     bits  0-15  tan(turn / 4) * 32767, two's complement
+ *          16-18  camber_end
+ *          19-25  join triangles; in the words of strips, and in records: 19-24 the stub, 25 the line has butt caps
+ *             26  the point before is its line's first
+ *             27  that behind is its last
+ *          28-31  kind: it comes last, so that no mask narrows it to three bits, which oclgrind 21.10 gets wrong
+ *
+ * The stub: 1 + the length of the shorter of its two segments, whole units of CAMBER_STUB_UNIT_PX, and 63 from
+ * CAMBER_STUB_PX on. */
 #define CAMBER_JOIN_END_SHIFT 16
 #define CAMBER_JOIN_END_MASK 7u
 #define CAMBER_JOIN_TRIANGLES_SHIFT 19
@@ -108,6 +113,7 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_JOIN_BUTT (1u << 25)
 #define CAMBER_STUB_MOST 63u
 #define CAMBER_STUB_PX 1.5f
+#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 62.0f)
 #define CAMBER_JOIN_AFTER_FIRST (1u << 26)
 #define CAMBER_JOIN_BEFORE_LAST (1u << 27)
 #define CAMBER_JOIN_KIND_SHIFT 28

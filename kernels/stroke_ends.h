@@ -21,11 +21,12 @@
 
 #define CAMBER_NEVER_PX 1e6f /* past an end by more px than any pixel lies there */
 #define CAMBER_ALWAYS_PX (-1e30f)
-#define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
+/* In lines of a smaller half width round caps get their area by camber_edge_tips, and no join opens. */
+#define CAMBER_TIPS_PX 1.85f
 #define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
 
-/* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-11 where a join is flat (camber_flat_join), 12 the line ends with
- * the next segment. */
+/* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-10 where a join is flat (camber_flat_join), 11 free, 12 the line
+ * ends with the next segment. */
 #define CAMBER_CLASS_CAP 0u
 #define CAMBER_CLASS_CUT 1u
 #define CAMBER_CLASS_TIGHT 2u
@@ -36,7 +37,7 @@
 #define CAMBER_END_LAST_SHIFT 12
 #define CAMBER_END_KIND(end) ((end)&CAMBER_JOIN_END_MASK)
 #define CAMBER_END_CLASS(end) ((end) >> CAMBER_END_CLASS_SHIFT & 3u)
-#define CAMBER_END_FLAT(end) ((end) >> CAMBER_END_FLAT_SHIFT & 127u)
+#define CAMBER_END_FLAT(end) ((end) >> CAMBER_END_FLAT_SHIFT & CAMBER_STUB_MOST)
 #define CAMBER_END_IS_LAST(end) CAMBER_HAS((end) >> CAMBER_END_LAST_SHIFT, 1u)
 #define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
     (((end) & (CAMBER_JOIN_END_MASK | 3u << CAMBER_END_CLASS_SHIFT)) ==                                                \
@@ -68,7 +69,7 @@ CAMBER_FN camber_words camber_segment_end(camber_words join) {
     return drawn | ends_as << CAMBER_END_CLASS_SHIFT;
 }
 
-/* tan(turn / 4) of a join word. */
+/* tan(turn / 4) of join words, a lane each: camber_turn_unpack has it for one. */
 CAMBER_FN camber_real camber_quarter_turn(camber_words join) {
     return CAMBER_TURNS(join) * (1.0f / CAMBER_LARGEST_TURN);
 }
@@ -79,9 +80,6 @@ CAMBER_FN void camber_half_turn(camber_real q, CAMBER_OUT(camber_real) c, CAMBER
     CAMBER_AT(c) = (1.0f - q * q) * scale;
     CAMBER_AT(s) = 2.0f * q * scale;
 }
-
-/* A join has the length of the shorter of its segments in units of this, and 1 more: its stub. */
-#define CAMBER_STUB_UNIT_PX (CAMBER_STUB_PX / 62.0f)
 
 /* Whether the other segment of a join is the shorter one, and a stub. length: of the segment itself. */
 CAMBER_FN camber_mask camber_is_longer(camber_words join, camber_real length) {
@@ -99,12 +97,12 @@ CAMBER_FN camber_mask camber_opens(camber_words join, camber_real half_width) {
 
 /* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
  * bisector on the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their
- * edges would be drawn twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it.
- * Before a butt cap it ends in an edge of its own, which nothing draws twice: there it keeps nearly all. c and s:
- * cosine and sine of half the turn. */
-CAMBER_FN camber_mask camber_owner_side(camber_mask ends_soon, camber_mask butt, camber_real c, camber_real s,
+ * edges would be drawn twice. More it keeps, and half of that where it is alone, as the line ends soon or the neighbour
+ * is a stub: nothing may cover it. Before a butt cap it ends in an edge of its own, which nothing draws twice: there it
+ * keeps nearly all. c and s: cosine and sine of half the turn. */
+CAMBER_FN camber_mask camber_owner_side(camber_mask alone, camber_mask butt, camber_real c, camber_real s,
                                         camber_real half_width) {
-    const camber_real soon = ends_soon ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
+    const camber_real soon = alone ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
     const camber_real bound = butt ? CAMBER_REAL(0.1f) : soon;
     return half_width * CAMBER_FABS(s) > bound * c;
 }

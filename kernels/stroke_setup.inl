@@ -27,7 +27,8 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE void camber_profile_of(CAMBER_COEF x, C
     const CAMBER_COEF nx = CAMBER_FABS(x), ny = CAMBER_FABS(y), half_px = CAMBER_COEF_OF(0.5f);
     const CAMBER_COEF q = CAMBER_LESS(nx, ny), larger = CAMBER_MORE(nx, ny), p = CAMBER_MORE(larger, half_px);
     const CAMBER_COEF none = CAMBER_COEF_OF(0.0f), one = CAMBER_COEF_OF(1.0f), safe = q > 1e-4f ? q : one;
-    const CAMBER_COEF scale = one / (p * safe), slope = safe * scale, bent = half_px * scale, curve = q > 1e-4f ? bent : none;
+    const CAMBER_COEF scale = one / (p * safe), slope = safe * scale, bent = half_px * scale,
+                      curve = q > 1e-4f ? bent : none;
     camber_profile_begin(x, y, linear, e);
     e->slope = linear ? one : slope;
     e->curve = linear ? none : curve;
@@ -127,12 +128,10 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE void camber_edge_finish(CAMBER_COEF_WOR
     p->round_b = camber_round_from(p->end_b);
     p->tip_a = camber_tip_from(CAMBER_END_IS_ROUND_CAP(end_a), h);
     p->tip_b = camber_tip_from(CAMBER_END_IS_ROUND_CAP(end_b), h);
-    p->owner_a =
-        camber_owner_from(CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP, CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_A),
-                          CAMBER_END_FLAT(end_a) != 0u);
-    p->owner_b =
-        camber_owner_from(CAMBER_END_CLASS(end_b) == CAMBER_CLASS_CAP, CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_B),
-                          CAMBER_END_FLAT(end_b) != 0u);
+    p->owner_a = camber_owner_from(CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP,
+                                   CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_A), CAMBER_END_FLAT(end_a) != 0u);
+    p->owner_b = camber_owner_from(CAMBER_END_CLASS(end_b) == CAMBER_CLASS_CAP,
+                                   CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_B), CAMBER_END_FLAT(end_b) != 0u);
     p->thin = h < p->side.extent;
     p->tips = (h < CAMBER_TIPS_PX) & CAMBER_HAS(flags, CAMBER_SEGMENT_ROUNDED);
     p->capped = CAMBER_HAS(flags, CAMBER_SEGMENT_FLAT);

@@ -3,7 +3,7 @@
 // A software rasterizer runs every branch, so each of these is 0 or 1 at build time, and a frame pays for what it has:
 //
 //     LINEAR       coverage is a ramp one pixel wide, in place of the exact area
-//     SHARP_JOINS  some joins are miters or bevels          FLAT_CAPS  some caps are butt or square
+//     SHARP_JOINS  some joins are miters or bevels          FLAT_ENDS  some caps or joins are flat
 //     TIPS         some round caps are of thin strokes      THIN       some strokes have both edges in a pixel
 //     GAP          some strokes are two rails               BLUR       some strokes fade at their edges
 //     DASH         some strokes are dashed                  TRIM       some strokes are drawn in part
@@ -134,7 +134,7 @@ camber_edge edge_here() {
     p.linear = LINEAR != 0;
     p.thin = THIN != 0;
     p.tips = TIPS != 0;
-    p.capped = FLAT_CAPS != 0;
+    p.capped = FLAT_ENDS != 0;
     p.sharp = SHARP_JOINS != 0;
 #if SHARP_JOINS
     p.end_a = v_ends.x & 7u;
@@ -143,8 +143,8 @@ camber_edge edge_here() {
     p.round_b = uintBitsToFloat(v_ends.z);
 #else
     p.end_a = p.end_b = CAMBER_ENDS_ROUND;
-    p.round_a = FLAT_CAPS != 0 && v_shape.z < CAMBER_NEVER_PX && v_turns.y == 0.0 ? CAMBER_NEVER_PX : 0.0;
-    p.round_b = FLAT_CAPS != 0 && v_shape.w < CAMBER_NEVER_PX && v_turns.w == 0.0 ? CAMBER_NEVER_PX : 0.0;
+    p.round_a = FLAT_ENDS != 0 && v_shape.z < CAMBER_NEVER_PX && v_turns.y == 0.0 ? CAMBER_NEVER_PX : 0.0;
+    p.round_b = FLAT_ENDS != 0 && v_shape.w < CAMBER_NEVER_PX && v_turns.w == 0.0 ? CAMBER_NEVER_PX : 0.0;
 #endif
 #if TIPS
     p.tip_a = v_tips.x;

@@ -119,12 +119,12 @@ camber_status camber_shaders_stroke(camber_shaders *shaders, unsigned variant, c
         char head[512];
         snprintf(
             head, sizeof head,
-            "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
+            "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_ENDS %d\n#define COUNT %d\n"
             "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n#define GAP %d\n#define BLUR %d\n"
             "#define DASH %d\n#define TRIM %d\n#define RAMP %d\n#define MASK %d\n#define PATTERN %d\n"
             "#define PITCHED %d\n#define TEXELS_A_ROW %d\n",
             (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
-            (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
+            (variant & CAMBER_VARIANT_FLAT_ENDS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
             (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
             (variant & CAMBER_VARIANT_THIN) != 0, (variant & CAMBER_VARIANT_TIPS) != 0,
             (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0,

@@ -8,7 +8,7 @@
 enum {
     CAMBER_VARIANT_LINEAR = 1, /* coverage is a ramp across the edge, not the exact area */
     CAMBER_VARIANT_SHARP_JOINS = 2,
-    CAMBER_VARIANT_FLAT_CAPS = 4,
+    CAMBER_VARIANT_FLAT_ENDS = 4,
     CAMBER_VARIANT_COUNT = 8,       /* counts the fragments with coverage instead of drawing them */
     CAMBER_VARIANT_UNION = 16,      /* writes the sums that the union of a layer's strokes is made from */
     CAMBER_VARIANT_THIN = 32,       /* some strokes have both edges in a pixel */

@@ -23,7 +23,6 @@
 
 #include "kernels/join.h"
 
-#include <math.h>
 #include <string.h>
 
 #define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)

@@ -92,7 +92,8 @@ struct camber_mesh {
     bool joins_counted; /* mesh_info's counts of joins and triangles are valid */
     bool round_limits;  /* a row has round joins with a limit */
     bool sharp_joins;   /* a row has miter or bevel joins, or round ones with a limit */
-    bool flat_ends;     /* a row has butt or square caps, or is so wide that its joins may be flat */
+    bool flat_caps;     /* a row has butt or square caps */
+    bool wide;          /* a row is so wide that joins may be flat */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
     bool has_camera;    /* the last tessellation was of a network; pitch_deg is its camera's */

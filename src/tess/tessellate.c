@@ -341,13 +341,13 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     camber_row *rows = NULL;
     camber_program *program = NULL;
     mesh->empty = mesh->joins_counted = true;
-    mesh->done = mesh->round_limits = mesh->sharp_joins = mesh->flat_ends = mesh->round_caps = false;
+    mesh->done = mesh->round_limits = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = mesh->wide = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {
         const bool is_round = desc->strokes[i].join == CAMBER_JOIN_ROUND;
         mesh->round_limits |= is_round && desc->strokes[i].round_limit > 1.0f;
         mesh->sharp_joins |= !is_round || desc->strokes[i].round_limit > 1.0f;
-        mesh->flat_ends |=
-            desc->strokes[i].cap != CAMBER_CAP_ROUND || desc->strokes[i].width_px > 2.0f * CAMBER_TIPS_PX;
+        mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND;
+        mesh->wide |= desc->strokes[i].width_px > 2.0f * CAMBER_TIPS_PX;
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;

@@ -19,7 +19,7 @@ PAGE = ROOT / 'examples' / 'web' / 'index.html'
 VARIANT = dict(CAMBER_GLSL=1, METHOD=0, TIPS=1, THIN=1, LINEAR=0, COUNT=0, UNION=0, TRIM=0, RAMP=0, MASK=0, PATTERN=0,
                PITCHED=0, TEXELS_A_ROW=4)
 # The page's own macros, each with those of camber that it stands for.
-FLAGS = {'SHARP': ['SHARP_JOINS'], 'FLAT': ['FLAT_CAPS'], 'RICH': ['GAP', 'BLUR', 'DASH']}
+FLAGS = {'SHARP': ['SHARP_JOINS'], 'FLAT': ['FLAT_ENDS'], 'RICH': ['GAP', 'BLUR', 'DASH']}
 # The page calls these itself. It has a main of its own for vertices, since its records are others.
 CALLED = {'stroke.vert': ['row_texel', 'camber_turn_between', 'camber_line_ends', 'camber_stub_pack',
                           'camber_join_word', 'camber_cap_word', 'camber_turn_tan_half', 'camber_join_kind',

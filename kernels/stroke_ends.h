@@ -23,6 +23,7 @@
 #define CAMBER_ALWAYS_PX (-1e30f)
 /* In lines of a smaller half width round caps get their area by camber_edge_tips, and no join opens. */
 #define CAMBER_TIPS_PX 1.85f
+#define CAMBER_WIDE_PX 4.0f  /* in lines of a larger half width, what short pieces leave open is seen most */
 #define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
 
 /* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-10 where a join is flat (camber_flat_join), 11 free, 12 the line
@@ -87,19 +88,17 @@ CAMBER_FN camber_mask camber_is_longer(camber_words join, camber_real length) {
     return CAMBER_BOTH(stub, length > (CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) + 1.0f) * CAMBER_STUB_UNIT_PX);
 }
 
-/* Whether nothing may cover what a segment leaves past the bisector: where the join is tight, or one of its segments a
- * stub. In thin lines that is too little to be seen. */
+/* Whether nothing may cover what a segment leaves past the bisector: one of the join's segments is a stub. In thin
+ * lines that is too little to be seen. */
 CAMBER_FN camber_mask camber_opens(camber_words join, camber_real half_width) {
-    const camber_mask is_tight = join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT;
-    const camber_mask is_short = CAMBER_EITHER(is_tight, CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST);
-    return CAMBER_BOTH(half_width > CAMBER_TIPS_PX, is_short);
+    return CAMBER_BOTH(half_width > CAMBER_TIPS_PX, CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST);
 }
 
 /* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
  * bisector on the inner side it gives up where that is narrow: bends that gentle follow each other on curves, and their
- * edges would be drawn twice. More it keeps, and half of that where it is alone, as the line ends soon or the neighbour
- * is a stub: nothing may cover it. Before a butt cap it ends in an edge of its own, which nothing draws twice: there it
- * keeps nearly all. c and s: cosine and sine of half the turn. */
+ * edges would be drawn twice. More it keeps, and half of that where it is alone, as the line ends soon, or it is wide
+ * and the neighbour a stub: nothing may cover it. Before a butt cap it ends in an edge of its own, which nothing draws
+ * twice: there it keeps nearly all. c and s: cosine and sine of half the turn. */
 CAMBER_FN camber_mask camber_owner_side(camber_mask alone, camber_mask butt, camber_real c, camber_real s,
                                         camber_real half_width) {
     const camber_real soon = alone ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
@@ -127,7 +126,7 @@ CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber
     const camber_words last = CAMBER_WORD(1u << CAMBER_END_LAST_SHIFT);
     const camber_mask butt = CAMBER_BOTH(soon, CAMBER_HAS(join, CAMBER_JOIN_BUTT));
     const camber_mask opens = camber_opens(join, half_width);
-    const camber_mask keeps = CAMBER_BOTH(opens, camber_is_longer(join, length));
+    const camber_mask keeps = CAMBER_BOTH(half_width > CAMBER_WIDE_PX, camber_is_longer(join, length));
     const camber_mask more = camber_owner_side(CAMBER_EITHER(soon, keeps), butt, c, s, half_width);
     const camber_mask owns = CAMBER_BOTH(CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT, more);
     CAMBER_AT(own) = owns;

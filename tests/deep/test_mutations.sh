@@ -356,9 +356,6 @@ mutant strip kernels/stroke_flat.h "flat joins: bodies that end on the wrong sid
 mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
-mutant strip kernels/setup.cl "pitch: planes that lie in the picture" 'put_planes(&flat, &plane' 'put_planes(&s, &plane'
-mutant strip kernels/rasterize.cl "pitch: the plane of another segment" 'planes + CAMBER_PLANE_WORDS * which' \
-    'planes + CAMBER_PLANE_WORDS * (which ^ 1u)'
 mutant strip kernels/segment.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
 drawer=()
 

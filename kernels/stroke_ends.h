@@ -88,10 +88,12 @@ CAMBER_FN camber_mask camber_is_longer(camber_words join, camber_real length) {
     return CAMBER_BOTH(stub, length > (CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) + 1.0f) * CAMBER_STUB_UNIT_PX);
 }
 
-/* Whether nothing may cover what a segment leaves past the bisector: one of the join's segments is a stub. In thin
- * lines that is too little to be seen. */
-CAMBER_FN camber_mask camber_opens(camber_words join, camber_real half_width) {
-    return CAMBER_BOTH(half_width > CAMBER_TIPS_PX, CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST);
+/* Whether nothing may cover what a segment of a length leaves past the bisector: the other one is a stub, or in a wide
+ * line either. In thin lines that is too little to be seen. */
+CAMBER_FN camber_mask camber_opens(camber_words join, camber_real length, camber_real half_width) {
+    const camber_mask longer = CAMBER_BOTH(half_width > CAMBER_TIPS_PX, camber_is_longer(join, length));
+    const camber_mask either = CAMBER_BOTH(half_width > CAMBER_WIDE_PX, CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST);
+    return CAMBER_EITHER(longer, either);
 }
 
 /* Whether a segment draws more of a tight or split end than its own side of the bisector. What its body has past the
@@ -125,7 +127,7 @@ CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber
     const camber_words none = CAMBER_WORD(0u), end = camber_segment_end(join);
     const camber_words last = CAMBER_WORD(1u << CAMBER_END_LAST_SHIFT);
     const camber_mask butt = CAMBER_BOTH(soon, CAMBER_HAS(join, CAMBER_JOIN_BUTT));
-    const camber_mask opens = camber_opens(join, half_width);
+    const camber_mask opens = camber_opens(join, length, half_width);
     const camber_mask keeps = CAMBER_BOTH(half_width > CAMBER_WIDE_PX, camber_is_longer(join, length));
     const camber_mask more = camber_owner_side(CAMBER_EITHER(soon, keeps), butt, c, s, half_width);
     const camber_mask owns = CAMBER_BOTH(CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT, more);

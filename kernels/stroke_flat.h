@@ -97,9 +97,8 @@ CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(ca
     return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
 }
 
-/* How a pixel lies to a flat end: a cap, or a flat join (camber_flat_join). There the segment's body
- * ends in an edge of its own past the bisector, and before it the segment draws what lies inside this edge or the cap,
- * which is turned. */
+/* How a pixel lies to a flat end: a cap, or a flat join (camber_flat_join). There the segment's body ends in an edge of
+ * its own past the bisector, and before it the segment draws what lies inside this edge or the cap, which is turned. */
 CAMBER_STRUCT(camber_flat_end) {
     camber_real body, cap; /* how far inside of the two, px */
     camber_mask behind;    /* past the bisector */

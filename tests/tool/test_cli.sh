@@ -499,7 +499,7 @@ if command -v python3 >/dev/null; then
     holds 'all(r["methods"]["fan"]["repeated_at_plain_joins"] > 0 for r in n)'
     holds 'j["ratio_to_kite"]["fan"]["repeated_at_plain_joins"] is None'
     # Lines cover the same pixels whatever draws them, and no pixel is off by more than all of it.
-    holds 'all(abs(r["methods"][m]["drawn_pixels"] / r["methods"]["strip"]["drawn_pixels"] - 1) < 0.03
+    holds 'all(abs(r["methods"][m]["drawn_pixels"] / r["methods"]["strip"]["drawn_pixels"] - 1) < 0.02
         for r in n for m in r["methods"])'
     holds 'all(r["methods"][m]["mean_error"] < 10 and r["methods"][m]["max_error"] <= 255
         for r in n for m in r["methods"])'

@@ -144,18 +144,21 @@ static void check_word(const sample *s, camber_row row, camber_u32 method) {
 }
 
 /* A join tells how long a stub is, and whether the line has butt caps. Before such a cap the longer segment takes the
- * stub for its end. Elsewhere both end in an edge beside a stub, but not in thin lines. */
+ * stub for its end. Elsewhere one that goes on beside a stub ends in an edge: in wide lines either, in thin ones none.
+ */
 static void test_stubs(void **state) {
     (void)state;
-    const float thin = CAMBER_TIPS_PX, wide = CAMBER_TIPS_PX + 0.1f;
+    const float thin = CAMBER_TIPS_PX, usual = CAMBER_WIDE_PX, wide = CAMBER_WIDE_PX + 1;
     for (int i = 0; i <= 400; i++) {
         const float length = (float)i * 0.005f, longer = length + 1.0f;
         const camber_u32 word = camber_stub_pack(CAMBER_CAPS_BUTT, 0.5f * length);
         const bool stub = length < CAMBER_STUB_PX;
         assert_int_equal(camber_stub_pack(CAMBER_CAPS_ROUND, 0.5f * length), word & ~CAMBER_JOIN_BUTT);
         assert_true(word & CAMBER_JOIN_BUTT);
-        assert_int_equal(camber_opens(word, thin), 0);
-        assert_int_equal(camber_opens(word, wide), stub);
+        assert_int_equal(camber_opens(word, longer, thin), 0);
+        assert_int_equal(camber_opens(word, longer, usual), stub);
+        assert_int_equal(camber_opens(word, length, usual), 0);
+        assert_int_equal(camber_opens(word, length, wide), stub);
         assert_int_equal(camber_is_longer(word, longer), stub);
         assert_int_equal(camber_is_longer(word, length), 0);
         assert_int_equal(camber_flat_join(word, 0, 0, 1, longer), 0);

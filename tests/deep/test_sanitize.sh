@@ -17,14 +17,14 @@ build)
     ;;
 run)
     # Real cities are for ./dev test --sanitize, and test_kernels is for oclgrind: the other tests call the same. So do
-    # some that hold pixels and archives against other programs for minutes; and test_faults lets threads fail elsewhere.
+    # some that hold pixels and archives against others for minutes; and test_faults lets threads fail elsewhere.
     unset CAMBER_DATA
     # Shares run side by side, and each writes a log in a folder of its own.
     folder=$1/share-${2%/*}
     mkdir -p "$folder"
     echo 'subdirs("..")' >"$folder/CTestTestfile.cmake"
     case $2 in
-    */*) chosen=(-I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|archives_outside|tiles_outside|serve_outside)|soak_serve)$') ;;
+    */*) chosen=(-I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside)|soak_serve)$') ;;
     *) chosen=(-R "^$2\$" --no-tests=error) ;;
     esac
     ctest --test-dir "$folder" --output-on-failure "${chosen[@]}"

@@ -10,6 +10,7 @@ enum { SAMPLES = 16 }; /* across and down */
 /* Where a sample lies. */
 typedef struct foot {
     double along, distance; /* px */
+    bool is_right;          /* of the line's direction */
     bool is_past;           /* an end */
 } foot;
 
@@ -36,7 +37,8 @@ static foot foot_of(const camber_along_desc *d, double x, double y) {
         const double within = fmin(fmax(at, 0), length);
         const double distance = length_of(x - ax - within * dx / length, y - ay - within * dy / length);
         if (distance < nearest.distance)
-            nearest = (foot){before + within, distance, (i == 0 && at < 0) || (i + 2 == d->count && at > length)};
+            nearest = (foot){before + within, distance, (y - ay) * dx > (x - ax) * dy,
+                             (i == 0 && at < 0) || (i + 2 == d->count && at > length)};
         before += length;
     }
     return nearest;
@@ -104,6 +106,38 @@ static void color_at(const camber_ramp *ramp, double progress, double color[4]) 
     }
 }
 
+bool camber_ray_meets_plane(double pitch_deg, const double size[2], double x, double y, double met[2], double *depth) {
+    const double pi = 3.14159265358979323846, angle = pitch_deg * pi / 180;
+    const double away = 0.5 * size[1] / tan(0.5 * 0.6435011087932844);
+    const double eye[] = {0, away * sin(angle), away * cos(angle)}, down[] = {0, cos(angle), -sin(angle)};
+    const double right = x - 0.5 * size[0], below = y - 0.5 * size[1];
+    const double ray[] = {right, below * down[1] - eye[1], below * down[2] - eye[2]};
+    if (ray[2] >= 0)
+        return false;
+    *depth = -eye[2] / ray[2];
+    met[0] = eye[0] + *depth * ray[0] + 0.5 * size[0];
+    met[1] = eye[1] + *depth * ray[1] + 0.5 * size[1];
+    return true;
+}
+
+double camber_image_red(const camber_image *image, double u, double v) {
+    const double x = (u - floor(u)) * image->width - 0.5, y = (v - floor(v)) * image->height - 0.5;
+    double red = 0;
+    for (int k = 0; k < 4; k++) {
+        const double column = floor(x) + k % 2, row = floor(y) + k / 2;
+        const size_t at = (size_t)(column + image->width) % image->width +
+                          (size_t)(row + image->height) % image->height * image->width;
+        red += (1 - fabs(x - column)) * (1 - fabs(y - row)) * image->rgba[4 * at] / 255;
+    }
+    return red;
+}
+
+/* A copy of the image is as high as the line is wide, and its top lies to the right. */
+static double image_at(const camber_paint *paint, foot p) {
+    const double across = p.distance / (double)paint->width_px;
+    return camber_image_red(paint->image, p.along / (double)paint->image_px, 0.5 + (p.is_right ? -across : across));
+}
+
 static void add_sample(const camber_along_desc *d, double total, double x, double y, double sum[4]) {
     double color[4] = {1, 1, 1, 1};
     const foot p = foot_of(d, x, y);
@@ -112,24 +146,43 @@ static void add_sample(const camber_along_desc *d, double total, double x, doubl
         return;
     if (d->paint->ramp)
         color_at(d->paint->ramp, progress, color);
+    if (d->paint->image)
+        color[0] = image_at(d->paint, p);
     const camber_color c = d->paint->color;
     const double by[] = {(double)c.r, (double)c.g, (double)c.b, 1};
     for (int i = 0; i < 4; i++)
         sum[i] += share * color[i] * by[i] * (double)c.a;
 }
 
+/* Where a place of the window lies among the line's points; false: nowhere. */
+static bool place_of(const camber_along_desc *d, camber_window window, double x, double y, double at[2]) {
+    const double size[] = {window.width, window.height};
+    double depth;
+    at[0] = window.x0 + x;
+    at[1] = window.y0 + y;
+    return d->pitch_deg <= 0 || camber_ray_meets_plane(d->pitch_deg, size, x, y, at, &depth);
+}
+
+/* Whether the line may have part of a pixel; far: how far from its middle the line lies at most, px. */
+static bool may_have(const camber_along_desc *d, camber_window window, int x, int y, double far) {
+    double middle[2], corner[2];
+    return place_of(d, window, x + 0.5, y + 0.5, middle) && place_of(d, window, x, y, corner) &&
+           foot_of(d, middle[0], middle[1]).distance <=
+               far + 2 * length_of(corner[0] - middle[0], corner[1] - middle[1]);
+}
+
 void camber_along_add(const camber_along_desc *d, camber_window window, float *rgba) {
     const double total = camber_along_length(d->points, d->count);
-    const double reach = (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 2;
+    const double far = (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 2;
     for (int y = 0; y < window.height; y++)
         for (int x = 0; x < window.width; x++) {
-            const double left = window.x0 + x, top = window.y0 + y;
             float *pixel = rgba + 4 * ((size_t)y * (size_t)window.width + (size_t)x);
-            double sum[4] = {0};
-            if (foot_of(d, left + 0.5, top + 0.5).distance > reach)
+            double sum[4] = {0}, at[2];
+            if (!may_have(d, window, x, y, far))
                 continue;
             for (int s = 0; s < SAMPLES * SAMPLES; s++)
-                add_sample(d, total, left + (s % SAMPLES + 0.5) / SAMPLES, top + (s / SAMPLES + 0.5) / SAMPLES, sum);
+                if (place_of(d, window, x + (s % SAMPLES + 0.5) / SAMPLES, y + (s / SAMPLES + 0.5) / SAMPLES, at))
+                    add_sample(d, total, at[0], at[1], sum);
             for (int c = 0; c < 4; c++)
                 pixel[c] += (float)(sum[c] / (SAMPLES * SAMPLES));
         }

@@ -30,8 +30,19 @@ static const camber_ramp_stop steps[] = {{0.2f, {0.1f, 0, 0, 1}}, {0.22f, {1, 0,
                                          {0.74f, {0.3f, 0, 0, 1}}};
 static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}, {steps, 7}};
 
+/* Six by four texels, whose reds differ along and across; the lowest row is the highest, so that nothing jumps where
+ * one copy follows the other. */
+#define RED(r) r, 0, 0, 255
+static const uint8_t texels[] = {RED(250), RED(200), RED(140), RED(80),  RED(140), RED(200), /**/
+                                 RED(190), RED(120), RED(60),  RED(20),  RED(60),  RED(120), /**/
+                                 RED(100), RED(170), RED(230), RED(250), RED(230), RED(170), /**/
+                                 RED(250), RED(200), RED(140), RED(80),  RED(140), RED(200)};
+static const camber_image image = {texels, 6, 4, 0};
+
 #define WHITE .color = {1, 1, 1, 1}
-static const camber_fill fills[] = {{WHITE}, {WHITE, .rule = CAMBER_FILL_EVENODD}};
+static const camber_fill fills[] = {{WHITE},
+                                    {WHITE, .rule = CAMBER_FILL_EVENODD},
+                                    {WHITE, .image = &image, .width_px = 24, .height_px = 18, .x_px = 3}};
 
 /* Lines as they are drawn, and the bounds of their pixels: measured with llvmpipe, with a third on top. */
 static const struct {
@@ -39,6 +50,7 @@ static const struct {
     camber_cap cap;
     camber_paint paint;
     camber_pixel_bounds bounds;
+    double pitch_deg;
 } rows[] = {
     {"a gap", CAMBER_CAP_BUTT, {.width_px = 3, .gap_px = 4, WHITE}, {0.6, 0.002, 0.0005}},
     {"a blur", CAMBER_CAP_BUTT, {.width_px = 10, .blur_px = 3, WHITE}, {1.2, 0.001, 0.0005}},
@@ -50,6 +62,16 @@ static const struct {
     {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 1, WHITE}, {0.3, 0.002, 0.0005}},
     {"areas", CAMBER_CAP_BUTT, {.fill = fills}, {0.33, 0.002, 0.0005}},
     {"areas by even-odd", CAMBER_CAP_BUTT, {.fill = fills + 1}, {0.33, 0.002, 0.0005}},
+    {"an image", CAMBER_CAP_BUTT, {.width_px = 8, .image = &image, .image_px = 21, WHITE}, {1.9, 0.008, 0.0005}},
+    {"areas of images", CAMBER_CAP_BUTT, {.fill = fills + 2}, {0.7, 0.002, 0.0005}},
+    {"round caps at 40 degrees", CAMBER_CAP_ROUND, {.width_px = 7, WHITE}, {0.42, 0.002, 0.0005}, 40},
+    {"dashes at 40 degrees", CAMBER_CAP_BUTT, {.width_px = 5, .dash = dashes, WHITE}, {0.95, 0.004, 0.0005}, 40},
+    {"an image at 40 degrees",
+     CAMBER_CAP_BUTT,
+     {.width_px = 8, .image = &image, .image_px = 21, WHITE},
+     {2.5, 0.018, 0.0005},
+     40},
+    {"areas at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}, 40},
 };
 
 /* Red, then alpha. */
@@ -79,19 +101,32 @@ static int winding_around(size_t ring, double x, double y) {
     return winding;
 }
 
+static bool is_inside(camber_fill_rule rule, const double at[2]) {
+    int winding = 0;
+    for (size_t ring = 0; ring < RINGS; ring++)
+        winding += winding_around(ring, at[0], at[1]);
+    return rule == CAMBER_FILL_EVENODD ? winding % 2 != 0 : winding != 0;
+}
+
 /* Adds what all rings have inside, by samples. */
-static void add_inside(camber_fill_rule rule, float *rgba) {
+static void add_inside(const camber_fill *fill, double pitch_deg, float *rgba) {
     enum { SAMPLES = 32 };
+    static const double size[] = {SIDE_PX, SIDE_PX};
     for (size_t i = 0; i < (size_t)PIXELS * SAMPLES * SAMPLES; i++) {
         const size_t pixel = i / (SAMPLES * SAMPLES), sample = i % (SAMPLES * SAMPLES);
         const double x = (double)(pixel % SIDE_PX) + ((double)(sample % SAMPLES) + 0.5) / SAMPLES;
         const double y = (double)(pixel / SIDE_PX) + ((double)(sample / SAMPLES) + 0.5) / SAMPLES;
-        int winding = 0;
-        for (size_t ring = 0; ring < RINGS; ring++)
-            winding += winding_around(ring, x, y);
-        if (rule == CAMBER_FILL_EVENODD ? winding % 2 != 0 : winding != 0)
-            for (size_t k = 0; k < 4; k++)
-                rgba[4 * pixel + k] += 1.0f / (SAMPLES * SAMPLES);
+        double at[] = {x, y}, depth;
+        if (pitch_deg > 0 && !camber_ray_meets_plane(pitch_deg, size, x, y, at, &depth))
+            continue;
+        if (!is_inside(fill->rule, at))
+            continue;
+        const double red = !fill->image
+                               ? 1
+                               : camber_image_red(fill->image, (x - (double)fill->x_px) / (double)fill->width_px,
+                                                  (y - (double)fill->y_px) / (double)fill->height_px);
+        rgba[4 * pixel] += (float)red / (SAMPLES * SAMPLES);
+        rgba[4 * pixel + 3] += 1.0f / (SAMPLES * SAMPLES);
     }
 }
 
@@ -106,12 +141,13 @@ static bool make_truth(size_t number, float truth[2 * PIXELS]) {
     const camber_paint *paint = &rows[number].paint;
     float *rgba = calloc(PIXELS, 4 * sizeof *rgba);
     if (rgba && paint->fill)
-        add_inside(paint->fill->rule, rgba);
+        add_inside(paint->fill, rows[number].pitch_deg, rgba);
     for (size_t i = 0; i < LINES && rgba && !paint->fill; i++) {
         const camber_along_desc desc = {.points = points + 2 * offsets[i],
                                         .count = offsets[i + 1] - offsets[i],
                                         .cap = rows[number].cap,
-                                        .paint = paint};
+                                        .paint = paint,
+                                        .pitch_deg = rows[number].pitch_deg};
         camber_along_add(&desc, window, rgba);
     }
     for (size_t i = 0; i < PIXELS && rgba; i++) {
@@ -132,7 +168,8 @@ static camber_status draw(camber_context *context, const camber_drawing_path *pa
     const camber_tessellation_desc tessellation = {
         .strokes = &stroke, .stroke_count = 1, .method = method, .has_arc_length = true};
     const camber_pass pass = {.mesh = path->mesh, .paints = paint, .paint_count = 1};
-    const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
+    const camber_frame frame = {
+        .width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1, .pitch_deg = rows[number].pitch_deg};
     const camber_areas_desc areas = {
         .points = points, .point_count = offsets[RINGS], .offsets = offsets, .ring_count = RINGS};
     camber_polylines *polylines = NULL;

@@ -293,6 +293,13 @@ mutant strip kernels/features.h "steps at the pixel before" 'from = along - exte
 mutant strip kernels/features.h "colours at the ends of pieces" \
     'CAMBER_STOP_COLOR(e, i, k) * (1.0f - part) + CAMBER_STOP_COLOR(e, next, k) * part) * share' \
     'CAMBER_STOP_COLOR(e, i, k)) * share'
+mutant strip kernels/images.h "images that begin anew with each segment" 'm->phase + x * m->rate' 'x * m->rate'
+mutant strip kernels/images.h "images upside down" '0.5f - (at->y > 0.0f ? off : side)' '0.5f + (at->y > 0.0f ? off : side)'
+mutant strip kernels/images.h "images that lie elsewhere" 'x = at->x - m->left' 'x = at->x + m->left'
+mutant strip kernels/pitch.h "a pitch: a plane that is not turned" 'y * e.cosine * by_depth' 'y * by_depth'
+mutant strip kernels/pitch_segment.h "a pitch: edges of areas that end where they begin" 'is_whole ? s->by' 'is_whole ? s->ay'
+mutant strip kernels/stroke_pitched.h "a pitch: lines as wide far away as near" \
+    'CAMBER_REF(x), CAMBER_REF(y)) * at->by_depth' 'CAMBER_REF(x), CAMBER_REF(y))'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
 mutant strip kernels/arc_length_scan.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
@@ -311,6 +318,8 @@ mutant strip kernels/setup.cl "a direction that is not that of the segment befor
 mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r->first_row,' 'take_rows(rows, 0u * r->first_row,'
 mutant kite kernels/setup.cl "lines that go on to the next" 'r->strips ? STARTS : CAMBER_POINT_FIRST' \
     'r->strips ? STARTS : 0u'
+mutant strip kernels/setup.cl "a pitch: a cut in the place of the other" 'p->cut_b.owner, p->cut_a.x' \
+    'p->cut_a.owner, p->cut_a.x'
 mutant strip kernels/setup.cl "areas: all by the first fill" 'brushes += next;' 'brushes += 0u * next;'
 mutant strip kernels/setup.cl "areas: fills that change too early" 'numbers) >= own[next] - first' \
     'numbers) < own[next] - first'
@@ -358,6 +367,9 @@ mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * h
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
 mutant strip kernels/segment.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
+level=()
+group='along lines'
+mutant strip kernels/edge.h "a pitch: cells at a side that are left out" 'in_left > -past_left - left' 'in_left > left'
 drawer=()
 
 echo "$caught ${texts_alone:+rows stand, none }caught, $failures failures"

@@ -2,15 +2,12 @@
  * nothing with the shaders and kernels but where the camera stands. */
 #include "pictures.h"
 
+#include "validate/along_truth.h"
 #include "validate/random.h"
 
 enum { WIDE = 160, HIGH = 120, SAMPLES = 16, POINTS_MAX = 40 };
 static const double PITCHES[] = {30, 60, 80, 85};
 enum { PITCH_COUNT = 4 };
-
-typedef struct vector {
-    double x, y, z;
-} vector;
 
 typedef struct figure {
     const char *name;
@@ -22,19 +19,8 @@ typedef struct figure {
 
 /* ---- Truth ---- */
 
-/* Where the ray through a place of the picture meets the plane, and how far that lies in units of the centre's
- * distance; false: nowhere in front of the camera. */
 static bool meet(double pitch_deg, double x, double y, double met[2], double *depth) {
-    const double angle = pitch_deg * SCENE_PI / 180, distance = 0.5 * HIGH / tan(0.5 * 0.6435011087932844);
-    const vector eye = {0, distance * sin(angle), distance * cos(angle)}, down = {0, cos(angle), -sin(angle)};
-    const double right = x - 0.5 * WIDE, below = y - 0.5 * HIGH;
-    const vector ray = {right, -eye.y + below * down.y, -eye.z + below * down.z};
-    if (ray.z >= 0)
-        return false;
-    *depth = -eye.z / ray.z;
-    met[0] = eye.x + *depth * ray.x + 0.5 * WIDE;
-    met[1] = eye.y + *depth * ray.y + 0.5 * HIGH;
-    return true;
+    return camber_ray_meets_plane(pitch_deg, (const double[]){WIDE, HIGH}, x, y, met, depth);
 }
 
 static bool in_triangle(const double p[2], const double a[2], const double b[2], const double c[2]) {

@@ -70,6 +70,7 @@ static int print_json(const job *j) {
     if (!object)
         return camber_report_json(session->report, NULL);
     camber_session_describe(session, object);
+    const camber_features_stats read = camber_features_get_stats(j->input.features);
     const struct {
         const char *name;
         size_t count;
@@ -78,6 +79,10 @@ static int print_json(const job *j) {
         {"features", scene.features},
         {"polylines", scene.polylines},
         {"points_in", scene.points_in},
+        {"closed_rings", read.closed_rings},
+        {"turned_rings", read.turned_rings},
+        {"empty_rings", read.empty_rings},
+        {"open_relations", read.open_relations},
         {"points", lines.kept_points},
         {"segments", lines.kept_segments},
         {"joins", mesh.joins},
@@ -119,6 +124,26 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
                       camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
 }
 
+/* Rings of areas that were not as they should be; mostly none. */
+static void print_rings(const job *j) {
+    const camber_features_stats read = camber_features_get_stats(j->input.features);
+    const struct {
+        size_t count;
+        const char *what;
+    } all[] = {{read.closed_rings, "closed"},
+               {read.turned_rings, "turned"},
+               {read.empty_rings, "left out for having no area"},
+               {read.open_relations, "multipolygons lack ways"}};
+    char text[256] = "";
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (all[i].count > 0)
+            length += (size_t)snprintf(text + length, sizeof text - length, "%s%zu %s", length > 0 ? ", " : "",
+                                       all[i].count, all[i].what);
+    if (length > 0)
+        camber_report_say(j->session->report, "rings of areas: %s", text);
+}
+
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
@@ -127,6 +152,7 @@ static void print_text(const job *j) {
     camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,
                       scene.width, scene.height, scene.zoom, scene.longitude, scene.latitude);
     print_counts(j, &scene);
+    print_rings(j);
     camber_report_say(report,
                       "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
                       "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",

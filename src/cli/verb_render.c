@@ -124,24 +124,24 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
                       camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
 }
 
-/* Rings of areas that were not as they should be; mostly none. */
+/* Prints how many rings were not as they should be; mostly none is. */
 static void print_rings(const job *j) {
     const camber_features_stats read = camber_features_get_stats(j->input.features);
     const struct {
         size_t count;
-        const char *what;
-    } all[] = {{read.closed_rings, "closed"},
-               {read.turned_rings, "turned"},
-               {read.empty_rings, "left out for having no area"},
-               {read.open_relations, "multipolygons lack ways"}};
+        const char *noun, *what;
+    } all[] = {{read.closed_rings, "ring", "closed"},
+               {read.turned_rings, "ring", "turned"},
+               {read.empty_rings, "ring", "without area left out"},
+               {read.open_relations, "multipolygon", "lacking ways"}};
     char text[256] = "";
     size_t length = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i].count > 0)
-            length += (size_t)snprintf(text + length, sizeof text - length, "%s%zu %s", length > 0 ? ", " : "",
-                                       all[i].count, all[i].what);
+            length += (size_t)snprintf(text + length, sizeof text - length, "%s%zu %s%s %s", length > 0 ? ", " : "",
+                                       all[i].count, all[i].noun, camber_plural(all[i].count), all[i].what);
     if (length > 0)
-        camber_report_say(j->session->report, "rings of areas: %s", text);
+        camber_report_say(j->session->report, "areas: %s", text);
 }
 
 static void print_text(const job *j) {

@@ -1,6 +1,6 @@
 /* Each pixel's 256 samples find the nearest point of the line, their foot on it, and take the colour that the paint has
- * there: the gap between the line's two sides, its blur, dashes, trim and ramp. No formula is shared with kernels and
- * shaders. */
+ * there: the gap between the line's two sides, its blur, dashes, trim, ramp and image. Under a pitch rays find where
+ * samples lie. No formula is shared with kernels and shaders, nor with src/base/perspective.h. */
 #include "validate/along_truth.h"
 
 #include <math.h>
@@ -108,7 +108,8 @@ static void color_at(const camber_ramp *ramp, double progress, double color[4]) 
 
 bool camber_ray_meets_plane(double pitch_deg, const double size[2], double x, double y, double met[2], double *depth) {
     const double pi = 3.14159265358979323846, angle = pitch_deg * pi / 180;
-    const double away = 0.5 * size[1] / tan(0.5 * 0.6435011087932844);
+    const double view = 0.6435011087932844; /* rad, from the picture's bottom to its top */
+    const double away = 0.5 * size[1] / tan(0.5 * view);
     const double eye[] = {0, away * sin(angle), away * cos(angle)}, down[] = {0, cos(angle), -sin(angle)};
     const double right = x - 0.5 * size[0], below = y - 0.5 * size[1];
     const double ray[] = {right, below * down[1] - eye[1], below * down[2] - eye[2]};
@@ -163,22 +164,27 @@ static bool place_of(const camber_along_desc *d, camber_window window, double x,
     return d->pitch_deg <= 0 || camber_ray_meets_plane(d->pitch_deg, size, x, y, at, &depth);
 }
 
-/* Whether the line may have part of a pixel; far: how far from its middle the line lies at most, px. */
-static bool may_have(const camber_along_desc *d, camber_window window, int x, int y, double far) {
-    double middle[2], corner[2];
-    return place_of(d, window, x + 0.5, y + 0.5, middle) && place_of(d, window, x, y, corner) &&
-           foot_of(d, middle[0], middle[1]).distance <=
-               far + 2 * length_of(corner[0] - middle[0], corner[1] - middle[1]);
+/* Whether the line may have part of a pixel; reach: how far from its middle it is drawn, px. */
+static bool may_have(const camber_along_desc *d, camber_window window, int x, int y, double reach) {
+    double middle[2], corner[2], span = 0;
+    if (!place_of(d, window, x + 0.5, y + 0.5, middle))
+        return true; /* the horizon passes */
+    for (int k = 0; k < 4; k++) {
+        if (!place_of(d, window, x + k % 2, y + k / 2, corner))
+            return true;
+        span = fmax(span, length_of(corner[0] - middle[0], corner[1] - middle[1]));
+    }
+    return foot_of(d, middle[0], middle[1]).distance <= reach + span;
 }
 
 void camber_along_add(const camber_along_desc *d, camber_window window, float *rgba) {
     const double total = camber_along_length(d->points, d->count);
-    const double far = (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 2;
+    const double reach = (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 0.5; /* a blur's half pixel */
     for (int y = 0; y < window.height; y++)
         for (int x = 0; x < window.width; x++) {
             float *pixel = rgba + 4 * ((size_t)y * (size_t)window.width + (size_t)x);
             double sum[4] = {0}, at[2];
-            if (!may_have(d, window, x, y, far))
+            if (!may_have(d, window, x, y, reach))
                 continue;
             for (int s = 0; s < SAMPLES * SAMPLES; s++)
                 if (place_of(d, window, x + (s % SAMPLES + 0.5) / SAMPLES, y + (s / SAMPLES + 0.5) / SAMPLES, at))

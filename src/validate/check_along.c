@@ -1,5 +1,5 @@
-/* Lines that have two sides and a gap, fade, are dashed, drawn in part or change their colour, and areas that the same
- * points bound: against samples. */
+/* Lines that have two sides and a gap, fade, are dashed, drawn in part, change their colour or show an image, and areas
+ * that the same points bound, some of them seen at an angle: against samples. */
 #include "validate/along_truth.h"
 #include "validate/checks.h"
 
@@ -30,8 +30,8 @@ static const camber_ramp_stop steps[] = {{0.2f, {0.1f, 0, 0, 1}}, {0.22f, {1, 0,
                                          {0.74f, {0.3f, 0, 0, 1}}};
 static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}, {steps, 7}};
 
-/* Six by four texels, whose reds differ along and across; the lowest row is the highest, so that nothing jumps where
- * one copy follows the other. */
+/* Six by four texels, whose reds differ along and across; the lowest row equals the top one, so that nothing jumps
+ * where one copy follows the other. */
 #define RED(r) r, 0, 0, 255
 static const uint8_t texels[] = {RED(250), RED(200), RED(140), RED(80),  RED(140), RED(200), /**/
                                  RED(190), RED(120), RED(60),  RED(20),  RED(60),  RED(120), /**/
@@ -71,6 +71,7 @@ static const struct {
      {.width_px = 8, .image = &image, .image_px = 21, WHITE},
      {2.5, 0.018, 0.0005},
      40},
+    {"areas of images at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills + 2}, {0.7, 0.002, 0.0005}, 40},
     {"areas at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}, 40},
 };
 
@@ -123,8 +124,8 @@ static void add_inside(const camber_fill *fill, double pitch_deg, float *rgba) {
             continue;
         const double red = !fill->image
                                ? 1
-                               : camber_image_red(fill->image, (x - (double)fill->x_px) / (double)fill->width_px,
-                                                  (y - (double)fill->y_px) / (double)fill->height_px);
+                               : camber_image_red(fill->image, (at[0] - (double)fill->x_px) / (double)fill->width_px,
+                                                  (at[1] - (double)fill->y_px) / (double)fill->height_px);
         rgba[4 * pixel] += (float)red / (SAMPLES * SAMPLES);
         rgba[4 * pixel + 3] += 1.0f / (SAMPLES * SAMPLES);
     }

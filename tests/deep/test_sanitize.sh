@@ -17,7 +17,7 @@ build)
     ;;
 run)
     # Real cities are for ./dev test --sanitize, and test_kernels is for oclgrind: the other tests call the same. So do
-    # some that hold pixels and archives against others for minutes; and test_faults lets threads fail elsewhere.
+    # some that draw or read for minutes what others do, too; and test_faults lets threads fail elsewhere.
     unset CAMBER_DATA
     # Shares run side by side, and each writes a log in a folder of its own.
     folder=$1/share-${2%/*}

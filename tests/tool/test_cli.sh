@@ -773,11 +773,11 @@ echo '{"version":8,"sources":{},"layers":[{"id":"a","type":"fill","paint":{"fill
 expect 0 "an open ring" render "$tmp/in/open.geojson" --style "$tmp/in/outline.json" -o a.png
 says '^camber: warning: .*1 rings of areas do not end where they begin; closed$'
 says ' 2 polylines, 10 points,'
-says '^rings of areas: 1 closed$'
+says '^areas: 1 ring closed$'
 flat='[[0,0],[0.004,0.004],[0,0]]'
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$ring,$ring,$flat]}}" >"$tmp/in/odd.geojson"
 expect 0 "an open ring, its hole and one without area" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f
-says '^rings of areas: 2 closed, 1 turned, 1 left out for having no area$'
+says '^areas: 2 rings closed, 1 ring turned, 1 ring without area left out$'
 expect 0 "rings that are counted" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f --json
 has "$tmp/stdout" '"closed_rings": 2' '"turned_rings": 1' '"empty_rings": 1' '"open_relations": 0'
 rm -f a.png

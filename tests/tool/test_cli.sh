@@ -615,7 +615,7 @@ is_json() {
 }
 
 lines=$tmp/in/lines.bin
-expect 0 "validate, a line a group" validate --polylines "$lines" --draw cl --method strip --windows 8
+expect 0 "validate, a line a group" validate --polylines "$lines" --size 256x256 --draw cl --method strip --windows 8
 passes 4
 has "$tmp/stdout" ': meshes as the CPU twin.s: [0-9]* checks' ': pictures as the CPU twin' ': pixels as the oracle' ': networks under five cameras'
 says ' checks in [0-9]* s: 0 failed, .*; --full '
@@ -641,13 +641,13 @@ expect 2 "too few windows" validate --windows 7
 expect 2 "no such group of checks" validate --polylines "$lines" --only 'no such'
 says "^camber: --only no such: no group of checks has that in its name; "
 expect 2 "no group of checks" validate --polylines "$lines" --only devices
-expect 0 "one group of checks" validate --polylines "$lines" --only ': meshes' --method strip
+expect 0 "one group of checks" validate --polylines "$lines" --size 256x256 --only ': meshes' --method strip
 has "$tmp/stdout" '^ok .*: meshes as the CPU twin.s: [0-9]* checks$'
 lacks "$tmp/stdout" ' as the oracle.s:\|networks under\|: pictures as'
 expect 73 "pictures into a file" validate --polylines "$lines" --pictures "$lines"
 expect 73 "pictures into a folder with files" validate --polylines "$lines" --pictures "$tmp/in"
 expect 73 "pictures into a folder in no folder" validate --polylines "$lines" --pictures none/pictures
-expect 0 "validate polylines" validate --polylines "$lines" --json --junit built-in.xml -f --only pixels --windows 8
+expect 0 "validate polylines" validate --polylines "$lines" --size 256x256 --json --junit built-in.xml -f --only pixels --windows 8
 is_json "$tmp/stdout"
 has "$tmp/stdout" '"checks": [1-9]' '"failed": 0' '"skipped": [0-9]' '"failures": \[\]' '"skips": \[' '"pixels": \[' \
     '"reason": ' '"bounds": ' '"mean": ' '"past_64": ' '"windows": 8'
@@ -663,16 +663,16 @@ has "$tmp/stdout" ': as styled, areas and lines: drawn as by the CPU twin, on ' 
     ': layer 5 of areas: strip, filled: pixels, on .*, EGL$' '^# .* pixels: mean '
 expect 0 "validate a style of lines alone" validate -v "$here/data/monaco/monaco.osm.pbf" --style roads --method strip --size 100x100 --draw cl
 lacks "$tmp/stdout" 'of areas\|as styled, areas'
-expect 0 "validate what kernels draw" validate -v --polylines "$lines" --draw cl --only pixels --windows 8
+expect 0 "validate what kernels draw" validate -v --polylines "$lines" --size 256x256 --draw cl --only pixels --windows 8
 passes 3
 has "$tmp/stdout" ': pixels, on .*, OpenCL$' ': united, on .*, OpenCL$'
 lacks "$tmp/stdout" 'EGL'
 lacks "$tmp/stdout" 'OSMesa'
-expect 0 "validate what GL draws" validate -v --polylines "$lines" --draw gl --only pixels --method strip --windows 8
+expect 0 "validate what GL draws" validate -v --polylines "$lines" --size 256x256 --draw gl --only pixels --method strip --windows 8
 lacks "$tmp/stdout" ', OpenCL$'
-expect 0 "validate both" validate -v --polylines "$lines" --only pixels --method strip --windows 8
+expect 0 "validate both" validate -v --polylines "$lines" --size 256x256 --only pixels --method strip --windows 8
 has "$tmp/stdout" ': OpenCL as E\|: OpenCL as O'
-run "${without_gl[@]}" "$tool" validate -v --polylines "$lines" --only pixels --method strip --windows 8
+run "${without_gl[@]}" "$tool" validate -v --polylines "$lines" --size 256x256 --only pixels --method strip --windows 8
 name="validate without GL"
 verify 0
 passes 5
@@ -687,18 +687,18 @@ has "$tmp/stdout" 'a\\#b'
 is_xml odd.xml
 has odd.xml 'a#b' '&lt;c&gt;&amp;&quot;d'
 rm -f odd.xml "$odd"
-run env POCL_DEVICES='pthread pthread' "$tool" validate -v --polylines "$lines" --only meshes --method strip --windows 8
+run env POCL_DEVICES='pthread pthread' "$tool" validate -v --polylines "$lines" --size 256x256 --only meshes --method strip --windows 8
 name="two devices of one name"
 verify 0
 if grep -q 'twin, on pthread' "$tmp/stdout"; then
     has "$tmp/stdout" ': as the CPU twin, on pthread.* (2)$'
 fi
 name="no EGL"
-run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate -v --polylines "$lines" --only pixels --method strip --windows 8
+run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate -v --polylines "$lines" --size 256x256 --only pixels --method strip --windows 8
 verify 0
 passes 10
 if grep -q '^ok .* EGL # SKIP .' "$tmp/stdout"; then
-    run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate --polylines "$lines" --backend egl
+    run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate --polylines "$lines" --size 256x256 --backend egl
     name="no EGL, though asked for"
     verify 69
 fi
@@ -712,7 +712,7 @@ for ends in "three three three four" "three three four four" "three three fifty 
     "three three far far"; do
     read -r x0 y0 x1 y1 <<<"$ends"
     segment "${!x0}" "${!y0}" "${!x1}" "${!y1}"
-    expect 0 "one segment: $ends" validate --polylines "$tmp/in/segment.lines" --method strip -q
+    expect 0 "one segment: $ends" validate --polylines "$tmp/in/segment.lines" --size 64x64 --method strip -q
 done
 
 # ---- Bad input ----

@@ -154,6 +154,8 @@ typedef struct camber_features_stats {
     size_t empty_rings;    /* left out: fewer than three different points, or all of them on one line */
     size_t open_relations; /* multipolygons of OpenStreetMap of which ways are missing: rings that do not close are left
                               out */
+    size_t crossing_rings; /* cross themselves, and are drawn as they wind. One of very many that nearly do is not
+                              counted */
 } camber_features_stats;
 
 /* Sums over the files. */

@@ -83,6 +83,7 @@ static int print_json(const job *j) {
         {"turned_rings", read.turned_rings},
         {"empty_rings", read.empty_rings},
         {"open_relations", read.open_relations},
+        {"crossing_rings", read.crossing_rings},
         {"points", lines.kept_points},
         {"segments", lines.kept_segments},
         {"joins", mesh.joins},
@@ -133,6 +134,7 @@ static void print_rings(const job *j) {
     } all[] = {{read.closed_rings, "ring", "closed"},
                {read.turned_rings, "ring", "turned"},
                {read.empty_rings, "ring", "without area left out"},
+               {read.crossing_rings, "self-crossing ring", "kept"},
                {read.open_relations, "multipolygon", "lacking ways"}};
     char text[256] = "";
     size_t length = 0;

@@ -505,7 +505,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
             camber_features_pin_borders(features, polylines, zoom);
         add_stats(features, &self);
         warn_of_losses(&self);
-        camber_rings_report(features, desc->path, &stats);
+        camber_rings_report(features, desc->path, polylines, &stats);
         camber_progress(features->context, "reading", 1);
     } else {
         features->point_count = points;

@@ -503,7 +503,7 @@ camber_status camber_osm_read(camber_features *features, const camber_source_des
         return status;
     }
     add_stats(&self);
-    camber_rings_report(features, desc->path, &before.stats);
+    camber_rings_report(features, desc->path, before.polyline_count, &before.stats);
     camber_progress(self.context, "reading", 1);
     return CAMBER_OK;
 }

@@ -1,7 +1,7 @@
 /* Makes rings of areas what fill layers draw.
  *
  * Input: a ring as a format has it, open or closed, wound either way. Output: a closed ring, wound by its role, or
- * nothing where it has no area. All of it is counted. Rings that cross themselves stay as they are. */
+ * nothing where it has no area. All of it is counted. Rings that cross themselves are counted and stay as they are. */
 #include "source/rings.h"
 
 #include <math.h>
@@ -79,6 +79,80 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
     return count;
 }
 
+/* ---- Rings that cross themselves ---- */
+
+/* The edges [first, end) of a ring; edge i goes from point i to the next. And the box around them. */
+typedef struct span {
+    size_t first, end;
+    double x0, y0, x1, y1;
+} span;
+
+enum { FEW_EDGES = 8, LOOKS_AN_EDGE = 200 };
+
+static span span_of(const double *points, size_t first, size_t end, size_t *looks) {
+    span s = {first, end, INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = first; i <= end; i++) {
+        s.x0 = points[2 * i] < s.x0 ? points[2 * i] : s.x0;
+        s.y0 = points[2 * i + 1] < s.y0 ? points[2 * i + 1] : s.y0;
+        s.x1 = points[2 * i] > s.x1 ? points[2 * i] : s.x1;
+        s.y1 = points[2 * i + 1] > s.y1 ? points[2 * i + 1] : s.y1;
+    }
+    *looks -= *looks < end - first ? *looks : end - first;
+    return s;
+}
+
+static bool edges_cross(const double *a, const double *c) {
+    const double *b = a + 2, *d = c + 2;
+    return cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0;
+}
+
+/* Whether an edge of a crosses one of b. Halves the longer one until both are short. */
+static bool spans_cross(const double *points, span a, span b, size_t *looks) {
+    const bool apart = a.x1 < b.x0 || b.x1 < a.x0 || a.y1 < b.y0 || b.y1 < a.y0;
+    if (apart || *looks == 0)
+        return false;
+    const size_t in_a = a.end - a.first, in_b = b.end - b.first;
+    if (in_a <= FEW_EDGES && in_b <= FEW_EDGES) {
+        *looks -= *looks < in_a * in_b ? *looks : in_a * in_b;
+        for (size_t i = a.first; i < a.end; i++)
+            for (size_t k = b.first; k < b.end; k++)
+                if (edges_cross(points + 2 * i, points + 2 * k))
+                    return true;
+        return false;
+    }
+    const span longer = in_a > in_b ? a : b, other = in_a > in_b ? b : a;
+    const size_t middle = (longer.first + longer.end) / 2;
+    return spans_cross(points, span_of(points, longer.first, middle, looks), other, looks) ||
+           spans_cross(points, span_of(points, middle, longer.end, looks), other, looks);
+}
+
+static bool span_crosses(const double *points, size_t first, size_t end, size_t *looks) {
+    if (end - first <= FEW_EDGES) {
+        for (size_t i = first; i < end; i++)
+            for (size_t k = i + 2; k < end; k++)
+                if (edges_cross(points + 2 * i, points + 2 * k))
+                    return true;
+        return false;
+    }
+    const size_t middle = (first + end) / 2;
+    return span_crosses(points, first, middle, looks) || span_crosses(points, middle, end, looks) ||
+           spans_cross(points, span_of(points, first, middle, looks), span_of(points, middle, end, looks), looks);
+}
+
+bool camber_ring_crosses(const double *points, size_t count) {
+    size_t looks = LOOKS_AN_EDGE * count;
+    return count > 3 && span_crosses(points, 0, count - 1, &looks);
+}
+
+static void count_crossing(camber_features *features, size_t first_polyline) {
+    for (size_t i = first_polyline; i < features->polyline_count; i++) {
+        const size_t first = features->offsets[i], count = features->offsets[i + 1] - first;
+        const uint32_t class_index = features->feature_class[features->polyline_feature[i]];
+        if (features->classes[class_index].geometry == CAMBER_GEOMETRY_AREA)
+            features->stats.crossing_rings += camber_ring_crosses(features->points + 2 * first, count);
+    }
+}
+
 /* ---- The antimeridian ---- */
 
 /* How far x moves from one point to the next, the short way. */
@@ -123,11 +197,14 @@ size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
 
 /* ---- The report ---- */
 
-void camber_rings_report(const camber_features *features, const char *name, const camber_features_stats *before) {
+void camber_rings_report(camber_features *features, const char *name, size_t first_polyline,
+                         const camber_features_stats *before) {
     const camber_features_stats *stats = &features->stats;
+    count_crossing(features, first_polyline);
     const size_t closed = stats->closed_rings - before->closed_rings,
                  turned = stats->turned_rings - before->turned_rings, empty = stats->empty_rings - before->empty_rings,
-                 open = stats->open_relations - before->open_relations;
+                 open = stats->open_relations - before->open_relations,
+                 crossing = stats->crossing_rings - before->crossing_rings;
     if (closed)
         camber_log(features->context, CAMBER_LOG_WARNING, "%s: %zu rings of areas do not end where they begin; closed",
                    name, closed);
@@ -137,6 +214,9 @@ void camber_rings_report(const camber_features *features, const char *name, cons
     if (empty)
         camber_log(features->context, CAMBER_LOG_INFO, "%s: left out %zu rings of areas that have no area", name,
                    empty);
+    if (crossing)
+        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas cross themselves; drawn as they wind",
+                   name, crossing);
     if (open)
         camber_log(features->context, CAMBER_LOG_INFO,
                    "%s: %zu multipolygons lack ways; left out their rings that do not close", name, open);

@@ -29,7 +29,11 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
  * goes on along the pole, and one that goes round and round stays as it is. points has room for count + 4. Returns how
  * many points there are now. *crosses: the ring crosses the antimeridian. */
 size_t camber_ring_unroll(double *points, size_t count, bool *crosses);
-/* Says what was done to the rings of a file since *before. */
-void camber_rings_report(const camber_features *features, const char *name, const camber_features_stats *before);
+/* Whether two edges of a closed ring cross; those that touch do not. false, too, after 200 looks at each edge. */
+bool camber_ring_crosses(const double *points, size_t count);
+/* Counts the rings of a file that cross themselves, and says what was done to all its rings since *before. Its
+ * polylines are those from the first one on. */
+void camber_rings_report(camber_features *features, const char *name, size_t first_polyline,
+                         const camber_features_stats *before);
 
 #endif

@@ -128,6 +128,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_context *context = sources->context;
     const camber_features_stats before = sources->features->stats;
     const size_t features_before = sources->features->feature_count;
+    const size_t first_polyline = sources->features->polyline_count;
     const json_t *data = json_object_get(one->style->json, "data");
     json_t *loaded = NULL;
     camber_status status = CAMBER_OK;
@@ -161,7 +162,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     sources->features->stats.invalid_points += stats.invalid_points;
     warn_of_losses(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
     warn_invalid(sources, one->what, stats.invalid_points);
-    camber_rings_report(sources->features, one->what, &before);
+    camber_rings_report(sources->features, one->what, first_polyline, &before);
     return camber_features_add_attribution(sources->features,
                                            json_string_value(json_object_get(one->style->json, "attribution")));
 }
@@ -383,7 +384,7 @@ static camber_status read_addresses(camber_sources *sources, const source *one, 
     if (status != CAMBER_OK)
         return status;
     camber_features_pin_borders(features, first_polyline, reading->zoom);
-    camber_rings_report(features, one->what, &before);
+    camber_rings_report(features, one->what, first_polyline, &before);
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
     warn_of_losses(sources, one->what, result.stats.damaged_features, result.stats.damage,

@@ -353,7 +353,7 @@ camber_status camber_features_read_tile_file(camber_features *features, const ca
         return status;
     }
     camber_features_pin_borders(features, before.polyline_count, self.zoom);
-    camber_rings_report(features, desc->path, &before.stats);
+    camber_rings_report(features, desc->path, before.polyline_count, &before.stats);
     add_stats(features, &result.stats);
     warn_of_losses(&self, &result.stats);
     camber_progress(features->context, "reading", 1);

@@ -779,7 +779,11 @@ echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\"
 expect 0 "an open ring, its hole and one without area" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f
 says '^areas: 2 rings closed, 1 ring turned, 1 ring without area left out$'
 expect 0 "rings that are counted" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f --json
-has "$tmp/stdout" '"closed_rings": 2' '"turned_rings": 1' '"empty_rings": 1' '"open_relations": 0'
+has "$tmp/stdout" '"crossing_rings": 0' '"closed_rings": 2' '"turned_rings": 1' '"empty_rings": 1' '"open_relations": 0'
+tie='[[0,0],[0.004,0.004],[0.004,0],[0,0.004],[0,0]]'
+echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$tie]}}" >"$tmp/in/tie.geojson"
+expect 0 "a ring that crosses itself" render "$tmp/in/tie.geojson" --style "$tmp/in/outline.json" -o a.png -f
+says '^areas: 1 self-crossing ring kept$'
 rm -f a.png
 cat >"$tmp/in/roads.osm" <<'XML'
 <osm version="0.6">

@@ -9,6 +9,7 @@
 #include "source/rings.h"
 #include "tiles/census.h"
 #include "tiles/features_file.h"
+#include "validate/random.h"
 
 #include <math.h>
 
@@ -132,6 +133,70 @@ static void test_polygons(void **state) {
         assert_int_equal(it->features->stats.skipped_features, 0);
     }
 }
+
+/* ---- Rings that cross themselves ---- */
+
+static double side_of(const double *a, const double *b, const double *p) {
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+}
+
+/* Every two edges, one after the other. */
+static bool any_two_cross(const double *points, size_t count) {
+    for (size_t i = 0; i + 1 < count; i++)
+        for (size_t k = 0; k < i; k++) {
+            const double *a = points + 2 * i, *c = points + 2 * k;
+            const bool parts = (side_of(a, a + 2, c) > 0) != (side_of(a, a + 2, c + 2) > 0);
+            const bool is_parted = (side_of(c, c + 2, a) > 0) != (side_of(c, c + 2, a + 2) > 0);
+            const bool next = i == k + 1 || (k == 0 && i + 2 == count);
+            if (parts && is_parted && !next)
+                return true;
+        }
+    return false;
+}
+
+/* A star of count points, whose first is its last; some with two of its points in each other's place. */
+static void make_star(uint64_t *seed, double *points, size_t count, double least, bool swapped) {
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double angle = 6.28 * (double)i / (double)(count - 1), radius = camber_random_between(seed, least, 0.4);
+        points[2 * i] = 0.5 + radius * cos(angle);
+        points[2 * i + 1] = 0.5 + radius * sin(angle);
+    }
+    if (swapped) {
+        double *a = points + 2 * camber_random_below(seed, count - 1), kept[2], *b = points;
+        memcpy(kept, a, sizeof kept);
+        memcpy(a, b, sizeof kept);
+        memcpy(b, kept, sizeof kept);
+    }
+    memcpy(points + 2 * (count - 1), points, 2 * sizeof *points);
+}
+
+static void test_crossing(void **state) {
+    enum { MOST = 100001 };
+    file_reading *it = *state;
+    double *points = malloc(2 * MOST * sizeof *points);
+    uint64_t seed = 5;
+    size_t crossing = 0;
+    assert_non_null(points);
+    for (int i = 0; i < 2000; i++) {
+        const size_t count = 4 + camber_random_below(&seed, 60);
+        make_star(&seed, points, count, 0.2, i % 2);
+        const bool crosses = any_two_cross(points, count);
+        assert_int_equal(camber_ring_crosses(points, count), crosses);
+        crossing += crosses;
+    }
+    assert_in_range(crossing, 500, 1000);
+    make_star(&seed, points, MOST, 0.39999, false);
+    assert_false(camber_ring_crosses(points, MOST));
+    points[2 * 70000] = 0.95; /* far over to the other side */
+    assert_true(camber_ring_crosses(points, MOST));
+    free(points);
+    read_geometry(it, POLYGON("[[0,0],[10,10],[10,0],[0,10],[0,0]]"));
+    assert_int_equal(it->features->stats.crossing_rings, 1);
+    read_geometry(it, POLYGON(SQUARE "," HOLE));
+    assert_int_equal(it->features->stats.crossing_rings, 0);
+}
+
+/* ---- Kinds, points, the antimeridian, regions ---- */
 
 /* Lines, outlines and areas are features of their own; what no layer draws is not read. */
 static void test_kinds(void **state) {
@@ -502,6 +567,7 @@ static void test_census(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_polygons, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_crossing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_kinds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_invalid_points, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_antimeridian, set_up, tear_down),

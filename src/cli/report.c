@@ -19,13 +19,17 @@ void camber_report_open(camber_report *report, const camber_options *options) {
     report->terminal = report->bars;
 }
 
-/* A name of a file may hold anything: an error stays one line and sends nothing to the terminal. */
+/* A name of a file may hold anything: an error stays one line and sends nothing to the terminal. It is written at once,
+ * so that no other thread's line, nor another process's, comes between. */
 static void print_line(camber_report *report, const char *prefix, const char *text) {
+    char line[4160];
+    size_t length = (size_t)snprintf(line, sizeof line - 1, "%s%s", prefix, text);
+    length = length < sizeof line - 2 ? length : sizeof line - 2;
+    for (size_t i = 0; i < length; i++)
+        line[i] = (unsigned char)line[i] < 0x20 || line[i] == 0x7f ? '?' : line[i];
+    line[length] = '\n';
     camber_report_erase_bar(report);
-    fputs(prefix, stderr);
-    for (const char *c = text; *c; c++)
-        fputc((unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c, stderr);
-    fputc('\n', stderr);
+    fwrite(line, 1, length + 1, stderr);
 }
 
 void camber_report_erase_bar(camber_report *report) {

@@ -766,6 +766,15 @@ expect 0 "a line and a point" render "$tmp/in/mixed.geojson" -o a.png --size 64x
 lacks "$tmp/stderr" '^camber: '
 expect 0 "a line and a point, at length" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v
 says '^camber: info: .*left out what is neither line nor area .* of 1 features$'
+if command -v python3 >/dev/null; then # a socket that keeps apart what was written at once: threads write, too
+    python3 -c 'import socket, subprocess, sys
+here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+with subprocess.Popen(sys.argv[1:], stderr=there) as process:
+    there.close()
+    written = list(iter(lambda: here.recv(65536), b""))
+sys.exit(process.returncode or not written or any(text.count(b"\n") != 1 or text[-1:] != b"\n" for text in written))' \
+        "$tool" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v || fail "a line is written in several parts"
+fi
 rm -f a.png
 ring='[[0,0],[0.004,0],[0.004,0.004],[0,0.004]]' # its outline is closed, too
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$ring]}}" >"$tmp/in/open.geojson"

@@ -238,11 +238,13 @@ static camber_status check_drawer(camber_validation *v, const camber_checked_dev
     return status;
 }
 
-/* Row after row, since samples take the most time. */
+/* Each row is a group: samples take the most time. */
 camber_status camber_check_along(camber_validation *v) {
     expected *row = malloc(sizeof *row);
     camber_status status = row ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_OK; i++) {
+        if (!camber_results_group(&v->results, "along lines: %s", rows[i].name))
+            continue;
         row->number = i;
         status = make_truth(i, row->levels) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
         for (size_t r = 0; r < v->devices.count; r++)

@@ -39,7 +39,7 @@ camber_status camber_check_areas(camber_validation *validation, const camber_sub
                                  const camber_frame *frame);
 /* The CPU twin's lines beside others: how far they lie from these. */
 camber_status camber_check_offsets(camber_validation *validation);
-/* Gaps, blurs, dashes, trims and ramps, on lines of its own. */
+/* Gaps, blurs, dashes, trims, ramps, images and areas, flat and tilted, on lines of its own: a group each. */
 camber_status camber_check_along(camber_validation *validation);
 
 /* ---- Styles: check_meshes.c ---- */

@@ -190,7 +190,7 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const cambe
 
 /* ---- Drawing ---- */
 
-enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130, PICTURES = 5 };
+enum { PICTURE_WIDTH = 100, PICTURE_HEIGHT = 90, PICTURES = 5 };
 typedef uint8_t picture[4 * PICTURE_WIDTH * PICTURE_HEIGHT];
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {

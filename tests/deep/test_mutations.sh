@@ -56,13 +56,13 @@ run_validate() { # ARGUMENT...
 }
 validate() { (run_validate "$@" >"$tmp/tap"); }
 
-# As validate, but no further than the first check that fails: a row needs one. Ends with 1 there too.
+# As validate, but no further than the first check that fails: a row needs one. Ends with 1 there too. (sed -u reads as
+# lines come; an awk may wait for more.)
 validate_until_failure() {
     local process
     run_validate "$@" >"$tmp/pipe" &
     process=$!
-    if awk '{ print } /^not ok/ { failed = 1 } failed && /^  [.][.][.]$/ { exit } END { exit !failed }' \
-        <"$tmp/pipe" >"$tmp/tap"; then
+    if ! sed -u -n 'p; /^not ok/,/^  [.][.][.]$/ { /^  [.][.][.]$/ q1 }' <"$tmp/pipe" >"$tmp/tap"; then
         kill "$process" 2>"$tmp/killed"
         wait "$process" 2>"$tmp/killed"
         return 1
@@ -136,7 +136,8 @@ build_whole() {
         cp -rp "$sources/$part" "$tmp/sources/" || exit 1
     done
     # Nearly all of the time is compilers': C that takes half as long to compile is fast enough.
-    local options=(-DCAMBER_MAP=OFF -DCAMBER_TESTS=OFF -DCAMBER_WARM=OFF -DCAMBER_KERNEL_FILES=ON -DCMAKE_C_FLAGS_RELEASE=-O1)
+    local options=(-DCAMBER_MAP=OFF -DCAMBER_TESTS=OFF -DCAMBER_WARM=OFF -DCAMBER_KERNEL_FILES=ON
+        -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_FLAGS_RELWITHDEBINFO=-O1)
     if ! cmake -S "$tmp/sources" -B "$tmp/build" -G Ninja "${options[@]}" >"$tmp/build.log" 2>&1 || ! build; then
         tail -20 "$tmp/build.log"
         echo "FAILED: the sources do not build"
@@ -145,15 +146,18 @@ build_whole() {
     cp -a "$tmp/build" "$tmp/whole" || exit 1
     # A check that fails anyway would tell of every row. All of --full would take eight minutes of kernels that are not
     # optimised: the other lanes stand for it here, and test_validate runs it with kernels that are. One share looks at
-    # this and at every method.
-    local status=0 methods=(--method strip)
-    if [ "${share%/*}" = 1 ]; then
-        methods=() drawer=(--draw cl) group=pictures
-        validate --method strip || status=$?
-        drawer=() group=
-    fi
+    # this and at every method; the others at the pixels of one scene, and go by that share.
+    local status=0
     level=()
-    [ "$status" != 0 ] || validate "${methods[@]}" || status=$?
+    if [ "${share%/*}" = 1 ]; then
+        level=(--full) drawer=(--draw cl) group=pictures
+        validate --method strip || status=$?
+        level=() drawer=() group=
+        [ "$status" != 0 ] || validate || status=$?
+    else
+        group='random walks: pixels'
+        validate --method strip || status=$?
+    fi
     level=(--full)
     case $status in
     0) echo "passes: the sources as they are, $(sed -n 's/^1\.\.//p' "$tmp/tap") checks" ;;
@@ -281,7 +285,7 @@ mutant strip kernels/union.h "united lines: every two edges face alike" 'weight 
 mutant strip kernels/union.h "united lines: one over the other" 'weight = CAMBER_FABS(cosine)' 'weight = none'
 
 # Areas, paints along lines, and bands beside them.
-group='along lines'
+group='along lines: areas'
 mutant strip kernels/area.h "areas: edges through a tile's left side" 't->turn = enters ? -e->down' 't->turn = enters ? 0.0f * e->down'
 mutant strip kernels/area.h "areas: pixels that an edge enters" 'rise * inner * inner' '0.0f * rise * inner'
 mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : sum' \
@@ -289,6 +293,7 @@ mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : su
 mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
+group='along lines'
 mutant strip kernels/features.h "gaps that are not cut out" 'area > gap ? area - gap' 'area > gap ? area'
 mutant strip kernels/features.h "a fade half as wide" '(e->blur + 1.0f)' '(0.5f * e->blur + 1.0f)'
 mutant strip kernels/features.h "dashes that do not end" 'camber_cut_along(p, at, place - CAMBER_DASH_TO(e, i))' '0.0f'
@@ -296,18 +301,23 @@ mutant strip kernels/features.h "the nearest round dash" '(least < to ? least : 
 mutant strip kernels/features.h "the period of dashes" 'at - e->period * ' 'at - 1.1f * e->period * '
 mutant strip kernels/features.h "what is trimmed and what is not" 'at->along - e->trim_from)' 'e->trim_from - at->along)'
 mutant strip kernels/features.h "a place along the line" '(least < p->length ? least : most)' '0.5f * (least < p->length ? least : most)'
+group='ramp'
 mutant strip kernels/features.h "steps at the pixel before" 'from = along - extent' 'from = along + extent'
 mutant strip kernels/features.h "colours at the ends of pieces" \
     'CAMBER_STOP_COLOR(e, i, k) * (1.0f - part) + CAMBER_STOP_COLOR(e, next, k) * part) * share' \
     'CAMBER_STOP_COLOR(e, i, k)) * share'
+group='an image'
 mutant strip kernels/images.h "images that begin anew with each segment" 'm->phase + x * m->rate' 'x * m->rate'
 mutant strip kernels/images.h "images upside down" '0.5f - (at->y > 0.0f ? off : side)' '0.5f + (at->y > 0.0f ? off : side)'
 mutant strip kernels/images.h "images that lie elsewhere" 'x = at->x - m->left' 'x = at->x + m->left'
+group='at 40 degrees'
 mutant strip kernels/pitch.h "a pitch: a plane that is not turned" 'y * e.cosine * by_depth' 'y * by_depth'
 mutant strip kernels/pitch_segment.h "a pitch: edges of areas that end where they begin" 'is_whole ? s->by' 'is_whole ? s->ay'
 mutant strip kernels/stroke_pitched.h "a pitch: lines as wide far away as near" \
     'CAMBER_REF(x), CAMBER_REF(y)) * at->by_depth' 'CAMBER_REF(x), CAMBER_REF(y))'
+group='translucent ramp'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
+group='along lines'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
 mutant strip kernels/arc_length_scan.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
 mutant strip kernels/emit.cl "arc lengths of the neighbour" 'as_uint(arc_lengths[2 * i])' 'as_uint(arc_lengths[2 * i + 2])'
@@ -375,7 +385,7 @@ mutant strip kernels/union.h "united lines: edges that face alike are added up" 
     'cosine > 0.0f ? apart : more'
 mutant strip kernels/segment.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
 level=()
-group='along lines'
+group='at 40 degrees'
 mutant strip kernels/edge.h "a pitch: cells at a side that are left out" 'in_left > -past_left - left' 'in_left > left'
 drawer=()
 

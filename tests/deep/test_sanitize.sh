@@ -24,7 +24,7 @@ run)
     mkdir -p "$folder"
     echo 'subdirs("..")' >"$folder/CTestTestfile.cmake"
     case $2 in
-    */*) chosen=(-I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside)|soak_serve)$') ;;
+    */*) chosen=(-I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|python|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside)|soak_serve)$') ;;
     *) chosen=(-R "^$2\$" --no-tests=error) ;;
     esac
     ctest --test-dir "$folder" --output-on-failure "${chosen[@]}"

@@ -10,11 +10,7 @@ static const struct {
     camber_status status;
 } FAULTS[] = {{CL_OUT_OF_HOST_MEMORY, CAMBER_ERROR_MEMORY}, {CL_DEVICE_NOT_AVAILABLE, CAMBER_ERROR_DEVICE}};
 enum { CALLS_MAX = 3000, SIDE_PX = 64 };
-#ifdef __SANITIZE_ADDRESS__ /* which has the same to see whatever the code */
-enum { FAULT_COUNT = 1 };
-#else
-enum { FAULT_COUNT = 2 };
-#endif
+enum { FAULT_COUNT = IS_SANITIZED ? 1 : 2 }; /* a sanitizer has the same to see whatever the code */
 
 /* Calls that something else stands in for. */
 static bool is_optional(const char *call) {

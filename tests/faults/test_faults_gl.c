@@ -497,9 +497,8 @@ static void check_terminated(drawn_lines *e) {
 
 static void test_display_terminated(void **state) {
     (void)state;
-#if defined(__SANITIZE_ADDRESS__)
-    skip(); /* EGL unloads the driver, and what that leaves cannot be told from a leak of ours any more */
-#endif
+    if (IS_SANITIZED)
+        skip(); /* EGL unloads the driver, and what that leaves cannot be told from a leak of ours any more */
     on_each_road(check_terminated);
 }
 

@@ -104,11 +104,7 @@ static void test_curves(void **state) {
 
 /* ---- Hostile gradients ---- */
 
-#ifdef __SANITIZE_ADDRESS__
-enum { SECONDS_MOST = 15 }; /* instrumented code takes some five */
-#else
-enum { SECONDS_MOST = 5 };
-#endif
+enum { SECONDS_MOST = IS_SANITIZED ? 15 : 5 }; /* instrumented code takes some five */
 
 static camber_style *parse_quickly(fixture *s, const char *paint) {
     const clock_t begin = clock();

@@ -156,6 +156,9 @@ typedef struct camber_features_stats {
                               out */
     size_t crossing_rings; /* cross themselves, and are drawn as they wind. One of very many that nearly do is not
                               counted */
+    size_t spiked_rings;   /* have an edge that goes back the way the one before it came */
+    size_t outside_holes;  /* begin outside of their area, and are filled there. Of an area with more than 200 holes
+                              some are not counted */
 } camber_features_stats;
 
 /* Sums over the files. */

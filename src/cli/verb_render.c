@@ -84,6 +84,8 @@ static int print_json(const job *j) {
         {"empty_rings", read.empty_rings},
         {"open_relations", read.open_relations},
         {"crossing_rings", read.crossing_rings},
+        {"spiked_rings", read.spiked_rings},
+        {"outside_holes", read.outside_holes},
         {"points", lines.kept_points},
         {"segments", lines.kept_segments},
         {"joins", mesh.joins},
@@ -135,8 +137,10 @@ static void print_rings(const job *j) {
                {read.turned_rings, "ring", "turned"},
                {read.empty_rings, "ring", "without area left out"},
                {read.crossing_rings, "self-crossing ring", "kept"},
+               {read.spiked_rings, "ring", "with a spike"},
+               {read.outside_holes, "hole", "filled outside of areas"},
                {read.open_relations, "multipolygon", "lacking ways"}};
-    char text[256] = "";
+    char text[512] = "";
     size_t length = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i].count > 0)

@@ -1,7 +1,8 @@
 /* Makes rings of areas what fill layers draw.
  *
  * Input: a ring as a format has it, open or closed, wound either way. Output: a closed ring, wound by its role, or
- * nothing where it has no area. All of it is counted. Rings that cross themselves are counted and stay as they are. */
+ * nothing where it has no area. All of it is counted. Rings that cross themselves or have spikes, and holes outside of
+ * their area, are counted and stay as they are. */
 #include "source/rings.h"
 
 #include <math.h>
@@ -144,12 +145,95 @@ bool camber_ring_crosses(const double *points, size_t count) {
     return count > 3 && span_crosses(points, 0, count - 1, &looks);
 }
 
-static void count_crossing(camber_features *features, size_t first_polyline) {
-    for (size_t i = first_polyline; i < features->polyline_count; i++) {
-        const size_t first = features->offsets[i], count = features->offsets[i + 1] - first;
-        const uint32_t class_index = features->feature_class[features->polyline_feature[i]];
-        if (features->classes[class_index].geometry == CAMBER_GEOMETRY_AREA)
-            features->stats.crossing_rings += camber_ring_crosses(features->points + 2 * first, count);
+/* ---- Spikes, and holes outside ---- */
+
+bool camber_ring_has_spike(const double *points, size_t count) {
+    static const double thin = 1e-7; /* of its length */
+    size_t last = count - 1;
+    while (last > 0 && same(points + 2 * last, points))
+        last--;
+    const double *before = points + 2 * last, *at = points;
+    for (size_t i = 1; i < count; i++) {
+        const double *next = points + 2 * i;
+        if (same(at, next))
+            continue;
+        const double along = (at[0] - before[0]) * (next[0] - at[0]) + (at[1] - before[1]) * (next[1] - at[1]);
+        if (along < 0.0 && fabs(cross(before, at, next)) <= -thin * along)
+            return true;
+        before = at;
+        at = next;
+    }
+    return false;
+}
+
+/* How often a closed ring winds around a point. *touches: an edge passes through it. */
+static int winding_around(const double *points, size_t count, const double *at, bool *touches) {
+    int winding = 0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double *a = points + 2 * i, *b = a + 2;
+        if ((a[1] < at[1] && b[1] < at[1]) || (a[1] > at[1] && b[1] > at[1]))
+            continue;
+        const double side = cross(a, b, at);
+        *touches |= side == 0.0 && at[0] >= fmin(a[0], b[0]) && at[0] <= fmax(a[0], b[0]);
+        if ((a[1] <= at[1]) != (b[1] <= at[1]))
+            winding += b[1] > a[1] ? side > 0.0 : -(side < 0.0);
+    }
+    return winding;
+}
+
+/* The rings of one area: polylines [first, end). */
+typedef struct area_rings {
+    const camber_features *features;
+    size_t first, end;
+    size_t looks; /* at edges; none are left: enough has been looked at */
+} area_rings;
+
+static size_t ring_of(const camber_features *features, size_t polyline, const double **points) {
+    *points = features->points + 2 * features->offsets[polyline];
+    return features->offsets[polyline + 1] - features->offsets[polyline];
+}
+
+/* Whether the first corner of a hole that none of the outer rings touches lies outside of them all. */
+static bool is_outside(area_rings *area, size_t hole) {
+    const double *corners, *points;
+    const size_t corner_count = ring_of(area->features, hole, &corners);
+    bool touches = true;
+    int winding = 0;
+    for (size_t i = 0; i < corner_count && touches && area->looks > 0; i++) {
+        touches = false;
+        winding = 0;
+        for (size_t ring = area->first; ring < area->end; ring++) {
+            const size_t count = ring_of(area->features, ring, &points);
+            if (camber_ring_area(points, count) > 0.0)
+                winding += winding_around(points, count, corners + 2 * i, &touches);
+            area->looks -= area->looks < count ? area->looks : count;
+        }
+    }
+    return !touches && winding == 0;
+}
+
+/* ---- The count ---- */
+
+static void count_ring(camber_features_stats *stats, area_rings *area, size_t polyline) {
+    const double *points;
+    const size_t count = ring_of(area->features, polyline, &points);
+    stats->crossing_rings += camber_ring_crosses(points, count);
+    stats->spiked_rings += camber_ring_has_spike(points, count);
+    stats->outside_holes += camber_ring_area(points, count) < 0.0 && is_outside(area, polyline);
+}
+
+/* Counts what is odd about rings, which stay as they are. */
+static void count_odd(camber_features *features, size_t first_polyline) {
+    size_t end = first_polyline;
+    for (size_t first = first_polyline; first < features->polyline_count; first = end) {
+        const uint32_t feature = features->polyline_feature[first];
+        while (end < features->polyline_count && features->polyline_feature[end] == feature)
+            end++;
+        if (features->classes[features->feature_class[feature]].geometry != CAMBER_GEOMETRY_AREA)
+            continue;
+        area_rings area = {features, first, end, LOOKS_AN_EDGE * (features->offsets[end] - features->offsets[first])};
+        for (size_t i = first; i < end; i++)
+            count_ring(&features->stats, &area, i);
     }
 }
 
@@ -200,11 +284,13 @@ size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
 void camber_rings_report(camber_features *features, const char *name, size_t first_polyline,
                          const camber_features_stats *before) {
     const camber_features_stats *stats = &features->stats;
-    count_crossing(features, first_polyline);
+    count_odd(features, first_polyline);
     const size_t closed = stats->closed_rings - before->closed_rings,
                  turned = stats->turned_rings - before->turned_rings, empty = stats->empty_rings - before->empty_rings,
                  open = stats->open_relations - before->open_relations,
-                 crossing = stats->crossing_rings - before->crossing_rings;
+                 crossing = stats->crossing_rings - before->crossing_rings,
+                 spiked = stats->spiked_rings - before->spiked_rings,
+                 outside = stats->outside_holes - before->outside_holes;
     if (closed)
         camber_log(features->context, CAMBER_LOG_WARNING, "%s: %zu rings of areas do not end where they begin; closed",
                    name, closed);
@@ -217,6 +303,12 @@ void camber_rings_report(camber_features *features, const char *name, size_t fir
     if (crossing)
         camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas cross themselves; drawn as they wind",
                    name, crossing);
+    if (spiked)
+        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas have a spike, which has no area", name,
+                   spiked);
+    if (outside)
+        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu holes begin outside of their area; filled there", name,
+                   outside);
     if (open)
         camber_log(features->context, CAMBER_LOG_INFO,
                    "%s: %zu multipolygons lack ways; left out their rings that do not close", name, open);

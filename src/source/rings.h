@@ -31,8 +31,10 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
 size_t camber_ring_unroll(double *points, size_t count, bool *crosses);
 /* Whether two edges of a closed ring cross; those that touch do not. false, too, after 200 looks at each edge. */
 bool camber_ring_crosses(const double *points, size_t count);
-/* Counts the rings of a file that cross themselves, and says what was done to all its rings since *before. Its
- * polylines are those from the first one on. */
+/* Whether an edge of a closed ring goes back the way that the one before it came. */
+bool camber_ring_has_spike(const double *points, size_t count);
+/* Counts the rings of a file that cross themselves or have a spike, and the holes that lie outside of their area. Says
+ * what was done to all its rings since *before. Its polylines are those from the first one on. */
 void camber_rings_report(camber_features *features, const char *name, size_t first_polyline,
                          const camber_features_stats *before);
 

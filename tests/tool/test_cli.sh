@@ -793,6 +793,10 @@ tie='[[0,0],[0.004,0.004],[0.004,0],[0,0.004],[0,0]]'
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$tie]}}" >"$tmp/in/tie.geojson"
 expect 0 "a ring that crosses itself" render "$tmp/in/tie.geojson" --style "$tmp/in/outline.json" -o a.png -f
 says '^areas: 1 self-crossing ring kept$'
+odd='[[0,0],[0.004,0],[0.008,0],[0.004,0],[0.004,0.004],[0,0]],[[1,1],[1,1.01],[1.01,1],[1,1]]'
+echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$odd]}}" >"$tmp/in/odd.geojson"
+expect 0 "a spike, and a hole outside" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f
+says '^areas: 1 ring with a spike, 1 hole filled outside of areas$'
 rm -f a.png
 cat >"$tmp/in/roads.osm" <<'XML'
 <osm version="0.6">

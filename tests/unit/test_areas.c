@@ -196,6 +196,78 @@ static void test_crossing(void **state) {
     assert_int_equal(it->features->stats.crossing_rings, 0);
 }
 
+/* ---- Spikes, and holes outside ---- */
+
+static void expect_odd(file_reading *it, const char *geometry, size_t spiked, size_t outside) {
+    read_geometry(it, geometry);
+    assert_int_equal(it->features->stats.spiked_rings, spiked);
+    assert_int_equal(it->features->stats.outside_holes, outside);
+}
+
+#define MULTI(polygons) "{\"type\":\"MultiPolygon\",\"coordinates\":[" polygons "]}"
+#define ELSEWHERE "[[22,2],[22,4],[24,4],[24,2],[22,2]]"
+
+static void test_odd(void **state) {
+    static const double needle[] = {0, 0, 1, 0, 1, 1e-8, 0.3, 1e-8, 0.3, 1, 0, 0};
+    static const double bar[] = {0, 0, 1, 0, 1, 1e-6, 0.3, 1e-6, 0.3, 1, 0, 0};
+    static const double seam[] = {0.5, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0.2, 0, 0.5, 0, 0.5, 0};
+    static const double back[] = {0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 2, 2, 2, 2, 1, 1, 0, 1, 0, 0};
+    assert_false(camber_ring_has_spike(needle, 6)); /* two corners of its end, each a right angle */
+    assert_false(camber_ring_has_spike(bar, 6));
+    assert_true(camber_ring_has_spike(seam, 8));
+    assert_true(camber_ring_has_spike(back, 10));
+    file_reading *it = *state;
+    expect_odd(it, POLYGON(SQUARE "," HOLE), 0, 0);
+    expect_odd(it, POLYGON("[[0,0],[10,0],[10,10],[20,10],[10,10],[0,10],[0,0]]"), 1, 0);
+    expect_odd(it, POLYGON("[[0,0],[10,0],[10,10],[30,10],[0,10],[0,0]]," HOLE), 1, 0); /* on along the ring */
+    expect_odd(it, POLYGON(SQUARE "," ELSEWHERE), 0, 1);
+    expect_odd(it, POLYGON(SQUARE "," HOLE "," ELSEWHERE "," ELSEWHERE), 0, 2);
+    expect_odd(it, POLYGON(SQUARE ",[[0,0],[0,10],[10,10],[10,0],[0,0]]"), 0, 0); /* all of it */
+    expect_odd(it, POLYGON(SQUARE ",[[10,2],[8,4],[10,6],[10,2]]"), 0, 0);        /* at its side */
+    expect_odd(it, POLYGON(SQUARE ",[[10,2],[10,6],[12,4],[10,2]]"), 0, 1);       /* at it from outside */
+    expect_odd(it, MULTI("[" SQUARE "," ELSEWHERE "],[[[20,0],[30,0],[30,10],[20,10],[20,0]]]"), 0, 0);
+    expect_odd(it, MULTI("[" SQUARE "],[" ELSEWHERE "," HOLE "]"), 0, 0);
+    expect_odd(it, MULTI("[" SQUARE "],[" ELSEWHERE ",[[42,2],[42,4],[44,4],[42,2]]]"), 0, 1);
+}
+
+/* How often a ring winds around a point, by the angles under which it sees the edges. */
+static long turns_around(const double *points, size_t count, const double *at) {
+    double turned = 0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double ax = points[2 * i] - at[0], ay = points[2 * i + 1] - at[1];
+        const double bx = points[2 * i + 2] - at[0], by = points[2 * i + 3] - at[1];
+        turned += atan2(ax * by - ay * bx, ax * bx + ay * by);
+    }
+    return lround(turned / 6.283185307179586);
+}
+
+/* Small triangles in and beside stars, as GeoJSON has them. */
+static void test_holes_of_stars(void **state) {
+    enum { CORNERS = 24 };
+    file_reading *it = *state;
+    uint64_t seed = 11;
+    size_t outside = 0;
+    for (int i = 0; i < 300; i++) {
+        double star[2 * CORNERS];
+        char text[3000] = "[";
+        size_t length = 1;
+        make_star(&seed, star, CORNERS, 0.05, false);
+        for (size_t k = 0; k < CORNERS; k++)
+            length += (size_t)snprintf(text + length, sizeof text - length, "%s[%.17g,%.17g]", k ? "," : "",
+                                       star[2 * k], star[2 * k + 1]);
+        const double at[2] = {camber_random_between(&seed, 0.1, 0.9), camber_random_between(&seed, 0.1, 0.9)};
+        snprintf(text + length, sizeof text - length, "],[[%.17g,%.17g],[%.17g,%.17g],[%.17g,%.17g],[%.17g,%.17g]]",
+                 at[0], at[1], at[0], at[1] + 1e-4, at[0] + 1e-4, at[1], at[0], at[1]);
+        char geometry[3200];
+        snprintf(geometry, sizeof geometry, POLYGON("%s"), text);
+        read_geometry(it, geometry);
+        const bool is_outside = turns_around(star, CORNERS, at) == 0;
+        assert_int_equal(it->features->stats.outside_holes, is_outside);
+        outside += is_outside;
+    }
+    assert_in_range(outside, 50, 250);
+}
+
 /* ---- Kinds, points, the antimeridian, regions ---- */
 
 /* Lines, outlines and areas are features of their own; what no layer draws is not read. */
@@ -568,6 +640,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_polygons, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_crossing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_odd, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_holes_of_stars, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_kinds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_invalid_points, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_antimeridian, set_up, tear_down),

@@ -306,7 +306,7 @@ mutant strip kernels/features.h "steps at the pixel before" 'from = along - exte
 mutant strip kernels/features.h "colours at the ends of pieces" \
     'CAMBER_STOP_COLOR(e, i, k) * (1.0f - part) + CAMBER_STOP_COLOR(e, next, k) * part) * share' \
     'CAMBER_STOP_COLOR(e, i, k)) * share'
-group='an image'
+group=image
 mutant strip kernels/images.h "images that begin anew with each segment" 'm->phase + x * m->rate' 'x * m->rate'
 mutant strip kernels/images.h "images upside down" '0.5f - (at->y > 0.0f ? off : side)' '0.5f + (at->y > 0.0f ? off : side)'
 mutant strip kernels/images.h "images that lie elsewhere" 'x = at->x - m->left' 'x = at->x + m->left'
@@ -360,9 +360,10 @@ mutant strip kernels/rasterize.cl "areas: tiles that forget the corner" 'c.windi
 
 # ---- Coverage, tiles and cells, which these kernels and their twin share: pixels tell ----
 
-group=pixels
+group='along lines: areas'
 mutant strip kernels/segment.h "areas: edges that no row of tiles knows" '? 0u : CAMBER_BOX_FIRST_Y(box) + 1u' \
     '? 0u : CAMBER_BOX_LAST_Y(box) + 1u'
+group=pixels
 mutant strip kernels/tile_state.h "cells that are done too early" 'camber_most_of(most) < CAMBER_NOTHING_PX' \
     'camber_most_of(most) < 0.5f'
 mutant strip kernels/tile_state.h "what lies below shines through" 'c->level[level][i][3][v] = through * (1.0f - area)' \

@@ -145,17 +145,20 @@ build_whole() {
     fi
     cp -a "$tmp/build" "$tmp/whole" || exit 1
     # A check that fails anyway would tell of every row. All of --full would take eight minutes of kernels that are not
-    # optimised: the other lanes stand for it here, and test_validate runs it with kernels that are. One share looks at
-    # this and at every method; the others at the pixels of one scene, and go by that share.
+    # optimised: the other lanes, and one scene by the other methods, stand for it here; test_validate runs it with
+    # kernels that are. One share looks at this; the others at the pixels of one scene, and go by that share.
     local status=0
-    level=()
+    level=(--full)
     if [ "${share%/*}" = 1 ]; then
-        level=(--full) drawer=(--draw cl) group=pictures
+        drawer=(--draw cl) group=pictures
         validate --method strip || status=$?
-        level=() drawer=() group=
-        [ "$status" != 0 ] || validate || status=$?
+        drawer=() group=turns
+        [ "$status" != 0 ] || validate --method kite || status=$?
+        [ "$status" != 0 ] || validate --method fan || status=$?
+        level=() group=
+        [ "$status" != 0 ] || validate --method strip || status=$?
     else
-        group='random walks: pixels'
+        level=() group='random walks: pixels'
         validate --method strip || status=$?
     fi
     level=(--full)

@@ -283,33 +283,21 @@ size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
 
 void camber_rings_report(camber_features *features, const char *name, size_t first_polyline,
                          const camber_features_stats *before) {
-    const camber_features_stats *stats = &features->stats;
     count_odd(features, first_polyline);
-    const size_t closed = stats->closed_rings - before->closed_rings,
-                 turned = stats->turned_rings - before->turned_rings, empty = stats->empty_rings - before->empty_rings,
-                 open = stats->open_relations - before->open_relations,
-                 crossing = stats->crossing_rings - before->crossing_rings,
-                 spiked = stats->spiked_rings - before->spiked_rings,
-                 outside = stats->outside_holes - before->outside_holes;
-    if (closed)
-        camber_log(features->context, CAMBER_LOG_WARNING, "%s: %zu rings of areas do not end where they begin; closed",
-                   name, closed);
-    if (turned)
-        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas wind the wrong way; turned", name,
-                   turned);
-    if (empty)
-        camber_log(features->context, CAMBER_LOG_INFO, "%s: left out %zu rings of areas that have no area", name,
-                   empty);
-    if (crossing)
-        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas cross themselves; drawn as they wind",
-                   name, crossing);
-    if (spiked)
-        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu rings of areas have a spike, which has no area", name,
-                   spiked);
-    if (outside)
-        camber_log(features->context, CAMBER_LOG_INFO, "%s: %zu holes begin outside of their area; filled there", name,
-                   outside);
-    if (open)
-        camber_log(features->context, CAMBER_LOG_INFO,
-                   "%s: %zu multipolygons lack ways; left out their rings that do not close", name, open);
+    const camber_features_stats *stats = &features->stats;
+    const struct {
+        size_t count;
+        const char *what;
+    } all[] = {{stats->closed_rings - before->closed_rings, "rings of areas do not end where they begin; closed"},
+               {stats->turned_rings - before->turned_rings, "rings of areas wind the wrong way; turned"},
+               {stats->empty_rings - before->empty_rings, "rings of areas have no area; left out"},
+               {stats->crossing_rings - before->crossing_rings, "rings of areas cross themselves; drawn as they wind"},
+               {stats->spiked_rings - before->spiked_rings, "rings of areas have a spike, which has no area"},
+               {stats->outside_holes - before->outside_holes, "holes begin outside of their area; filled there"},
+               {stats->open_relations - before->open_relations,
+                "multipolygons lack ways; left out their rings that do not close"}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (all[i].count)
+            camber_log(features->context, i == 0 ? CAMBER_LOG_WARNING : CAMBER_LOG_INFO, "%s: %zu %s", name,
+                       all[i].count, all[i].what);
 }

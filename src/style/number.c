@@ -1,5 +1,6 @@
 #include "style/number.h"
 
+#include <float.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -51,12 +52,15 @@ const char *camber_number_parse(const char *text, double *number) {
     return end;
 }
 
-/* The digits and the decimal exponent e of 0.ddd * 10^e. */
+/* The digits, without zeros at their end, and the decimal exponent e of 0.ddd * 10^e. A double keeps any decimal of
+ * DBL_DIG digits, so that fewer are found as that many with zeros behind; where it has less than its full precision,
+ * each count is tried. */
 static int shortest_digits(double magnitude, char digits[20], int *exponent) {
     char text[40];
-    for (int precision = 0; precision < 17; precision++) {
-        snprintf(text, sizeof text, "%.*e", precision, magnitude);
-        if (strtod(text, NULL) >= magnitude && strtod(text, NULL) <= magnitude)
+    for (int count = magnitude < DBL_MIN ? 1 : DBL_DIG; count <= DBL_DECIMAL_DIG; count++) {
+        snprintf(text, sizeof text, "%.*e", count - 1, magnitude);
+        const double back = strtod(text, NULL);
+        if (back >= magnitude && back <= magnitude)
             break;
     }
     int count = 0;
@@ -64,6 +68,8 @@ static int shortest_digits(double magnitude, char digits[20], int *exponent) {
     for (; *c && *c != 'e'; c++)
         if (is_digit(*c))
             digits[count++] = *c;
+    while (count > 1 && digits[count - 1] == '0')
+        count--;
     *exponent = (int)strtol(c + 1, NULL, 10) + 1;
     return count;
 }

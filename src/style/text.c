@@ -37,10 +37,13 @@ static bool add(camber_text *text, const char *string) {
     return camber_text_add(text, string, strlen(string));
 }
 
+/* Digits take as long to find as this many bytes to copy. */
+enum { NUMBER_WORK = 100 };
+
 static bool add_number(camber_text *text, double number) {
     char digits[CAMBER_NUMBER_TEXT_SIZE];
     camber_number_format(number, digits);
-    return add(text, digits);
+    return camber_evaluate_work(text->e, NUMBER_WORK) && add(text, digits);
 }
 
 /* Alpha is a float: it is written as the 255th that it is, or with six digits. */

@@ -510,6 +510,49 @@ static void test_number_text(void **state) {
     assert_true(isinf(number));
 }
 
+/* The digits from the first to the last that is no zero. */
+static int count_digits(const char *text) {
+    int count = 0, zeros = 0;
+    for (const char *c = text; *c && *c != 'e'; c++) {
+        if (*c == '0')
+            zeros += count > 0;
+        if (*c >= '1' && *c <= '9') {
+            count += zeros + 1;
+            zeros = 0;
+        }
+    }
+    return count;
+}
+
+/* Random doubles of every exponent read back as they were, and from one digit less as another. */
+static void test_number_text_shortest(void **state) {
+    (void)state;
+    uint64_t bits = 1;
+    for (int i = 0; i < 20000; i++) {
+        double number, back, shorter;
+        char text[CAMBER_NUMBER_TEXT_SIZE], less[64];
+        bits = bits * 6364136223846793005u + 1442695040888963407u;
+        memcpy(&number, &bits, sizeof number);
+        if (i % 4 == 0)
+            number = (double)(int64_t)(bits >> 44) / (i % 8 ? 1000 : 64);
+        if (i % 4 == 1)
+            number *= 0x1p-1022; /* most lose precision or vanish */
+        if (!isfinite(number))
+            continue;
+        camber_number_format(number, text);
+        assert_non_null(camber_number_parse(text, &back));
+        if (memcmp(&back, &number, sizeof number) != 0 && (number < 0 || number > 0))
+            fail_msg("%a is written as %s", number, text);
+        const int digits = count_digits(text);
+        if (digits < 2)
+            continue;
+        snprintf(less, sizeof less, "%.*e", digits - 2, number);
+        assert_non_null(camber_number_parse(less, &shorter));
+        if (memcmp(&shorter, &number, sizeof number) == 0)
+            fail_msg("%a is written as %s, where %s would do", number, text, less);
+    }
+}
+
 static void test_locale(void **state) {
     (void)state;
     static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
@@ -534,7 +577,8 @@ int main(void) {
         cmocka_unit_test(test_numbers), cmocka_unit_test(test_curves),      cmocka_unit_test(test_colors),
         cmocka_unit_test(test_filters), cmocka_unit_test(test_errors),      cmocka_unit_test(test_folding),
         cmocka_unit_test(test_reads),   cmocka_unit_test(test_properties),  cmocka_unit_test(test_polygons),
-        cmocka_unit_test(test_depth),   cmocka_unit_test(test_number_text), cmocka_unit_test(test_locale),
+        cmocka_unit_test(test_depth),   cmocka_unit_test(test_number_text), cmocka_unit_test(test_number_text_shortest),
+        cmocka_unit_test(test_locale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The kernels that draw against their CPU twin, stage by stage and byte for byte. */
+/* The kernels that draw against their CPU twin, stage by stage and byte for byte; and in slices against the whole. */
 #include "validate/checks.h"
 
 #include <stdio.h>
@@ -239,6 +239,16 @@ static camber_status check_methods(camber_validation *v, const camber_subject *s
     return status;
 }
 
+static camber_status open_path(camber_device *device, camber_drawing_path *path) {
+    const camber_status status = camber_renderer_create(device, NULL, NULL, &path->renderer);
+    return status == CAMBER_OK ? camber_mesh_create(device, path->renderer, &path->mesh) : status;
+}
+
+static void close_path(camber_drawing_path *path) {
+    camber_mesh_destroy(path->mesh);
+    camber_renderer_destroy(path->renderer);
+}
+
 /* With the vectors that the n-th of the device's other work-groups was opened with; areas, too, of which such a vector
  * may take other rows and columns of cells. */
 static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
@@ -247,21 +257,88 @@ static camber_status check_lanes(camber_validation *v, const camber_subject *s, 
     char how[32];
     snprintf(how, sizeof how, ", with lanes: %u", checked->groups[n].lanes);
     kernels on = {.name = name, .how = how};
-    camber_status made = camber_renderer_create(device, NULL, NULL, &on.path.renderer);
-    if (made == CAMBER_OK)
-        made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);
-    camber_status status = made;
+    camber_status status = open_path(device, &on.path);
     if (status == CAMBER_OK)
         status = check_methods(v, s, checked, &on);
     on.variant = AREAS;
     if (status == CAMBER_OK)
         status = check_methods(v, s, checked, &on);
-    camber_mesh_destroy(on.path.mesh);
-    camber_renderer_destroy(on.path.renderer);
+    close_path(&on.path);
     return status;
 }
 
+/* ---- In slices, between which tiles are spilled ---- */
+
+/* What a segment takes in the buffer of segments. */
+enum { SEGMENT_BYTES = 64, LEAST_BUFFER_BYTES = 1 << 16 };
+
+/* A bound for buffers under which the frame takes three slices or more. 0: it has too few segments. */
+static uint64_t slice_bytes(const camber_mesh *mesh) {
+    const uint64_t segments = PASSES * (uint64_t)camber_mesh_get_info(mesh).record_count;
+    const uint64_t wanted = segments * SEGMENT_BYTES / 3;
+    return wanted > LEAST_BUFFER_BYTES ? wanted : 0;
+}
+
+/* Draws the frame's picture, the one stage that is filled in. The caller frees it. */
+static camber_status draw_picture(const camber_validation *v, const camber_subject *s, const camber_drawing_path *path,
+                                  int variant, camber_drawing_stages *picture) {
+    drawn d;
+    if (!make_frame(s, v->desc, path->mesh, variant, &d))
+        return CAMBER_ERROR_MEMORY;
+    *picture = (camber_drawing_stages){.width = d.frame.width, .height = d.frame.height};
+    picture->rgba = malloc(4 * (size_t)d.frame.width * d.frame.height);
+    const camber_status status = picture->rgba
+                                     ? camber_renderer_render_into(path->renderer, &d.frame, picture->rgba, 0, NULL)
+                                     : CAMBER_ERROR_MEMORY;
+    free(d.paints);
+    return status;
+}
+
+/* small: the same mesh, on a device of small buffers. */
+static camber_status compare_slices(const camber_validation *v, const camber_subject *s,
+                                    const camber_drawing_path *whole, const camber_drawing_path *small, int variant,
+                                    camber_check *check) {
+    camber_drawing_stages expected = {0}, got = {0};
+    camber_status status = draw_picture(v, s, whole, variant, &expected);
+    if (status == CAMBER_OK)
+        status = draw_picture(v, s, small, variant, &got);
+    if (status == CAMBER_OK && pixels_differ(&got, &expected, &check->finding))
+        check->result = CAMBER_RESULT_FAILED;
+    free(expected.rgba);
+    free(got.rgba);
+    return status;
+}
+
+static camber_status check_slices(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const camber_checked_drawer *drawer, int variant) {
+    const camber_tessellation_desc desc = {s->strokes, s->stroke_count, CAMBER_METHOD_STRIP, 0, false};
+    camber_drawing_path small = {0};
+    camber_device *device = NULL;
+    camber_check check =
+        camber_check_start(checked->name, drawer->name, "%s: strip%s: the same pixels in slices, on %s", s->name,
+                           variants[variant].name, checked->name);
+    camber_status status = camber_subject_tessellate(s, drawer->paths[0].mesh, &desc);
+    const uint64_t bytes = slice_bytes(drawer->paths[0].mesh);
+    if (status == CAMBER_OK && (bytes == 0 || checked->broken[CAMBER_METHOD_STRIP])) {
+        camber_results_skip(&v->results, check,
+                            bytes ? "the mesh is not the CPU twin's" : "it fits the smallest buffer");
+        return CAMBER_OK;
+    }
+    if (status == CAMBER_OK)
+        status = camber_checked_device_open_small(checked, v, bytes, &device, NULL);
+    if (status == CAMBER_OK)
+        status = open_path(device, &small);
+    if (status == CAMBER_OK)
+        status = camber_subject_tessellate(s, small.mesh, &desc);
+    if (status == CAMBER_OK)
+        status = compare_slices(v, s, drawer->paths, &small, variant, &check);
+    close_path(&small);
+    camber_device_destroy(device);
+    return end_check(v, &check, status);
+}
+
 camber_status camber_check_drawing(camber_validation *v, const camber_subject *s) {
+    const bool takes_strips = camber_subject_takes(s, v->desc, CAMBER_METHOD_STRIP);
     camber_status status = CAMBER_OK;
     for (size_t r = 0; r < v->devices.count; r++)
         for (size_t e = 0; e < v->devices.list[r].drawer_count && status == CAMBER_OK; e++) {
@@ -271,6 +348,8 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
                 continue;
             for (int i = 0; i < VARIANTS && status == CAMBER_OK; i++)
                 status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
+            for (int i = 0; i < VARIANTS && status == CAMBER_OK && takes_strips; i++)
+                status = check_slices(v, s, checked, drawer, i);
             for (size_t n = 0; n < CAMBER_CHECKED_GROUPS && status == CAMBER_OK && v->desc->full; n++)
                 status = check_lanes(v, s, checked, drawer->name, n);
         }

@@ -27,7 +27,7 @@ static camber_status open_alone(const camber_validation *v, const camber_device_
                                 camber_mesh **mesh) {
     camber_device *made = NULL;
     camber_status status = camber_device_create(v->desc->context, desc, &made);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && mesh)
         status = camber_mesh_create(made, NULL, mesh);
     if (status == CAMBER_OK)
         *device = made;

@@ -45,7 +45,7 @@ struct camber_checked_device {
 camber_status camber_checked_devices_open(camber_validation *validation);
 void camber_checked_devices_close(camber_checked_devices *devices);
 
-/* Opens the same device with no buffer larger than this, and a mesh on it. */
+/* Opens the same device with no buffer larger than this, and a mesh on it that is not drawn. mesh NULL: none. */
 camber_status camber_checked_device_open_small(const camber_checked_device *checked,
                                                const camber_validation *validation, uint64_t largest_buffer_bytes,
                                                camber_device **device, camber_mesh **mesh);

@@ -358,6 +358,16 @@ mutant strip kernels/draw_cells.h "one pixel after the other: cells that lie els
     'where.left + (float)'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
+# What only a picture in slices shows.
+mutant strip kernels/spill.cl "slices: sums of a union that are not whole" 'c->sums[i][0], s.sums, 3, cell);
+    if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
+        spill' 'c->sums[i][0], s.sums, 2, cell);
+    if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
+        spill'
+mutant strip kernels/spill.cl "slices: a layer without alpha" 'restore_planes(from->planes, c->level[CAMBER_LAYER][i][0], s.layer, 4' \
+    'restore_planes(from->planes, c->level[CAMBER_LAYER][i][0], s.layer, 3'
+mutant strip kernels/spill.cl "slices: areas without what lies left of them" 'c->winding = (int)open' 'c->winding = 0 * (int)open'
+
 mutant strip kernels/wind.cl "areas: all rows by the top of the first" 'of.top + (float)(row * CAMBER_TILE_PX)' 'of.top'
 mutant strip kernels/rasterize.cl "areas: tiles that forget the corner" 'c.winding = camber_take_winding' 'c.winding = 0 * camber_take_winding'
 

@@ -78,8 +78,8 @@ CAMBER_FN void camber_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, 
     p->owner_b = plane[CAMBER_PLANE_OWNER_B];
     p->end_a = CAMBER_END_KIND(end_a);
     p->end_b = CAMBER_END_KIND(end_b);
-    p->flat_a = camber_flat_from(p->end_a, h);
-    p->flat_b = camber_flat_from(p->end_b, h);
+    p->flat_a = camber_pitch_flat_from(end_a, h, p->wide_a);
+    p->flat_b = camber_pitch_flat_from(end_b, h, p->wide_b);
     p->round_a = camber_round_from(p->end_a);
     p->round_b = camber_round_from(p->end_b);
     p->tip_a = camber_tip_from(CAMBER_END_IS_ROUND_CAP(end_a), h);

@@ -56,10 +56,12 @@ CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_rea
     return 2.0f * half_width / (camber_pitch_depth(e, y) * CAMBER_MORE(seen, least));
 }
 
-/* The end of a segment at a place of the plane. turns: 1 at B, -1 at A; c and s: cosine and sine of half the turn. */
+/* The end of a segment at a place of the plane. turns: 1 at B, -1 at A; c and s: cosine and sine of half the turn; own:
+ * camber_owner_side. */
 CAMBER_STRUCT(camber_pitch_end) {
     camber_real x, y, ux, uy, half_width, c, s;
     camber_words end;
+    camber_mask own;
     float turns;
 };
 
@@ -104,7 +106,16 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
     cut->y = wide ? none : s->turns * y;
     cut->at = wide ? none : s->turns * (x * seen_x + y * seen_y);
     cut->wide = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
-    cut->owner = camber_owner_from(is_cap, CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept), no);
+    /* A flat join ends in an edge, so that the segment may draw all that it has past the bisector. */
+    const camber_mask is_flat = CAMBER_BOTH(CAMBER_END_FLAT(s->end) != 0u, cut->wide >= 1.0f);
+    cut->owner = camber_owner_from(CAMBER_EITHER(is_cap, CAMBER_BOTH(is_flat, s->own)),
+                                   CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept), no);
+}
+
+/* Where an end is flat, px of the plane past it; wide: of its cut. A join that is seen narrower than a pixel is not:
+ * both segments share the pixel. */
+CAMBER_FN float camber_pitch_flat_from(camber_u32 end, float half_width, float wide) {
+    return wide < 1.0f ? camber_flat_from(CAMBER_END_KIND(end), half_width) : camber_flat_end_from(end, half_width);
 }
 
 /* How far a stroke reaches past an end, px of the plane. */

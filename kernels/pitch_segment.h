@@ -114,8 +114,10 @@ CAMBER_FN camber_mask camber_pitch_segment_of(camber_eye e, float horizon, const
     const camber_words end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
     const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
-    const camber_pitch_end a = {s->ax, s->ay, s->ux, s->uy, h, ca, sa, end_a, -1.0f};
-    const camber_pitch_end b = {s->bx, s->by, s->ux, s->uy, h, cb, sb, end_b, 1.0f};
+    const camber_mask own_a = (s->flags & CAMBER_SEGMENT_OWNER_A) != 0u,
+                      own_b = (s->flags & CAMBER_SEGMENT_OWNER_B) != 0u;
+    const camber_pitch_end a = {s->ax, s->ay, s->ux, s->uy, h, ca, sa, end_a, own_a, -1.0f};
+    const camber_pitch_end b = {s->bx, s->by, s->ux, s->uy, h, cb, sb, end_b, own_b, 1.0f};
     const camber_real along_a = s->ax * s->ux + s->ay * s->uy, along_b = s->bx * s->ux + s->by * s->uy;
     const camber_real across = s->ay * s->ux - s->ax * s->uy;
     camber_pitch_cut_of(e, &a, &plane->cut_a);

@@ -97,54 +97,18 @@ CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(ca
     return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
 }
 
-/* How a pixel lies to a flat end: a cap, or a flat join (camber_flat_join). There the segment's body ends in an edge of
- * its own past the bisector, and before it the segment draws what lies inside this edge or the cap, which is turned. */
-CAMBER_STRUCT(camber_flat_end) {
-    camber_real body, cap; /* how far inside of the two, px */
-    camber_mask behind;    /* past the bisector */
-    float cosine, sine;    /* of the turn from one to the other */
-};
-
-/* Whether the end at B (out_of: 1) or at A (-1) is a flat join. */
-CAMBER_FN camber_flag camber_is_flat_join(CAMBER_IN(camber_edge) p, float out_of) {
-    return out_of > 0.0f ? p->sb != 0.0f && p->flat_b < CAMBER_NEVER_PX : p->sa != 0.0f && p->flat_a < CAMBER_NEVER_PX;
+/* The share of a pixel inside the cap of a flat join, which is turned by an angle from the segment's own end: it is cut
+ * as an edge across the segment is. cosine: of the angle between both as they are seen. */
+CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
+                                        float out_of, float turn_cosine, float turn_sine,
+                                        CAMBER_OUT(camber_real) cosine) {
+    CAMBER_UNUSED(out_of)
+    CAMBER_UNUSED(turn_sine)
+    CAMBER_AT(cosine) = CAMBER_REAL(turn_cosine);
+    return camber_cut_along(p, at, s);
 }
 
-CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of,
-                                    CAMBER_OUT(camber_flat_end) f) {
-    const camber_flag at_b = out_of > 0.0f;
-    const float c = at_b ? p->cb : p->ca, s = at_b ? p->sb : p->sa, from = at_b ? p->flat_b : p->flat_a;
-    const camber_real past = at_b ? at->past_b : at->past_a;
-    f->behind = at_b ? at->fb >= CAMBER_TIE(at) : at->fa < -CAMBER_TIE(at);
-    f->cosine = c * c - s * s;
-    f->sine = 2.0f * s * c;
-    f->body = -past;
-    f->cap = from - past * f->cosine - at->y * f->sine;
-}
-
-/* The share of a pixel inside a flat end. The turned cap is cut as an edge across the segment is. llvmpipe runs both
- * sides of a branch: in shaders a cap is a join whose two edges are one, and where there is no stub, its cap is far. */
-CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
-    const float from = out_of > 0.0f ? p->flat_b : p->flat_a;
-    const camber_flag is_join = camber_is_flat_join(p, out_of);
-    const camber_flag is_far = is_join && from >= CAMBER_STUB_PX - 0.5f * CAMBER_STUB_UNIT_PX;
-    camber_flat_end f;
-    camber_find_flat_end(p, at, out_of, CAMBER_REF(f));
-    const camber_real body = camber_cut_along(p, at, is_join ? f.body : from + f.body);
-#ifdef CAMBER_GLSL
-    const camber_flag has_cap = CAMBER_YES;
-#else
-    const camber_flag has_cap = !is_far;
-    if (!is_join)
-        return body;
-#endif
-    camber_real before = CAMBER_REAL(1.0f);
-    if (has_cap) {
-        const camber_real cap = camber_cut_along(p, at, is_far ? CAMBER_REAL(CAMBER_NEVER_PX) : f.cap);
-        before -= camber_inside_both(1.0f - body, 1.0f - cap, CAMBER_REAL(f.cosine));
-    }
-    return f.behind ? body : before;
-}
+#include "stroke_caps.inl"
 
 /* The part of an area that flat ends leave: one, or both of a short segment. Ends that are not flat leave all. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {

@@ -197,15 +197,29 @@ CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(ca
     return left > 0.0f ? left : none;
 }
 
-/* The part of an area that flat caps leave. Seen at an angle they meet the sides at any angle. A line thinner than the
+/* The share of a pixel inside the cap of a flat join, as stroke_flat.h has it. */
+CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
+                                        float out_of, float turn_cosine, float turn_sine,
+                                        CAMBER_OUT(camber_real) cosine) {
+    const float along = out_of * turn_cosine;
+    const float nx = along * p->ux - turn_sine * p->uy, ny = along * p->uy + turn_sine * p->ux;
+    camber_real x, y;
+    const camber_real cap =
+        camber_plane_covered(p, at, s, CAMBER_REAL(nx), CAMBER_REAL(ny), CAMBER_REF(x), CAMBER_REF(y));
+    CAMBER_AT(cosine) = out_of * (x * at->seen_ux + y * at->seen_uy);
+    return cap;
+}
+
+#include "stroke_caps.inl"
+
+/* The part of an area that flat ends leave. Seen at an angle they meet the sides at any angle. A line thinner than the
  * pixel has no such corner. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     camber_real x, y;
     const camber_real across = camber_see_side(p, at, CAMBER_REF(x), CAMBER_REF(y));
     const camber_real angle = at->seen_ux * x + at->seen_uy * y;
     const camber_real cosine = p->half_width * across > 0.5f ? angle : CAMBER_REAL(0.0f);
-    const camber_real cut_a = camber_cut_along(p, at, p->flat_a - at->past_a);
-    const camber_real cut_b = camber_cut_along(p, at, p->flat_b - at->past_b);
+    const camber_real cut_a = camber_cut_end(p, at, -1.0f), cut_b = camber_cut_end(p, at, 1.0f);
     return camber_inside_both(camber_inside_both(area, cut_a, -cosine), cut_b, cosine);
 }
 
@@ -237,7 +251,8 @@ CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return CAMBER_EITHER(out_of_reach, share < 0.0f) ? CAMBER_REAL(0.0f) : area * share;
 }
 
-/* The normal of the nearest edge, into the stroke, in the picture. Returns whether it has one. */
+/* The normal of the nearest edge, into the stroke, in the picture; those of flat joins are taken for none. Returns
+ * whether it has one. */
 CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                          CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
     camber_real x, y;
@@ -245,7 +260,9 @@ CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(cam
     CAMBER_AT(nx) = -x;
     CAMBER_AT(ny) = -y;
     if (p->capped) {
-        const camber_real cap_a = p->flat_a - at->past_a, cap_b = p->flat_b - at->past_b;
+        const float flat_a = camber_is_flat_join(p, -1.0f) ? CAMBER_NEVER_PX : p->flat_a;
+        const float flat_b = camber_is_flat_join(p, 1.0f) ? CAMBER_NEVER_PX : p->flat_b;
+        const camber_real cap_a = flat_a - at->past_a, cap_b = flat_b - at->past_b;
         const camber_mask first = cap_a < cap_b;
         const camber_mask at_cap =
             CAMBER_LESS(cap_a, cap_b) * at->scale < (p->half_width - CAMBER_FABS(at->y)) * across;

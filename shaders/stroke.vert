@@ -128,9 +128,13 @@ vec2 seen_of(vec2 p) {
     return seen;
 }
 
-// The bits of an end (kernels/stroke_ends.h). soon: the bit of the join that says that the line ends with the segment.
-uint end_bits(uint join, uint soon) {
-    return camber_segment_end(join) | ((join & soon) != 0u ? 1u << CAMBER_END_LAST_SHIFT : 0u);
+// An end and its cut. soon: the bit of the join that says that the line ends with the segment. Returns where it is flat.
+float cut_of(vec2 p, vec2 u, float len, float half_width, uint join, uint soon, vec2 turn, float turns,
+             out camber_pitch_cut cut) {
+    bool own;
+    uint end = camber_end_of(join, (join & soon) != 0u, len, turn.x, turn.y, half_width, own);
+    camber_pitch_cut_of(eye(), camber_pitch_end(p.x, p.y, u.x, u.y, half_width, turn.x, turn.y, end, own, turns), cut);
+    return camber_pitch_flat_from(end, half_width, cut.wide);
 }
 
 float end_reach(uint join, float half_width) {
@@ -194,12 +198,10 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
     camber_half_turn(camber_turn_unpack(join_a), v_turns.x, v_turns.y);
     camber_half_turn(camber_turn_unpack(join_b), v_turns.z, v_turns.w);
 #if PITCHED
-    v_shape = vec4(len, half_width, camber_flat_from(end_a, half_width), camber_flat_from(end_b, half_width));
     camber_pitch_cut cut_a, cut_b;
-    camber_pitch_cut_of(eye(), camber_pitch_end(a.x, a.y, u.x, u.y, half_width, v_turns.x, v_turns.y,
-                                                end_bits(join_a, CAMBER_JOIN_AFTER_FIRST), -1.0), cut_a);
-    camber_pitch_cut_of(eye(), camber_pitch_end(b.x, b.y, u.x, u.y, half_width, v_turns.z, v_turns.w,
-                                                end_bits(join_b, CAMBER_JOIN_BEFORE_LAST), 1.0), cut_b);
+    float flat_a = cut_of(a, u, len, half_width, join_a, CAMBER_JOIN_AFTER_FIRST, v_turns.xy, -1.0, cut_a);
+    float flat_b = cut_of(b, u, len, half_width, join_b, CAMBER_JOIN_BEFORE_LAST, v_turns.zw, 1.0, cut_b);
+    v_shape = vec4(len, half_width, flat_a, flat_b);
     v_segment = vec4(a, u);
     v_end = b;
     v_cut_a = vec4(cut_a.x, cut_a.y, cut_a.at, cut_a.wide);

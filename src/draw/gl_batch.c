@@ -26,7 +26,7 @@ camber_status camber_gl_stroke_shader(camber_renderer *renderer, const camber_me
     /* A pixel reaches sqrt(1/2) px along any normal; stroke.vert says where a tip ends: past where the cap does. */
     const bool thin = thinnest_px < CAMBER_DIAGONAL,
                tips = thin || (mesh->round_caps && thinnest_px < 2.0f * CAMBER_TIPS_PX);
-    const bool joins = mesh->mesh_info.method != CAMBER_METHOD_FAN && !(variant & CAMBER_VARIANT_PITCHED);
+    const bool joins = mesh->mesh_info.method != CAMBER_METHOD_FAN || variant & CAMBER_VARIANT_PITCHED;
     const bool flat = mesh->flat_caps || (mesh->wide && joins);
     variant |= (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) | (flat ? CAMBER_VARIANT_FLAT_ENDS : 0u);
     variant |= (unsigned)mesh->mesh_info.method * CAMBER_VARIANT_METHOD;

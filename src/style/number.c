@@ -1,3 +1,4 @@
+/* Numbers to text and back, as ECMAScript writes them: strtod and printf do the digits, and this file their form. */
 #include "style/number.h"
 
 #include <float.h>

@@ -269,7 +269,7 @@ static camber_status check_lanes(camber_validation *v, const camber_subject *s, 
 
 /* ---- In slices, between which tiles are spilled ---- */
 
-/* What a segment takes in the buffer of segments. */
+/* SEGMENT_BYTES: a segment takes so many in the buffer of segments. */
 enum { SEGMENT_BYTES = 64, LEAST_BUFFER_BYTES = 1 << 16 };
 
 /* A bound for buffers under which the frame takes three slices or more. 0: it has too few segments. */

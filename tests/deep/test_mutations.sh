@@ -358,7 +358,7 @@ mutant strip kernels/draw_cells.h "one pixel after the other: cells that lie els
     'where.left + (float)'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
-# What only a picture in slices shows.
+# A picture in slices alone shows these.
 mutant strip kernels/spill.cl "slices: sums of a union that are not whole" 'c->sums[i][0], s.sums, 3, cell);
     if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
         spill' 'c->sums[i][0], s.sums, 2, cell);
@@ -392,7 +392,7 @@ mutant strip kernels/stroke.h "half the width, of lines wider than a pixel" 'p->
 mutant strip kernels/stroke_flat.h "a bend to the wrong side" 'at->y - bend' 'at->y + bend'
 mutant strip kernels/stroke_flat.h "a cut on the wrong side" 'CAMBER_BOTH(at->fb >= CAMBER_TIE(at)' \
     'CAMBER_BOTH(at->fb < CAMBER_TIE(at)'
-mutant strip kernels/stroke_flat.h "flat joins: bodies that end on the wrong side" 'f.behind ? body : before' \
+mutant strip kernels/stroke_caps.inl "flat joins: bodies that end on the wrong side" 'f.behind ? body : before' \
     'f.behind ? before : body'
 mutant strip kernels/stroke_setup.inl "caps of thin lines" '0.5f + 0.785398f * half_width + 1.2f' '0.5f + 1.2f'
 mutant strip kernels/union.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \

@@ -75,9 +75,9 @@ CAMBER_FN void camber_pitch_direction(camber_eye e, CAMBER_IN(camber_pitch_end) 
     CAMBER_AT(seen_y) = y * scale;
 }
 
-/* Which side of the bisector the segment draws at an end, and its cut in the picture. Where the join is seen narrower
- * than a pixel, the cut divides the pixels between both segments: its normal, its position, and a share, 1 where the
- * line is wide and the plane's bisector divides the pixels, down to 0. */
+/* How far past an end the segment draws pixels behind the bisector (camber_owner_from), and its cut in the picture.
+ * Where the join is seen narrower than a pixel, the cut divides the pixels between both segments: its normal, its
+ * position, and a share, 1 where the line is wide and the plane's bisector divides the pixels, down to 0. */
 CAMBER_STRUCT(camber_pitch_cut) {
     camber_real owner, x, y, at, wide;
 };
@@ -106,9 +106,10 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
     cut->y = wide ? none : s->turns * y;
     cut->at = wide ? none : s->turns * (x * seen_x + y * seen_y);
     cut->wide = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
-    /* A flat join ends in an edge, so that the segment may draw all that it has past the bisector. */
+    /* A flat join ends in an edge, so that the segment may draw all that it has past the bisector. Whether it does is
+     * decided by the width in the plane as well, like where it is flat. */
     const camber_mask is_flat = CAMBER_BOTH(CAMBER_END_FLAT(s->end) != 0u, cut->wide >= 1.0f);
-    cut->owner = camber_owner_from(CAMBER_EITHER(is_cap, CAMBER_BOTH(is_flat, s->own)),
+    cut->owner = camber_owner_from(CAMBER_EITHER(is_cap, CAMBER_BOTH(is_flat, CAMBER_EITHER(s->own, kept))),
                                    CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept), no);
 }
 

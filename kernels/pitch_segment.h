@@ -17,7 +17,7 @@
 #define CAMBER_PLANE_WORDS 32
 #define CAMBER_PLANE_AX 0          /* to word 9: A, B, the direction, the bisectors' normals, as in a segment */
 #define CAMBER_PLANE_HALF_WIDTH 10 /* px of the plane */
-#define CAMBER_PLANE_OWNER_A 11    /* two words: camber_owner_side, by the width that is seen */
+#define CAMBER_PLANE_OWNER_A 11    /* two words: camber_pitch_cut, owner */
 #define CAMBER_PLANE_OWNER_B 12
 #define CAMBER_PLANE_CUT_A 13 /* four words each: camber_pitch_cut */
 #define CAMBER_PLANE_CUT_B 17

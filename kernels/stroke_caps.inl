@@ -27,7 +27,7 @@ CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
 }
 
 /* The share of a pixel inside a flat end. llvmpipe runs both sides of a branch: in shaders a cap is a join whose two
- * edges are one, and where there is no stub, its cap is far. */
+ * edges are one, but for what a pitch makes of either, and where there is no stub, its cap is far. */
 CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
     const float from = out_of > 0.0f ? p->flat_b : p->flat_a;
     const camber_flag is_join = camber_is_flat_join(p, out_of);

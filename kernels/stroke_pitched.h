@@ -251,7 +251,7 @@ CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return CAMBER_EITHER(out_of_reach, share < 0.0f) ? CAMBER_REAL(0.0f) : area * share;
 }
 
-/* The normal of the nearest edge, into the stroke, in the picture; those of flat joins are taken for none. Returns
+/* The normal of the nearest edge, into the stroke, in the picture; where that is a flat join's, the side's. Returns
  * whether it has one. */
 CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                          CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {

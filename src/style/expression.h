@@ -73,7 +73,8 @@ struct camber_expression {
 
 /* An evaluation's texts and arrays, its variables among them, take so much memory at most. */
 #define CAMBER_EVALUATION_LIMIT ((size_t)16 << 20)
-/* Bytes and items that one evaluation walks over, at most: some tens of milliseconds. */
+/* Bytes and items that one evaluation walks over, at most, a number's text counted as a hundred: some tens of
+ * milliseconds. */
 #define CAMBER_WORK_LIMIT 10000000u
 #define CAMBER_EVALUATION_ROOM 512
 

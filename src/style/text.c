@@ -42,8 +42,10 @@ enum { NUMBER_WORK = 100 };
 
 static bool add_number(camber_text *text, double number) {
     char digits[CAMBER_NUMBER_TEXT_SIZE];
+    if (!camber_evaluate_work(text->e, NUMBER_WORK))
+        return false;
     camber_number_format(number, digits);
-    return camber_evaluate_work(text->e, NUMBER_WORK) && add(text, digits);
+    return add(text, digits);
 }
 
 /* Alpha is a float: it is written as the 255th that it is, or with six digits. */

@@ -188,7 +188,7 @@ static bool is_long(const camber_mesh *mesh) {
     return camber_mesh_get_info(mesh).record_count > RECORDS_MAX;
 }
 
-/* Takes a check that was made. What is drawn in slices has no stages to compare, and is skipped. */
+/* Takes a check that was made. What would take larger buffers, or has no stages to compare, is skipped. */
 static camber_status end_check(camber_validation *v, camber_check *check, camber_status status) {
     char reason[sizeof check->reason];
     if (status == CAMBER_ERROR_LIMIT) {
@@ -269,28 +269,39 @@ static camber_status check_lanes(camber_validation *v, const camber_subject *s, 
 
 /* ---- In slices, between which tiles are spilled ---- */
 
-/* SEGMENT_BYTES: a segment takes so many in the buffer of segments. */
-enum { SEGMENT_BYTES = 64, LEAST_BUFFER_BYTES = 1 << 16 };
+/* A segment's bytes in the buffer of segments; a tile spills less than the other. */
+enum { SEGMENT_BYTES = 64, TILE_BYTES = 160 * 1024 };
 
-/* A bound for buffers under which the frame takes three slices or more. 0: it has too few segments. */
+/* A bound for buffers under which the frame takes slices; three, where a tile's spill fits. 0: for lack of segments. */
 static uint64_t slice_bytes(const camber_mesh *mesh) {
-    const uint64_t segments = PASSES * (uint64_t)camber_mesh_get_info(mesh).record_count;
-    const uint64_t wanted = segments * SEGMENT_BYTES / 3;
-    return wanted > LEAST_BUFFER_BYTES ? wanted : 0;
+    const uint64_t all = PASSES * (uint64_t)camber_mesh_get_info(mesh).record_count * SEGMENT_BYTES;
+    const uint64_t wanted = all / 3 > TILE_BYTES ? all / 3 : TILE_BYTES;
+    return wanted < all ? wanted : 0;
 }
 
 /* Draws the frame's picture, the one stage that is filled in. The caller frees it. */
-static camber_status draw_picture(const camber_validation *v, const camber_subject *s, const camber_drawing_path *path,
-                                  int variant, camber_drawing_stages *picture) {
-    drawn d;
-    if (!make_frame(s, v->desc, path->mesh, variant, &d))
-        return CAMBER_ERROR_MEMORY;
-    *picture = (camber_drawing_stages){.width = d.frame.width, .height = d.frame.height};
-    picture->rgba = malloc(4 * (size_t)d.frame.width * d.frame.height);
-    const camber_status status = picture->rgba
-                                     ? camber_renderer_render_into(path->renderer, &d.frame, picture->rgba, 0, NULL)
-                                     : CAMBER_ERROR_MEMORY;
-    free(d.paints);
+static camber_status draw_picture(camber_renderer *renderer, const camber_frame *frame,
+                                  camber_drawing_stages *picture) {
+    *picture = (camber_drawing_stages){.width = frame->width, .height = frame->height};
+    picture->rgba = malloc(4 * (size_t)frame->width * frame->height);
+    return picture->rgba ? camber_renderer_render_into(renderer, frame, picture->rgba, 0, NULL) : CAMBER_ERROR_MEMORY;
+}
+
+/* Skips the check where the frame has stages to read after all: it is drawn in one slice then. */
+static camber_status want_slices(const camber_validation *v, camber_renderer *renderer, const camber_frame *frame,
+                                 camber_check *check) {
+    camber_drawing_stages stages = {0};
+    char message[sizeof check->reason];
+    const camber_status status = camber_renderer_read_stages(renderer, frame, &stages);
+    camber_drawing_stages_destroy(&stages);
+    if (status == CAMBER_ERROR_LIMIT) {
+        v->desc->host.take_message(v->desc->host.user, message, sizeof message);
+        return CAMBER_OK;
+    }
+    if (status == CAMBER_OK) {
+        check->result = CAMBER_RESULT_SKIPPED;
+        snprintf(check->reason, sizeof check->reason, "one slice holds it all");
+    }
     return status;
 }
 
@@ -299,13 +310,20 @@ static camber_status compare_slices(const camber_validation *v, const camber_sub
                                     const camber_drawing_path *whole, const camber_drawing_path *small, int variant,
                                     camber_check *check) {
     camber_drawing_stages expected = {0}, got = {0};
-    camber_status status = draw_picture(v, s, whole, variant, &expected);
+    drawn on_whole = {0}, on_small = {0};
+    const bool made = make_frame(s, v->desc, whole->mesh, variant, &on_whole) &&
+                      make_frame(s, v->desc, small->mesh, variant, &on_small);
+    camber_status status = made ? draw_picture(whole->renderer, &on_whole.frame, &expected) : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
-        status = draw_picture(v, s, small, variant, &got);
+        status = draw_picture(small->renderer, &on_small.frame, &got);
+    if (status == CAMBER_OK)
+        status = want_slices(v, small->renderer, &on_small.frame, check);
     if (status == CAMBER_OK && pixels_differ(&got, &expected, &check->finding))
         check->result = CAMBER_RESULT_FAILED;
     free(expected.rgba);
     free(got.rgba);
+    free(on_whole.paints);
+    free(on_small.paints);
     return status;
 }
 
@@ -319,9 +337,11 @@ static camber_status check_slices(camber_validation *v, const camber_subject *s,
                            variants[variant].name, checked->name);
     camber_status status = camber_subject_tessellate(s, drawer->paths[0].mesh, &desc);
     const uint64_t bytes = slice_bytes(drawer->paths[0].mesh);
-    if (status == CAMBER_OK && (bytes == 0 || checked->broken[CAMBER_METHOD_STRIP])) {
-        camber_results_skip(&v->results, check,
-                            bytes ? "the mesh is not the CPU twin's" : "it fits the smallest buffer");
+    const char *reason = bytes == 0                             ? "there are too few segments for slices"
+                         : checked->broken[CAMBER_METHOD_STRIP] ? "the mesh is not the CPU twin's"
+                                                                : NULL;
+    if (status == CAMBER_OK && reason) {
+        camber_results_skip(&v->results, check, reason);
         return CAMBER_OK;
     }
     if (status == CAMBER_OK)

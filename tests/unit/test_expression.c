@@ -536,7 +536,7 @@ static void test_number_text_shortest(void **state) {
         if (i % 4 == 0)
             number = (double)(int64_t)(bits >> 44) / (i % 8 ? 1000 : 64);
         if (i % 4 == 1)
-            number *= 0x1p-1022; /* most lose precision or vanish */
+            number *= 0x1p-1022; /* half of them lose precision or vanish */
         if (!isfinite(number))
             continue;
         camber_number_format(number, text);

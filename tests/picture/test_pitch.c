@@ -19,6 +19,11 @@ typedef struct figure {
 
 /* ---- Truth ---- */
 
+/* hypot is right for numbers that are far from here, too, and takes several times as long. */
+static double length_of(double x, double y) {
+    return sqrt(x * x + y * y);
+}
+
 static bool meet(double pitch_deg, double x, double y, double met[2], double *depth) {
     return camber_ray_meets_plane(pitch_deg, (const double[]){WIDE, HIGH}, x, y, met, depth);
 }
@@ -36,14 +41,14 @@ static bool in_join(const figure *f, size_t i, double half, const double p[2]) {
     const double joint[2] = {(double)at[0], (double)at[1]};
     double in[2] = {(double)(at[0] - at[-2]), (double)(at[1] - at[-1])};
     double out[2] = {(double)(at[2] - at[0]), (double)(at[3] - at[1])};
-    const double in_length = hypot(in[0], in[1]), out_length = hypot(out[0], out[1]);
+    const double in_length = length_of(in[0], in[1]), out_length = length_of(out[0], out[1]);
     for (int k = 0; k < 2; k++) {
         in[k] /= in_length;
         out[k] /= out_length;
     }
     const double x = p[0] - joint[0], y = p[1] - joint[1];
     if (f->stroke.join == CAMBER_JOIN_ROUND) /* past the one segment, and before the other */
-        return hypot(x, y) <= half && x * in[0] + y * in[1] >= 0 && x * out[0] + y * out[1] <= 0;
+        return length_of(x, y) <= half && x * in[0] + y * in[1] >= 0 && x * out[0] + y * out[1] <= 0;
     const double side = in[0] * out[1] - in[1] * out[0] > 0 ? -half : half;
     const double a[2] = {joint[0] - in[1] * side, joint[1] + in[0] * side};
     const double b[2] = {joint[0] - out[1] * side, joint[1] + out[0] * side};
@@ -59,7 +64,7 @@ static bool in_stroke(const figure *f, const double p[2]) {
     for (size_t i = 0; i + 1 < f->count; i++) {
         const double ax = (double)f->points[2 * i], ay = (double)f->points[2 * i + 1];
         const double dx = (double)f->points[2 * i + 2] - ax, dy = (double)f->points[2 * i + 3] - ay;
-        const double length = hypot(dx, dy), cap = f->stroke.cap == CAMBER_CAP_SQUARE ? half : 0;
+        const double length = length_of(dx, dy), cap = f->stroke.cap == CAMBER_CAP_SQUARE ? half : 0;
         const double x = ((p[0] - ax) * dx + (p[1] - ay) * dy) / length;
         const double y = ((p[1] - ay) * dx - (p[0] - ax) * dy) / length;
         if (fabs(y) <= half && x >= (i == 0 ? -cap : 0) && x <= length + (i + 2 == f->count ? cap : 0))
@@ -67,9 +72,9 @@ static bool in_stroke(const figure *f, const double p[2]) {
         if (i > 0 && in_join(f, i, half, p))
             return true;
         const bool round = f->stroke.cap == CAMBER_CAP_ROUND;
-        if (round && i == 0 && hypot(x, y) <= half)
+        if (round && i == 0 && length_of(x, y) <= half)
             return true;
-        if (round && i + 2 == f->count && hypot(x - length, y) <= half)
+        if (round && i + 2 == f->count && length_of(x - length, y) <= half)
             return true;
     }
     return false;
@@ -91,7 +96,7 @@ static uint32_t far_row(double pitch_deg) {
 static double edge_distance(const float a[2], const float b[2], const double p[2]) {
     const double ax = (double)a[0], ay = (double)a[1], dx = (double)b[0] - ax, dy = (double)b[1] - ay;
     const double t = ((p[0] - ax) * dx + (p[1] - ay) * dy) / (dx * dx + dy * dy), near = fmin(fmax(t, 0), 1);
-    return hypot(p[0] - ax - near * dx, p[1] - ay - near * dy);
+    return length_of(p[0] - ax - near * dx, p[1] - ay - near * dy);
 }
 
 /* Whether a pixel is far from the line: it shows a quadrangle of the plane that lies around its middle. */
@@ -102,7 +107,7 @@ static bool is_apart(const figure *f, double pitch_deg, double x, double y) {
     for (int k = 0; k < 4; k++) {
         if (!meet(pitch_deg, x + k % 2, y + k / 2, corner, &depth))
             return false;
-        reach = fmax(reach, 4 * (double)f->width_px + hypot(corner[0] - middle[0], corner[1] - middle[1]));
+        reach = fmax(reach, 4 * (double)f->width_px + length_of(corner[0] - middle[0], corner[1] - middle[1]));
     }
     for (size_t i = 0; i + 1 < f->count; i++)
         if (edge_distance(f->points + 2 * i, f->points + 2 * i + 2, middle) < reach)
@@ -371,7 +376,7 @@ static int inside_of(const float *points, double pitch_deg, bool odd, uint32_t x
     for (int k = 0; k < 4; k++) {
         if (!meet(pitch_deg, x - 0.1 + 1.2 * (k % 2), y - 0.1 + 1.2 * (k / 2), corner, &depth))
             return -1;
-        reach = fmax(reach, hypot(corner[0] - middle[0], corner[1] - middle[1]));
+        reach = fmax(reach, length_of(corner[0] - middle[0], corner[1] - middle[1]));
     }
     for (uint32_t i = 0; i < RINGS * CORNERS; i++) {
         const uint32_t next = i % CORNERS == CORNERS - 1 ? i + 1 - CORNERS : i + 1;
@@ -430,7 +435,7 @@ static void test_dashes(void **state) {
     for (size_t n = 0; n < 3; n++)
         for (int i = 0; i < PITCH_COUNT; i++) {
             const float *p = lines[n].points;
-            const double dx = (double)(p[2] - p[0]), dy = (double)(p[3] - p[1]), total = hypot(dx, dy);
+            const double dx = (double)(p[2] - p[0]), dy = (double)(p[3] - p[1]), total = length_of(dx, dy);
             memset(truth, 0, sizeof truth);
             for (double at = 0; at < total; at += 24) {
                 figure dash = lines[n];

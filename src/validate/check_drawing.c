@@ -327,34 +327,47 @@ static camber_status compare_slices(const camber_validation *v, const camber_sub
     return status;
 }
 
-static camber_status check_slices(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
-                                  const camber_checked_drawer *drawer, int variant) {
-    const camber_tessellation_desc desc = {s->strokes, s->stroke_count, CAMBER_METHOD_STRIP, 0, false};
-    camber_drawing_path small = {0};
-    camber_device *device = NULL;
+/* One variant. reason: the check cannot be made; else NULL. */
+static camber_status check_sliced(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const camber_checked_drawer *drawer, const camber_drawing_path *small, int variant,
+                                  const char *reason) {
     camber_check check =
         camber_check_start(checked->name, drawer->name, "%s: strip%s: the same pixels in slices, on %s", s->name,
                            variants[variant].name, checked->name);
+    if (reason) {
+        camber_results_skip(&v->results, check, reason);
+        return CAMBER_OK;
+    }
+    return end_check(v, &check, compare_slices(v, s, drawer->paths, small, variant, &check));
+}
+
+static camber_status check_slices(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const camber_checked_drawer *drawer) {
+    const camber_tessellation_desc desc = {s->strokes, s->stroke_count, CAMBER_METHOD_STRIP, 0, false};
+    camber_drawing_path small = {0};
+    camber_device *device = NULL;
+    char message[sizeof((camber_check){0}).reason];
     camber_status status = camber_subject_tessellate(s, drawer->paths[0].mesh, &desc);
     const uint64_t bytes = slice_bytes(drawer->paths[0].mesh);
     const char *reason = bytes == 0                             ? "there are too few segments for slices"
                          : checked->broken[CAMBER_METHOD_STRIP] ? "the mesh is not the CPU twin's"
                                                                 : NULL;
-    if (status == CAMBER_OK && reason) {
-        camber_results_skip(&v->results, check, reason);
-        return CAMBER_OK;
-    }
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && !reason)
         status = camber_checked_device_open_small(checked, v, bytes, &device, NULL);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && !reason)
         status = open_path(device, &small);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && !reason)
         status = camber_subject_tessellate(s, small.mesh, &desc);
-    if (status == CAMBER_OK)
-        status = compare_slices(v, s, drawer->paths, &small, variant, &check);
+    if (status == CAMBER_ERROR_LIMIT) {
+        v->desc->host.take_message(v->desc->host.user, message, sizeof message);
+        reason = message;
+        status = CAMBER_OK;
+    }
+    for (int i = 0; i < VARIANTS && status == CAMBER_OK; i++)
+        status = check_sliced(v, s, checked, drawer, &small, i, reason);
     close_path(&small);
     camber_device_destroy(device);
-    return end_check(v, &check, status);
+    return status;
 }
 
 camber_status camber_check_drawing(camber_validation *v, const camber_subject *s) {
@@ -368,8 +381,8 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
                 continue;
             for (int i = 0; i < VARIANTS && status == CAMBER_OK; i++)
                 status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
-            for (int i = 0; i < VARIANTS && status == CAMBER_OK && takes_strips; i++)
-                status = check_slices(v, s, checked, drawer, i);
+            if (status == CAMBER_OK && takes_strips)
+                status = check_slices(v, s, checked, drawer);
             for (size_t n = 0; n < CAMBER_CHECKED_GROUPS && status == CAMBER_OK && v->desc->full; n++)
                 status = check_lanes(v, s, checked, drawer->name, n);
         }

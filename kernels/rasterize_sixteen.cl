@@ -20,7 +20,23 @@ typedef struct sixteen {
 #define draw_sixteen(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* Takes one of sixteen segments' coefficients, as if no join of it were sharp. */
+/* The ends of a segment need nothing more, flat caps, or any of the rest, of which sharp joins need most. */
+#define ENDS_PLAIN 0u
+#define ENDS_CAPPED 1u
+#define ENDS_OTHER 2u
+#define ENDS_SHARP 3u
+
+/* Which of them each of a vector of segments has. */
+static inline camber_words ends_of(const camber_edges *p) {
+    const camber_real never = CAMBER_REAL(CAMBER_NEVER_PX);
+    const camber_mask joined_a = (p->flat_a < never) & (p->sa != 0.0f),
+                      joined_b = (p->flat_b < never) & (p->sb != 0.0f);
+    const camber_words plain = p->capped ? (camber_words)(ENDS_CAPPED) : (camber_words)(ENDS_PLAIN);
+    const camber_words rest = p->sharp ? (camber_words)(ENDS_SHARP) : (camber_words)(ENDS_OTHER);
+    return (p->sharp | p->thin | p->tips | joined_a | joined_b) ? rest : plain;
+}
+
+/* Takes one of sixteen segments' coefficients. */
 static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
     const camber_edges *all = from + k / CAMBER_LANES;
     const int lane = (int)(k % CAMBER_LANES);
@@ -60,7 +76,7 @@ static inline __attribute__((always_inline)) void take_edge(const camber_edges *
     p->thin = camber_integer_of(&all->thin, lane);
     p->tips = camber_integer_of(&all->tips, lane);
     p->capped = camber_integer_of(&all->capped, lane);
-    p->sharp = 0;
+    p->sharp = camber_integer_of(&all->sharp, lane);
 }
 
 /* ---- Cells ---- */
@@ -163,18 +179,8 @@ static inline ulong list_all(const sixteen_sets *sets, uint count, ulong shut, c
 typedef struct list_source {
     const positions *at;
     const camber_edges *all; /* of sixteen segments */
+    const uint *ends;        /* of each */
 } list_source;
-
-/* The area of pixels near an end where a sharp join may cut them. It is apart: with the joins' function in it, the
- * drawing of a list would keep all that it knows of a pixel in memory. */
-static __attribute__((noinline)) camber_real sharp_area(const list_source *d, uint k, camber_real x, camber_real y) {
-    camber_edge p;
-    camber_pixel at;
-    take_edge(d->all, k, &p);
-    p.sharp = 1;
-    camber_look(&p, x, y, &at);
-    return camber_edge_area(&p, &at);
-}
 
 static inline camber_real list_x(const list_source *d, int i) {
     return d->at->x[i % CAMBER_TILE_CELLS];
@@ -184,29 +190,59 @@ static inline camber_real list_y(const list_source *d, int i, int v) {
     return d->at->y[i / CAMBER_TILE_CELLS][v];
 }
 
+/* The areas of a cell's pixels near an end. `ends` is a constant: what such ends do not need is left out. */
+static inline __attribute__((always_inline)) void find_areas_by(const list_source *d, uint word, uint ends,
+                                                                camber_real *area) {
+    const int i = (int)(word % CAMBER_CELLS);
+    camber_edge p;
+    take_edge(d->all, word >> CELL_SEGMENT, &p);
+    p.sharp = ends == ENDS_SHARP;
+    if (ends == ENDS_PLAIN || ends == ENDS_CAPPED)
+        p.thin = p.tips = p.capped = 0;
+#pragma unroll
+    for (int v = 0; v < CAMBER_VECTORS; v++) {
+        camber_pixel at;
+        camber_look(&p, list_x(d, i), list_y(d, i, v), &at);
+        area[v] = camber_edge_area(&p, &at);
+        if (ends == ENDS_CAPPED)
+            area[v] = camber_edge_plain_caps(&p, &at, area[v]);
+    }
+}
+
+/* The ways that need much are apart: beside them the drawing of a list would keep all that it knows of a pixel in
+ * memory. */
+static __attribute__((noinline)) void find_other_areas(const list_source *d, uint word, camber_real *area) {
+    find_areas_by(d, word, ENDS_OTHER, area);
+}
+
+static __attribute__((noinline)) void find_sharp_areas(const list_source *d, uint word, camber_real *area) {
+    find_areas_by(d, word, ENDS_SHARP, area);
+}
+
 /* The areas of a cell's pixels. Each way takes the edge for itself: so the compiler spreads coefficients over vectors
  * as it loads them. */
 static inline __attribute__((always_inline)) void find_areas(const list_source *d, uint word, camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
     const uint k = word >> CELL_SEGMENT;
-    camber_edge p;
     if (!(word & CELL_NEAR_END)) {
+        camber_edge p;
         take_edge(d->all, k, &p);
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++)
             area[v] = camber_edge_side(&p, list_x(d, i), list_y(d, i, v));
-    } else if (camber_integer_of(&d->all[k / CAMBER_LANES].sharp, (int)(k % CAMBER_LANES))) {
+    } else if (d->ends[k] == ENDS_PLAIN) {
+        find_areas_by(d, word, ENDS_PLAIN, area);
+    } else if (d->ends[k] == ENDS_CAPPED) {
+        find_areas_by(d, word, ENDS_CAPPED, area);
+    } else {
+        camber_real found[CAMBER_VECTORS];
+        if (d->ends[k] == ENDS_OTHER)
+            find_other_areas(d, word, found);
+        else
+            find_sharp_areas(d, word, found);
 #pragma unroll
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            area[v] = sharp_area(d, k, list_x(d, i), list_y(d, i, v));
-    } else {
-        take_edge(d->all, k, &p);
-#pragma unroll
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
-            camber_pixel at;
-            camber_look(&p, list_x(d, i), list_y(d, i, v), &at);
-            area[v] = camber_edge_area(&p, &at);
-        }
+            area[v] = found[v];
     }
 }
 
@@ -293,7 +329,8 @@ static __attribute__((noinline)) void draw_sixteen(camber_tile_state *c, const p
     camber_edges all[CAMBER_VECTORS];
     sixteen_sets sets;
     cell_list list;
-    const list_source from = {at, all};
+    uint ends[SIXTEEN];
+    const list_source from = {at, all, ends};
     if (b->count == 0)
         return;
     for (uint k = b->count; k < SIXTEEN; k++)
@@ -303,6 +340,7 @@ static __attribute__((noinline)) void draw_sixteen(camber_tile_state *c, const p
         camber_footprint footprint;
         camber_cell_boxes boxes;
         take_segments(segments, b->which, v, all + v, &footprint);
+        CAMBER_STORE(ends_of(all + v), v, ends);
         camber_cell_boxes_of(&footprint, where, wanted, &boxes);
         find_sets(all + v, &boxes, where, v, &sets);
     }

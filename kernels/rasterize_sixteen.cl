@@ -20,7 +20,7 @@ typedef struct sixteen {
 #define draw_sixteen(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* The ends of a segment need nothing more, flat caps, or any of the rest, of which sharp joins need most. */
+/* A segment's ends need nothing more, flat caps, or any of the rest, of which sharp joins need most. */
 #define ENDS_PLAIN 0u
 #define ENDS_CAPPED 1u
 #define ENDS_OTHER 2u
@@ -190,7 +190,14 @@ static inline camber_real list_y(const list_source *d, int i, int v) {
     return d->at->y[i / CAMBER_TILE_CELLS][v];
 }
 
-/* The areas of a cell's pixels near an end. `ends` is a constant: what such ends do not need is left out. */
+/* The part of an area that flat caps leave. */
+static inline camber_real cut_caps(const camber_edge *p, const camber_pixel *at, camber_real area) {
+    return camber_between_ends(area, camber_cut_along(p, at, p->flat_a - at->past_a),
+                               camber_cut_along(p, at, p->flat_b - at->past_b));
+}
+
+/* The areas of a cell's pixels near an end. `ends` is a constant: what such ends do not need is left out. Caps come
+ * last: what belongs to a neighbour is 0 and stays 0. */
 static inline __attribute__((always_inline)) void find_areas_by(const list_source *d, uint word, uint ends,
                                                                 camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
@@ -205,7 +212,7 @@ static inline __attribute__((always_inline)) void find_areas_by(const list_sourc
         camber_look(&p, list_x(d, i), list_y(d, i, v), &at);
         area[v] = camber_edge_area(&p, &at);
         if (ends == ENDS_CAPPED)
-            area[v] = camber_edge_plain_caps(&p, &at, area[v]);
+            area[v] = cut_caps(&p, &at, area[v]);
     }
 }
 
@@ -235,7 +242,7 @@ static inline __attribute__((always_inline)) void find_areas(const list_source *
     } else if (d->ends[k] == ENDS_CAPPED) {
         find_areas_by(d, word, ENDS_CAPPED, area);
     } else {
-        camber_real found[CAMBER_VECTORS];
+        camber_real found[CAMBER_VECTORS]; /* what a call is given lies in memory: not the area of all ways */
         if (d->ends[k] == ENDS_OTHER)
             find_other_areas(d, word, found);
         else

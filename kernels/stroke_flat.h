@@ -110,7 +110,7 @@ CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
 
 #include "stroke_caps.inl"
 
-/* The part of an area that both ends leave, of which each alone leaves so much. */
+/* The part of an area between both ends. at_a, at_b: the shares that each of them leaves. */
 CAMBER_FN camber_real camber_between_ends(camber_real area, camber_real at_a, camber_real at_b) {
     const camber_real both = at_a + at_b - 1.0f;
     return area * (both > 0.0f ? both : CAMBER_REAL(0.0f));
@@ -119,12 +119,6 @@ CAMBER_FN camber_real camber_between_ends(camber_real area, camber_real at_a, ca
 /* The part of an area that flat ends leave: one, or both of a short segment. Ends that are not flat leave all. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     return camber_between_ends(area, camber_cut_end(p, at, -1.0f), camber_cut_end(p, at, 1.0f));
-}
-
-/* The same of ends that are no flat joins. */
-CAMBER_FN camber_real camber_edge_plain_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
-    return camber_between_ends(area, camber_cut_along(p, at, p->flat_a - at->past_a),
-                               camber_cut_along(p, at, p->flat_b - at->past_b));
 }
 
 /* The area, or 0 where the pixel lies on the neighbour's side of a bisector and the neighbour draws it. */

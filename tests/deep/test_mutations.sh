@@ -350,6 +350,7 @@ mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[
     'to->lists[to->starts[list + 1] - 1u - to->own[list]++]'
 mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++' 'k + 1u < count; k++'
 mutant strip kernels/rasterize_sixteen.cl "flat joins taken for caps" 'joined_a | joined_b' 'joined_a'
+mutant strip kernels/rasterize_sixteen.cl "caps at the other end" 'p->flat_b - at->past_b' 'p->flat_a - at->past_b'
 level=(--full) # 1, 8 and 16 lanes
 mutant strip kernels/rasterize.cl "rows of cells that lie abreast, from the top" 'v * (CAMBER_LANES / CAMBER_CELL_PX)' '0 * v'
 mutant strip kernels/rasterize_one.cl "one lane: a tile's cells that change places" 'cell_column = (int)cell % CAMBER_TILE_CELLS' \

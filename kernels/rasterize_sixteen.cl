@@ -36,7 +36,7 @@ static inline camber_words ends_of(const camber_edges *p) {
     return (p->sharp | p->thin | p->tips | joined_a | joined_b) ? rest : plain;
 }
 
-/* Takes one of sixteen segments' coefficients. */
+/* Takes one of sixteen segments' coefficients, as if no join of it were sharp. */
 static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
     const camber_edges *all = from + k / CAMBER_LANES;
     const int lane = (int)(k % CAMBER_LANES);
@@ -76,7 +76,7 @@ static inline __attribute__((always_inline)) void take_edge(const camber_edges *
     p->thin = camber_integer_of(&all->thin, lane);
     p->tips = camber_integer_of(&all->tips, lane);
     p->capped = camber_integer_of(&all->capped, lane);
-    p->sharp = camber_integer_of(&all->sharp, lane);
+    p->sharp = 0;
 }
 
 /* ---- Cells ---- */

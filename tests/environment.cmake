@@ -1,6 +1,9 @@
 # Every test of this directory gets one cache for all, kernels that were compiled before the first of them, a count of
 # those that are compiled all the same, and what the sanitizers are told. And it gets processors, of which ./dev counts
 # halves: one that waits for others most of the time gets a half, one that has bounds of time has asked for more.
+#
+# The last include also writes tests/manifest.txt, from which tests/tiers.py chooses: a line a test, with its name, its cost,
+# what builds for it (a fixture, or -), whether it is such a build (setup, or -), and its labels.
 set(CAMBER_TEST_CACHE ${CMAKE_BINARY_DIR}/cache CACHE PATH "Where tests keep what they compile")
 set(CAMBER_TEST_KERNELS ${CMAKE_BINARY_DIR}/src/camber-kernels CACHE PATH "Kernels that are compiled before the tests")
 file(MAKE_DIRECTORY ${CAMBER_TEST_CACHE}/pocl)
@@ -36,4 +39,24 @@ foreach(test IN LISTS all)
                    CAMBER_COMPILATIONS=${CAMBER_TEST_CACHE}/compilations)
     endif()
   endif()
+  foreach(property COST FIXTURES_REQUIRED FIXTURES_SETUP FIXTURES_CLEANUP)
+    get_test_property(${test} ${property} ${property})
+    if(NOT ${property})
+      set(${property} -)
+    endif()
+  endforeach()
+  set(role -)
+  if(NOT "${FIXTURES_SETUP}${FIXTURES_CLEANUP}" STREQUAL "--")
+    set(role setup)
+  endif()
+  list(REMOVE_ITEM FIXTURES_REQUIRED kernels)
+  list(JOIN FIXTURES_REQUIRED "," FIXTURES_REQUIRED)
+  if(NOT FIXTURES_REQUIRED)
+    set(FIXTURES_REQUIRED -)
+  endif()
+  get_test_property(${test} LABELS label)
+  list(JOIN label "," label)
+  set_property(GLOBAL APPEND_STRING PROPERTY camber_manifest "${test} ${COST} ${FIXTURES_REQUIRED} ${role} ${label}\n")
 endforeach()
+get_property(manifest GLOBAL PROPERTY camber_manifest)
+file(WRITE ${CMAKE_BINARY_DIR}/tests/manifest.txt "${manifest}")

@@ -1,4 +1,4 @@
-# The target `lint`: the rules of the tree (tests/lint/lint_tree.py), formatting, clang-tidy, every kernel and every public
+# The target `lint`, and a step lint/NAME for each of its parts: the rules of the tree (tests/lint/lint_tree.py), formatting, clang-tidy, every kernel and every public
 # header by itself. It counts with the clang of .ci/pinned: another one formats otherwise and has other checks. Such a
 # clang-format or clang-tidy is left out, and what such a clang warns of is information.
 set(lint_notes)
@@ -28,8 +28,9 @@ if(NOT PYTHON3)
 endif()
 if(lint_missing)
   list(JOIN lint_missing ", " lint_missing)
-  add_custom_target(lint COMMAND ${CMAKE_COMMAND} -E echo "lint: not here: ${lint_missing}, see ./dev setup"
+  add_custom_target(lint_notes COMMAND ${CMAKE_COMMAND} -E echo "lint: not here: ${lint_missing}, see ./dev setup"
                     COMMAND ${CMAKE_COMMAND} -E false)
+  add_custom_target(lint DEPENDS lint_notes)
   return()
 endif()
 set(lint_warnings -Wall -Wextra)
@@ -57,7 +58,8 @@ add_custom_command(OUTPUT ${stamps}/tree
 set_source_files_properties(${stamps}/tree PROPERTIES SYMBOLIC TRUE)
 list(APPEND done ${stamps}/tree)
 
-add_custom_target(lint_format ${lint_notes})
+add_custom_target(lint_notes ${lint_notes})
+add_custom_target(lint_format DEPENDS lint_notes)
 if(CLANG_FORMAT_IS_PINNED)
   add_custom_command(TARGET lint_format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} VERBATIM)
   lint_step(format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} DEPENDS ${lint_sources} ${lint_headers} ${lint_others})
@@ -112,4 +114,4 @@ foreach(source IN LISTS lint_sources)
             DEPENDS ${source} ${lint_headers} ${made} ${PROJECT_SOURCE_DIR}/.clang-tidy)
 endforeach()
 
-add_custom_target(lint ${lint_notes} DEPENDS ${done})
+add_custom_target(lint DEPENDS lint_notes ${done})

@@ -1,24 +1,33 @@
 #!/bin/bash
 # Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
 # must end with 1 and name a check that failed, or be ended by what the broken kernel did.
-# test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS] [K/N: every N-th row, from the K-th on]
-# test_mutations.sh SOURCES --texts: only whether each row's old text still stands in its file, in a second.
-# kernels/join.h and kernels/cull.h are compiled into kernels and CPU twin alike, so that pixels and the window tell;
-# kernels/stroke*, pitch.h, features.h and images.h into shaders as well.
+#
+#   test_mutations.sh SOURCES [TEXT]               by hand: the rows whose file or words contain TEXT; all without it
+#   test_mutations.sh SOURCES --texts              whether each row's old text is still in its file; a second
+#   test_mutations.sh SOURCES --build FOLDER       builds the sources as they are, and validates them once
+#   test_mutations.sh SOURCES --run FOLDER K/N     every N-th row, from the K-th on, in that build
+#   test_mutations.sh SOURCES --run FOLDER changed the rows of the files that CAMBER_CHANGED names, one a line
+#
+# One run at a time may use FOLDER. kernels/join.h and kernels/cull.h are compiled into kernels and CPU twin alike, so
+# that pixels and the window tell; kernels/stroke*, pitch.h, features.h and images.h into shaders as well.
 set -u
 sources=$1
-only=${2:-}
-texts_alone=
-[ "$only" != --texts ] || { texts_alone=1; only=; }
-share=${3:-1/1}
+verb=${2:-}
+only= share=1/1
+case $verb in
+--texts | --build) folder=${3:-} ;;
+--run) folder=$3 share=$4 ;;
+*) only=$verb verb='' folder='' ;;
+esac
 row=0
 tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
+work=${folder:-$tmp} # has the sources, their build, and what the first validation found
 # Drivers keep their caches apart from those of other tests.
 export XDG_CACHE_HOME=$tmp/cache POCL_CACHE_DIR=$tmp/pocl
 # PoCL is told not to optimise: most rows are told within the first checks, and kernels take longer to compile than to run.
 export POCL_EXTRA_BUILD_FLAGS=-cl-opt-disable
-mkdir "$POCL_CACHE_DIR" "$tmp/sources"
+mkdir "$POCL_CACHE_DIR"
 mkfifo "$tmp/pipe"
 caught=0
 failures=0
@@ -32,14 +41,16 @@ fail() {
 build() { # [FILE THAT HAS CHANGED]
     local targets=(camber_tool)
     [[ ${1:-} != kernels/*.cl ]] || targets=(src/tessellate.cl src/cull.cl src/arc_length.cl src/offset.cl src/raster.cl)
-    ninja -C "$tmp/build" "${targets[@]}" >"$tmp/build.log" 2>&1
+    # The row before left a file to be built again.
+    [ "${1:-}" = "$restored" ] || [[ $restored = kernels/*.cl ]] || targets=(camber_tool src/{tessellate,cull,arc_length,offset,raster}.cl)
+    ninja -C "$work/build" "${targets[@]}" >"$tmp/build.log" 2>&1
 }
 
-# Puts the build of the sources as they are back, as old as it was: it is not compiled again for each row.
+# Puts a file back. It is newer than what was made of it, so that the next build makes that again.
+restored=
 restore() { # FILE
-    rm -rf "$tmp/build"
-    cp -a "$tmp/whole" "$tmp/build"
-    cp -p "$sources/$1" "$tmp/sources/$1"
+    restored=$1
+    cp "$sources/$1" "$work/sources/$1"
 }
 
 # Runs validate; its report is in $tmp/tap. One back end and half of the windows tell as much, and a row names the group of
@@ -52,7 +63,7 @@ run_validate() { # ARGUMENT...
     local drawn=(--backend "$backend") chosen=()
     [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
     [ -z "$group" ] || chosen=(--only "$group")
-    exec "$tmp/build/src/camber" validate "${level[@]}" "${chosen[@]}" -v --windows 12 "${drawn[@]}" "$@" 2>"$tmp/stderr"
+    exec "$work/build/src/camber" validate "${level[@]}" "${chosen[@]}" -v --windows 12 "${drawn[@]}" "$@" 2>"$tmp/stderr"
 }
 validate() { (run_validate "$@" >"$tmp/tap"); }
 
@@ -85,20 +96,27 @@ look_at_failures() { # FILE METHOD
     done
 }
 
+is_chosen() { # FILE
+    case $share in
+    changed) grep -qxF "$1" <<<"${CAMBER_CHANGED:-}" ;;
+    *) [ $((row % ${share#*/})) = $((${share%/*} % ${share#*/})) ] ;;
+    esac
+}
+
 # mutant METHOD FILE WHAT-IT-BREAKS OLD NEW: replaces the first OLD in FILE. METHOD is what validate is told to check.
 mutant() {
     local method=$1 file=$2 what=$3 old=$4 new=$5 text
     case "$file $what" in *"$only"*) ;; *) return ;; esac
     row=$((row + 1))
-    [ $((row % ${share#*/})) = $((${share%/*} % ${share#*/})) ] || return
+    is_chosen "$file" || return
     text=$(cat "$sources/$file" && printf x) || { fail "$file: cannot be read"; return; }
     text=${text%x}
     if [ "${text/"$old"/}" = "$text" ]; then
         fail "$file: $what: the old text is gone: $old"
         return
     fi
-    [ -z "$texts_alone" ] || { caught=$((caught + 1)); return; }
-    printf '%s' "${text/"$old"/"$new"}" >"$tmp/sources/$file"
+    [ "$verb" != --texts ] || { caught=$((caught + 1)); return; }
+    printf '%s' "${text/"$old"/"$new"}" >"$work/sources/$file"
     if build "$file"; then
         rm -rf "$tmp/pictures" "$tmp/junit.xml"
         local status first
@@ -132,36 +150,34 @@ mutant() {
 
 build_whole() {
     local part
+    rm -rf "$work/sources" "$work/build"
+    mkdir -p "$work/sources"
     for part in .ci CMakeLists.txt LICENSE README.md CHANGELOG.md kernels shaders src bench tests; do
-        cp -rp "$sources/$part" "$tmp/sources/" || exit 1
+        cp -rp "$sources/$part" "$work/sources/" || exit 1
     done
     # Nearly all of the time is compilers': C that takes half as long to compile is fast enough.
     local options=(-DCAMBER_MAP=OFF -DCAMBER_TESTS=OFF -DCAMBER_WARM=OFF -DCAMBER_KERNEL_FILES=ON
         -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_FLAGS_RELWITHDEBINFO=-O1)
-    if ! cmake -S "$tmp/sources" -B "$tmp/build" -G Ninja "${options[@]}" >"$tmp/build.log" 2>&1 || ! build; then
+    if ! cmake -S "$work/sources" -B "$work/build" -G Ninja "${options[@]}" >"$tmp/build.log" 2>&1 || ! build; then
         tail -20 "$tmp/build.log"
         echo "FAILED: the sources do not build"
         exit 1
     fi
-    cp -a "$tmp/build" "$tmp/whole" || exit 1
-    # A check that fails anyway would tell of every row. All of --full would take eight minutes of kernels that are not
-    # optimised: the other lanes, and one scene by the other methods, stand for it here; test_validate runs it with
-    # kernels that are. One share looks at this; the others at the pixels of one scene, and go by that share.
+}
+
+# A check that fails anyway would tell of every row. All of --full would take eight minutes of kernels that are not
+# optimised: the other lanes, and one scene by the other methods, stand for it here; test_validate runs it with
+# kernels that are.
+validate_whole() {
     local status=0
     level=(--full)
-    if [ "${share%/*}" = 1 ]; then
-        drawer=(--draw cl) group=pictures
-        validate --method strip || status=$?
-        drawer=() group=turns
-        [ "$status" != 0 ] || validate --method kite || status=$?
-        [ "$status" != 0 ] || validate --method fan || status=$?
-        level=() group=
-        [ "$status" != 0 ] || validate --method strip || status=$?
-    else
-        level=() group='random walks: pixels'
-        validate --method strip || status=$?
-    fi
-    level=(--full)
+    drawer=(--draw cl) group=pictures
+    validate --method strip || status=$?
+    drawer=() group=turns
+    [ "$status" != 0 ] || validate --method kite || status=$?
+    [ "$status" != 0 ] || validate --method fan || status=$?
+    level=() group=
+    [ "$status" != 0 ] || validate --method strip || status=$?
     case $status in
     0) echo "passes: the sources as they are, $(sed -n 's/^1\.\.//p' "$tmp/tap") checks" ;;
     69) echo "skipped: $(cat "$tmp/stderr")"; exit 77 ;;
@@ -177,8 +193,20 @@ build_whole() {
         exit 77
     fi
     if grep -q ': pixels, on .*EGL$' "$tmp/tap"; then backend=egl; else backend=osmesa; fi
+    echo "$backend" >"$work/backend"
 }
-[ -n "$texts_alone" ] || build_whole
+
+case $verb in
+--texts) ;;
+--run) backend=$(cat "$work/backend") || { echo "skipped: no build that passes in $work"; exit 77; } ;;
+*)
+    rm -f "$work/backend"
+    build_whole
+    validate_whole
+    [ "$verb" != --build ] || exit 0
+    ;;
+esac
+level=(--full)
 
 # ---- Kernels: the twin tells ----
 
@@ -405,5 +433,8 @@ group='at 40 degrees'
 mutant strip kernels/edge.h "a pitch: cells at a side that are left out" 'in_left > -past_left - left' 'in_left > left'
 drawer=()
 
-echo "$caught ${texts_alone:+rows stand, none }caught, $failures failures"
+case $verb in
+--texts) echo "$caught rows stand, $failures failures" ;;
+*) echo "$caught caught, $failures failures" ;;
+esac
 [ "$failures" = 0 ]

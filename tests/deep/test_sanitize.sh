@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
-# The tests under AddressSanitizer and UBSan: test_sanitize.sh build SOURCE FOLDER [CMAKE ARGS...], then run FOLDER K/N:
-# every N-th test, from the K-th on, or run FOLDER soak_serve: that one, which takes its time however fast it is.
+# The tests under AddressSanitizer and UBSan:
+#   test_sanitize.sh build SOURCE FOLDER [CMAKE ARGS...]
+#   test_sanitize.sh run FOLDER K/N          every N-th test, from the K-th on
+#   test_sanitize.sh run FOLDER soak_serve   that one, which takes its time however fast it is
+#   test_sanitize.sh run FOLDER changed      those that the regular expression CAMBER_SANITIZED matches
 set -eu
 verb=$1
 shift
@@ -23,8 +26,10 @@ run)
     folder=$1/share-${2%/*}
     mkdir -p "$folder"
     echo 'subdirs("..")' >"$folder/CTestTestfile.cmake"
+    usual=(-LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|python|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside)|soak_serve)$')
     case $2 in
-    */*) chosen=(-I "${2%/*},,${2#*/}" -LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|python|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside)|soak_serve)$') ;;
+    changed) chosen=(-R "$CAMBER_SANITIZED" "${usual[@]}") ;;
+    */*) chosen=(-I "${2%/*},,${2#*/}" "${usual[@]}") ;;
     *) chosen=(-R "^$2\$" --no-tests=error) ;;
     esac
     ctest --test-dir "$folder" --output-on-failure "${chosen[@]}"

@@ -205,10 +205,11 @@ def check_guards(tree):
 class Layers:
     """The folders of src and which may use which: those that they link, and what these link in turn.
 
-    above: layers over the libraries, which call public functions too. others: folders that CMake adds to a library."""
+    above: layers over the libraries, which call public functions too, and which libraries those are. others: folders
+    that CMake adds to a library."""
 
-    def __init__(self, links, lines, above=(), others=()):
-        self.links, self.lines, self.above, self.others = links, lines, above, others
+    def __init__(self, links, lines, above=None, others=()):
+        self.links, self.lines, self.above, self.others = links, lines, above or {}, others
         self.below = {name: self._reach(name) for name in links}
 
     def _reach(self, name):
@@ -226,7 +227,7 @@ class Layers:
 
 def read_layers(root):
     """The calls camber_layer(FOLDER ... LINKS FOLDER...) of src/CMakeLists.txt."""
-    links, lines, above = {}, {}, set()
+    links, lines, above = {}, {}, {}
     path = os.path.join(root, "src/CMakeLists.txt")
     if not os.path.isfile(path):
         return Layers(links, lines)
@@ -240,8 +241,11 @@ def read_layers(root):
         end = next((i for i, word in enumerate(named) if re.fullmatch(r"[A-Z_]+", word)), len(named))
         links[words[0]] = [word for word in named[:end] if os.path.isdir(os.path.join(root, "src", word))]
         lines[words[0]] = text.count("\n", 0, match.start()) + 1
-        if "USES" in words and {"camber", "${map_library}"} & set(words[words.index("USES"):]):
-            above.add(words[0])
+        used = set(words[words.index("USES"):]) if "USES" in words else set()
+        if "${map_library}" in used:
+            above[words[0]] = {"camber", "camber-map"}
+        elif "camber" in used:
+            above[words[0]] = {"camber"}
     others = set(re.findall(r"\btarget_sources\s*\(\w+\s+PRIVATE\s+(\w+)/", text))
     return Layers(links, lines, above, others)
 

@@ -1,19 +1,30 @@
 #!/usr/bin/env bash
 # The documents' recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
 #
-#   recipes.sh [DEBIAN...]      bookworm and trixie where none is named; RECIPES="build ci" chooses from build, core, ci, demo
-#   RECIPES=packages recipes.sh [DEBIAN...]   the packages that ./dev package makes, in a fresh system: installed, the
-#                               documents' first examples run, all removed. They are made here for this Debian, which is
-#                               taken where none is named, and in a fresh system for another
+#   recipes.sh RECIPE [SYSTEM...]     in each system, bookworm and trixie unless others are named. RECIPE is
+#       build, core, ci, demo    a recipe of the documents
+#       newcomer                 the README's first commands, ./dev demo and all of ./dev test, by a user with sudo
+#       packages                 the packages that ./dev package makes: installed, the documents' first examples run, all
+#                                removed. They are made here for this Debian, which is taken if none is named, and in
+#                                a fresh system for another
 #
 # A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions,
-# whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with
-# 77 where one is not to be had. Fresh systems and packages are kept in CAMBER_CHROOTS (/var/cache/camber-chroots) for the next time.
-# All mounts lie in a namespace of their own: they go with it, however this ends.
+# whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and the system's mirror; ends with
+# 77 if one is not to be had. CAMBER_CHROOTS (/var/cache/camber-chroots) keeps fresh systems, their packages and what
+# PoCL compiles in them for the next time; objects are ccache's, in the cache of this system.
+# All mounts are in a namespace of their own: they go with it, however this ends.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 kept=${CAMBER_CHROOTS:-/var/cache/camber-chroots}
-mirror=http://deb.debian.org/debian
+objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache}
+
+# The archive of a system, where it is not debootstrap's own choice.
+mirror_of() { # SYSTEM
+    case $1 in
+    noble) echo http://archive.ubuntu.com/ubuntu ;;
+    *) echo http://deb.debian.org/debian ;;
+    esac
+}
 
 skip() { echo "skipped: $*"; exit 77; }
 
@@ -29,9 +40,11 @@ mount_root() {
     mount -t sysfs none "$root/sys"
     mount --bind /dev "$root/dev"
     mount --bind "$kept/$1.debs" "$root/var/cache/apt/archives"
+    mkdir -p "$root/kept/objects" "$root/kept/pocl" "$kept/$1.pocl" "$objects"
+    chmod 777 "$kept/$1.pocl"
+    mount --bind "$objects" "$root/kept/objects"
+    mount --bind "$kept/$1.pocl" "$root/kept/pocl"
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
-    printf '#!/bin/sh\nexec "$@"\n' >"$root/usr/local/bin/sudo" # who asks is root
-    chmod +x "$root/usr/local/bin/sudo"
     echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fresh" # nothing of it outlives this run
 }
 
@@ -42,13 +55,23 @@ in_root() {
     [ ! -d "$2/../checkout" ] || mount --bind "$2/../checkout" "$2/root/checkout"
     cp "$3" "$2/root/script.sh"
     chroot "$2/root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-        DEBIAN_FRONTEND=noninteractive CAMBER_URL=/checkout bash -c 'cd /root/here && exec bash -eux /script.sh'
+        DEBIAN_FRONTEND=noninteractive CAMBER_URL=/checkout CMAKE_C_COMPILER_LAUNCHER=ccache CCACHE_DIR=/kept/objects \
+        CCACHE_UMASK=000 CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=/root/here POCL_CACHE_DIR=/kept/pocl \
+        bash -c 'cd /root/here && exec bash -eux /script.sh'
 }
 
 # make_base DEBIAN
 make_base() {
     rm -rf --one-file-system "${kept:?}/$1.part"
-    debootstrap --variant=minbase "$1" "$kept/$1.part" "$mirror" && mv "$kept/$1.part" "$kept/$1"
+    local mirror components=main script=
+    mirror=$(mirror_of "$1")
+    if [ "$1" = noble ]; then
+        components=main,universe
+        [ -e /usr/share/debootstrap/scripts/noble ] || script=/usr/share/debootstrap/scripts/gutsy # older than the system
+    fi
+    rm -rf --one-file-system "${kept:?}/$1"
+    debootstrap --variant=minbase --include=ccache,sudo --components="$components" "$1" "$kept/$1.part" "$mirror" $script &&
+        mv "$kept/$1.part" "$kept/$1"
 }
 
 if [ "${1:-}" = inside ]; then
@@ -86,8 +109,9 @@ steps() {
          END                               { flush() }'
 }
 
-# A recipe as a script, with the checks that follow it.
-script_of() { # NAME
+# A recipe as a script, with the checks that follow it. The newcomer to Debian 12 has clang and Chromium, the others have
+# what ./dev installs.
+script_of() { # NAME SYSTEM
     case $1 in
     build)
         block build
@@ -105,6 +129,23 @@ echo '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties
 ROADS
         block ci | steps
         echo 'test -s camber.xml && test -s roads.xml'
+        ;;
+    newcomer)
+        echo 'useradd -m newcomer && echo "newcomer ALL=(ALL) NOPASSWD: ALL" >/etc/sudoers.d/newcomer'
+        echo 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates'
+        [ "$2" != bookworm ] || echo 'apt-get install -y -qq --no-install-recommends clang chromium'
+        echo 'git config --system safe.directory "*"' # the clone is of another user's folder
+        cat <<'CLONE'
+[ -w /kept/objects ] && sudo -u newcomer test -w /kept/objects || export CCACHE_READONLY=1 CCACHE_TEMPDIR=/tmp
+cat >/home/newcomer/as-told <<'TOLD'
+git clone -q /checkout camber && cd camber
+CLONE
+        [ "$2" != bookworm ] || echo 'export CC=clang CXX=clang++'
+        block demo
+        echo 'git status --porcelain | tee /tmp/left && test ! -s /tmp/left'
+        echo TOLD
+        echo 'export CCACHE_BASEDIR=/home/newcomer'
+        echo 'sudo -u newcomer --preserve-env=CMAKE_C_COMPILER_LAUNCHER,CCACHE_DIR,CCACHE_UMASK,CCACHE_NOHASHDIR,CCACHE_BASEDIR,CCACHE_READONLY,CCACHE_TEMPDIR,POCL_CACHE_DIR bash -c "cd && exec bash -eux as-told"'
         ;;
     demo)
         echo 'cp -a /checkout camber && cd camber'
@@ -186,37 +227,40 @@ git -C "$run/checkout" add -A
 git -C "$run/checkout" -c user.name=camber -c user.email=camber@example.org commit -qm "as it is now"
 chown -R root: "$run/checkout"
 
-if [ "${RECIPES:-}" = packages ]; then
+recipe=${1:?recipes.sh RECIPE [SYSTEM...]}
+shift
+if [ "$recipe" = packages ]; then
     here=$(. /etc/os-release && [ "$ID" = debian ] && echo "$VERSION_CODENAME") || here=
     [ $# -gt 0 ] || set -- ${here:+"$here"}
     [ $# -gt 0 ] || skip "the packages: this is no Debian, and none is named"
 fi
 [ $# -gt 0 ] || set -- bookworm trixie
 failures=0
-for debian; do
-    if [ ! -d "$kept/$debian" ]; then
+for system; do
+    if [ ! -x "$kept/$system/usr/bin/ccache" ]; then
         begun=$SECONDS
-        inside make_base "$debian" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: debootstrap of $debian failed"; }
-        echo "$debian: a fresh system, $((SECONDS - begun)) s"
+        inside make_base "$system" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: debootstrap of $system failed"; }
+        echo "$system: a fresh system, $((SECONDS - begun)) s"
     fi
     echo 'apt-get -qq update -o APT::Update::Error-Mode=any' >"$run/update"
-    inside in_root "$debian" "$run/$debian.update" "$run/update" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: no $mirror"; }
-    for recipe in ${RECIPES:-build core ci demo}; do
-        begun=$SECONDS
-        if [ "$recipe" = packages ] && ! build_packages "$debian"; then
-            echo "FAILED: $debian: the packages do not build"
-            failures=$((failures + 1))
-            continue
-        fi
-        script_of "$recipe" >"$run/$recipe"
-        if { [ "$recipe" = packages ] || [ "$(block "$recipe" | wc -l)" != 0 ]; } && inside in_root "$debian" "$run/$debian.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
-            echo "$debian: $recipe: works, $((SECONDS - begun)) s"
-        else
-            failures=$((failures + 1))
-            tail -n 40 "$run/log"
-            echo "FAILED: $debian: $recipe, after $((SECONDS - begun)) s"
-        fi
-        rm -rf --one-file-system "$run/$debian.$recipe"
-    done
+    inside in_root "$system" "$run/$system.update" "$run/update" >"$run/log" 2>&1 ||
+        { tail -n 3 "$run/log"; skip "the documents' recipes: no $(mirror_of "$system")"; }
+    begun=$SECONDS
+    if [ "$recipe" = packages ] && ! build_packages "$system"; then
+        echo "FAILED: $system: the packages do not build"
+        failures=$((failures + 1))
+        continue
+    fi
+    script_of "$recipe" "$system" >"$run/$recipe"
+    if { [[ $recipe = @(packages|newcomer) ]] || [ "$(block "$recipe" | wc -l)" != 0 ]; } &&
+        inside in_root "$system" "$run/$system.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
+        grep -E '^[0-9]+% tests passed|^skipped, and why|^  test_.*: ' "$run/log" || true
+        echo "$system: $recipe: works, $((SECONDS - begun)) s"
+    else
+        failures=$((failures + 1))
+        tail -n 60 "$run/log"
+        echo "FAILED: $system: $recipe, after $((SECONDS - begun)) s"
+    fi
+    rm -rf --one-file-system "$run/$system.$recipe"
 done
 [ $failures = 0 ]

@@ -1,0 +1,373 @@
+#!/usr/bin/env python3
+"""Chooses the tests and the lint of a change: what `./dev test --change` runs, and what waits.
+
+    tiers.py ROOT BUILD       the change of ROOT since its base; prints assignments for a shell, and a report on stderr
+
+BUILD is a configured build folder; its tests/manifest.txt has a line a test (tests/environment.cmake writes it).
+
+A test covers the layers that its labels name and those below them, by the arrows of camber_layer() in
+src/CMakeLists.txt. A change runs
+  - the tests of ./dev test whose layers it reaches;
+  - mutants of the files that changed, and the tests under the sanitizers and the deep ones that name a changed layer;
+  - of all the others one share of seven, which the number of the commit picks, so that each runs within seven commits.
+A commit of documents alone does not count and has no share: it cannot break what others test.
+
+The base is CAMBER_BASE; without it the newest commit that passed here (./dev notes it), or one that is a day older.
+"""
+
+import collections
+import os
+import re
+import shlex
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "lint"))
+import lint_tree  # noqa: E402
+
+SHARES = 7
+EVERYDAY = ("tree", "unit", "device", "picture", "tool")  # the labels of ./dev test
+SANITIZED = ("unit", "device", "picture", "tool", "faults")
+DOCUMENTS = re.compile(r"(docs/.*|[^/]*\.md|LICENSE|src/camber\.3)$")
+BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cmake|\.in)|tests/data/.*|"
+                   r"tests/(CMakeLists\.txt|environment\.cmake|fuzz/CMakeLists\.txt))$")
+LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
+MODULES = {"camber-map": ("gdal", "load")}  # loaded when they are needed: no arrow leads there
+DEFAULT_COST = 5.0
+
+Test = collections.namedtuple("Test", "name cost fixture is_setup labels")
+
+
+def read_manifest(path):
+    with open(path, encoding="utf-8") as file:
+        rows = [line.split() for line in file]
+    return [Test(name, DEFAULT_COST if cost == "-" else float(cost), None if fixture == "-" else fixture,
+                 role == "setup", labels.split(",")) for name, cost, fixture, role, labels in rows]
+
+
+# ---- Layers and folders ----
+
+
+class Arrows:
+    """Which layers a label covers, and which of them a file belongs to."""
+
+    def __init__(self, root):
+        self.root, self.layers = root, lint_tree.read_layers(root)
+        with open(os.path.join(root, "src/CMakeLists.txt"), encoding="utf-8") as file:
+            text = file.read()
+        self.libraries = {name: set(layers.split()) for name, layers in
+                          re.findall(r"camber_library\((\S+) HEADER [^)]*?LAYERS ([a-z ]+?)\s+LINK", text)}
+        for name, modules in MODULES.items():
+            self.libraries.setdefault(name, set()).update(modules)
+        self.kernel_users = self._find_kernel_users()
+
+    def covered(self, label):
+        """A layer with all below it, or a library with all its layers; any other label covers itself."""
+        found, waiting = set(), [label]
+        while waiting:
+            name = waiting.pop()
+            if name in found:
+                continue
+            found.add(name)
+            waiting += self.libraries.get(name, ())
+            waiting += self.layers.below.get(name, ())
+            waiting += self.layers.above.get(name, ())
+        return found
+
+    def _includes(self, folder):
+        """The headers of kernels/ that the files of a folder include."""
+        found = set()
+        for top, _, names in os.walk(os.path.join(self.root, folder)):
+            for name in names:
+                if name.endswith((".c", ".h", ".cl", ".inl", ".vert", ".frag", ".glsl")):
+                    with open(os.path.join(top, name), encoding="utf-8", errors="replace") as file:
+                        found.update(re.findall(r'#\s*include\s+"(?:kernels/)?([\w.]+)"', file.read()))
+        return found
+
+    def _find_kernel_users(self):
+        """The files of kernels/ that each layer compiles: those that it includes, and what these include in turn."""
+        folder = os.path.join(self.root, "kernels")
+        kernels = {}
+        for name in os.listdir(folder) if os.path.isdir(folder) else ():
+            with open(os.path.join(folder, name), encoding="utf-8", errors="replace") as file:
+                kernels[name] = set(re.findall(r'#\s*include\s+"(?:kernels/)?([\w.]+)"', file.read()))
+        users = {layer: self._includes("src/" + layer) for layer in self.layers.links}
+        users.setdefault("cl", set()).update(kernels)  # embeds the programs
+        users.setdefault("gl", set()).update(self._includes("shaders"))  # and the shaders
+        for included in users.values():
+            waiting = list(included)
+            while waiting:
+                more = kernels.get(waiting.pop(), set()) - included
+                included |= more
+                waiting += more
+        return users
+
+    def areas(self, path):
+        """The layers and folders that a changed file belongs to; "build": it reaches all."""
+        top, _, rest = path.partition("/")
+        folder = rest.partition("/")[0] if "/" in rest else ""
+        if DOCUMENTS.match(path):
+            return {"documents"}
+        if BUILD.match(path):
+            return {"build"}
+        if top == "src" and folder:
+            return {folder} | ({"documents"} if path.endswith(".1") else set())
+        if top == "src":
+            return {"camber-map" if re.match(r"camber_(map|tiles)\.h", rest) else "camber", "packaging"}
+        if top == "kernels":
+            return {"kernels"} | {layer for layer, files in self.kernel_users.items() if rest in files}
+        if top == "shaders":
+            return {"shaders", "gl"}
+        if top == "examples":
+            return {"examples-" + folder if folder else "examples"}
+        if path in ("setup.py", "pyproject.toml", "MANIFEST.in"):
+            return {"python", "packaging"}
+        return {top} if top in ("python", "packaging", "bench") else set()
+
+
+def bare(name):
+    """The name without what all have; replay_NAME is made of fuzz_NAME.c."""
+    return re.sub(r"^replay_", "fuzz_", re.sub(r"^test_", "", name))
+
+
+def stem_of(path):
+    """What the tests are named after that a file of tests/ belongs to."""
+    parts = path.split("/")
+    if len(parts) > 3 and parts[2] in ("corpus", "regressions"):
+        return "fuzz_" + parts[3]
+    return "golden" if parts[1] == "golden" else os.path.splitext(parts[-1])[0]
+
+
+class Mentions:
+    """Which tests a file of tests/ belongs to: those that are named after it, or after a file that mentions it."""
+
+    def __init__(self, root):
+        self.texts = {}
+        for top, folders, names in os.walk(os.path.join(root, "tests")):
+            folders[:] = [name for name in folders if name not in ("corpus", "regressions", "data", "golden")]
+            for name in names:
+                if name.endswith((".c", ".h", ".py", ".sh", ".mjs")):
+                    with open(os.path.join(top, name), encoding="utf-8", errors="replace") as file:
+                        self.texts[os.path.splitext(name)[0]] = set(re.findall(r"\w+", file.read()))
+
+    def stems(self, path):
+        """The stems of a file and of all that mention it, by way of others too."""
+        found, waiting = set(), [stem_of(path)]
+        while waiting:
+            one = waiting.pop()
+            found.add(one)
+            waiting += [other for other, words in self.texts.items() if one in words and other not in found]
+        return found
+
+
+def is_named_after(test, stems):
+    return any(bare(test) == bare(stem) or bare(test).startswith(bare(stem) + "_") for stem in stems)
+
+
+# ---- Shares ----
+
+
+def is_pinned(test):
+    """Whether it is a share itself: NAME_K is part of share K."""
+    return test.fixture and re.search(r"_[1-7]$", test.name)
+
+
+def assign_shares(tests):
+    """Name -> share, 0 to SHARES - 1, of like cost; tests that one build serves stay together. What a change alone runs,
+    what only the sanitizers run, and builds have none."""
+    shares, groups = {}, collections.defaultdict(list)
+    for test in tests:
+        if test.is_setup or test.name.endswith("_changed") or "instrumented" in test.labels:
+            continue
+        if is_pinned(test):
+            shares[test.name] = int(test.name[-1]) % SHARES
+        else:
+            groups[test.fixture or test.name].append(test)
+    built = {test.name.removesuffix("_build"): test.cost for test in tests if test.is_setup}
+    costs = {key: sum(test.cost for test in group) + built.get(key, 0) for key, group in groups.items()}
+    loads = [0.0] * SHARES
+    for key in sorted(groups, key=lambda key: (-costs[key], key)):
+        share = loads.index(min(loads))
+        loads[share] += costs[key]
+        shares.update((test.name, share) for test in groups[key])
+    return shares
+
+
+# ---- Choosing ----
+
+Choice = collections.namedtuple("Choice", "areas reached share waiting sanitized lint")
+
+
+def mutated_files(root):
+    path = os.path.join(root, "tests/deep/test_mutations.sh")
+    if not os.path.isfile(path):
+        return set()
+    with open(path, encoding="utf-8") as file:
+        return set(re.findall(r"^mutant \w+ (\S+) ", file.read(), re.M))
+
+
+def choose(root, tests, changed, number, recipes=()):
+    """The tests of a change: changed files, the commit's number, the recipes whose words changed. number None: no share."""
+    arrows, mentions = Arrows(root), Mentions(root)
+    areas = set().union(*map(arrows.areas, changed))
+    of_tests = [path for path in changed if path.startswith("tests/")]
+    own = set(map(stem_of, of_tests))
+    stems = set().union(*map(mentions.stems, of_tests))
+    shares, reached, sanitized = assign_shares(tests), set(), []
+    for test in tests:
+        label, named = test.labels[0], set(test.labels[1:])
+        direct = bool((named - set(arrows.libraries)) & areas) or is_named_after(test.name, own)
+        if label in SANITIZED and direct and not test.is_setup:
+            sanitized.append(test.name)
+        if test.name not in shares:
+            continue
+        if label in EVERYDAY:
+            covered = set().union(*map(arrows.covered, named))
+            is_reached = (label == "tree" or "build" in areas or covered & areas or is_named_after(test.name, stems) or
+                          label == "tool" and "cli" in areas)
+        elif label == "recipes":
+            is_reached = "packaging" in named & areas or named & {"recipe-" + name for name in recipes}
+        else:
+            is_reached = direct and not is_pinned(test)
+        if is_reached:
+            reached.add(test.name)
+    if any(path in mutated_files(root) for path in changed):
+        reached.add("mutations_changed")
+    if sanitized:
+        reached.add("sanitize_changed")
+    waiting, share = collections.defaultdict(list), set()
+    for name in sorted(set(shares) - reached):
+        commits = None if number is None else (shares[name] - number) % SHARES
+        if commits == 0:
+            share.add(name)
+        else:
+            waiting[commits].append(name)
+    return Choice(areas, reached, share, waiting, sanitized, lint_targets(root, changed))
+
+
+def lint_targets(root, changed):
+    """A regular expression of the targets of lint.cmake that a change reaches: files that changed, and what includes them."""
+    if any(LINT.match(path) for path in changed):
+        return "lint/.*"
+    including = collections.defaultdict(set)
+    for folder in ("src", "bench", "kernels"):
+        for top, _, names in os.walk(os.path.join(root, folder)):
+            for name in names:
+                if name.endswith((".c", ".h", ".inl", ".cl")):
+                    path = os.path.relpath(os.path.join(top, name), root)
+                    with open(os.path.join(root, path), encoding="utf-8", errors="replace") as file:
+                        for included in re.findall(r'#\s*include\s+"([^"]+)"', file.read()):
+                            including[included].add(path)
+    found, waiting = set(), list(changed)
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting += including[path] | including[path.removeprefix("src/")] | (
+                including[os.path.basename(path)] if path.startswith(("kernels/", "bench/")) else set())
+    targets = ["tree", "format"]
+    targets += ["tidy_" + re.escape(path.replace("/", "_")) for path in sorted(found)
+                if path.startswith(("src/", "bench/")) and path.endswith(".c")]
+    if any(path.startswith("kernels/") for path in changed):
+        targets.append("kernel_.*")
+    if any(path.startswith(("src/camber", "kernels/")) for path in changed):
+        targets.append("c(xx)?_.*")
+    return "lint/(%s)" % "|".join(targets)
+
+
+# ---- The change ----
+
+
+def git(root, *arguments):
+    return subprocess.run(["git", "-C", root, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def tested_commits():
+    folder = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    try:
+        with open(os.path.join(folder, "camber-tested"), encoding="utf-8") as file:
+            return set(file.read().split())
+    except OSError:
+        return set()
+
+
+def find_base(root):
+    """(commit or None: all of it is new, why)"""
+    if os.environ.get("CAMBER_BASE"):
+        return git(root, "rev-parse", "--verify", os.environ["CAMBER_BASE"] + "^{commit}").strip(), "CAMBER_BASE"
+    tested = tested_commits()
+    for commit in git(root, "rev-list", "HEAD").split():
+        if commit in tested:
+            return commit, "the newest commit that passed here"
+    newest = int(git(root, "log", "-1", "--format=%ct"))
+    before = git(root, "rev-list", "-1", "--before=%d" % (newest - 24 * 3600), "HEAD").strip()
+    return before or None, "the newest commit that is a day older"
+
+
+def recipe_blocks(text):
+    """Name -> words of the recipes of a document, as tests/recipes/recipes.sh takes them."""
+    parts = re.split(r"^<!-- recipe: (\S+) -->\n", text, flags=re.M)
+    return {name: re.match(r"(?s:```.*?\n```)|(?:    .*\n)+|", body).group() for name, body in zip(parts[1::2], parts[2::2])}
+
+
+def changed_recipes(root, base, changed):
+    names = set()
+    for path in changed:
+        if path.endswith(".md"):
+            old = subprocess.run(["git", "-C", root, "show", "%s:%s" % (base, path)], capture_output=True, text=True).stdout
+            new = ""
+            if os.path.isfile(os.path.join(root, path)):
+                with open(os.path.join(root, path), encoding="utf-8") as file:
+                    new = file.read()
+            before, now = recipe_blocks(old), recipe_blocks(new)
+            names |= {name for name in before.keys() | now.keys() if before.get(name) != now.get(name)}
+    return names
+
+
+def find_change(root):
+    """(changed files, number of the commit or None, recipes that changed, a line about it)"""
+    base, why = find_base(root)
+    uncommitted = set(git(root, "diff", "--name-only", "HEAD").split("\n") +
+                      git(root, "ls-files", "--others", "--exclude-standard").split("\n")) - {""}
+    changed = set(git(root, "ls-files").split("\n") if base is None else
+                  git(root, "diff", "--name-only", base).split("\n")) - {""} | uncommitted
+    number = None
+    if not changed or not all(DOCUMENTS.match(path) for path in changed):
+        number = int(git(root, "rev-list", "--count", "HEAD", "--", ".", ":(exclude)docs", ":(exclude,glob)*.md"))
+        number += any(not DOCUMENTS.match(path) for path in uncommitted)
+    line = "%d files changed since %s, %s" % (len(changed), base[:7] if base else "the beginning", why)
+    return sorted(changed), number, changed_recipes(root, base or "HEAD", changed), line
+
+
+def report(choice, number, line):
+    lines = [line + (": " + ", ".join(sorted(choice.areas)) if choice.areas else "")]
+    lines.append("runs what the change reaches: %d tests" % len(choice.reached))
+    if number is None:
+        lines.append("runs no share of the others: documents alone have changed; %d wait" % sum(map(len, choice.waiting.values())))
+        return lines
+    lines.append("runs share %d of %d of the others, for commit %d: %s" %
+                 (number % SHARES or SHARES, SHARES, number, " ".join(sorted(choice.share)) or "nothing"))
+    for commits in sorted(choice.waiting):
+        lines.append("waits for %d commit%s: %s" % (commits, "s" * (commits > 1), " ".join(choice.waiting[commits])))
+    return lines
+
+
+def expression(names):
+    return "^(%s)$" % "|".join(map(re.escape, sorted(names)))
+
+
+def main():
+    root, build = sys.argv[1:3]
+    tests = read_manifest(os.path.join(build, "tests/manifest.txt"))
+    changed, number, recipes, line = find_change(root)
+    choice = choose(root, tests, changed, number, recipes)
+    print("\n".join(report(choice, number, line)), file=sys.stderr)
+    for name, value in (("chosen_tests", expression(choice.reached | choice.share)), ("chosen_lint", choice.lint),
+                        ("CAMBER_CHANGED", "\n".join(changed)), ("CAMBER_SANITIZED", expression(choice.sanitized))):
+        print("%s=%s" % (name, shlex.quote(value)))
+
+
+if __name__ == "__main__":
+    main()

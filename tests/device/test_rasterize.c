@@ -64,11 +64,39 @@ static camber_mesh *make_mesh(const fixture *e, camber_renderer *renderer, const
 
 static const double PITCHES[] = {1, 30, 60, 85};
 
+/* A device, and the mesh of a scene on it. */
+typedef struct subject {
+    const fixture *on;
+    camber_mesh *mesh;
+} subject;
+
+/* The stages of a picture as the twin has them, or those of a device that has been compared with the twin: the same to
+ * the last bit. Gives the picture. */
+static uint8_t *compare_stages(subject a, const subject *compared, const camber_raster_scene *drawn,
+                               camber_raster_area area) {
+    if (!compared)
+        return raster_draw_twice(a.on, drawn, area);
+    camber_raster_input inputs[8];
+    camber_raster_scene there = *drawn;
+    memcpy(inputs, drawn->inputs, drawn->input_count * sizeof *inputs);
+    for (size_t i = 0; i < drawn->input_count; i++)
+        if (inputs[i].mesh)
+            inputs[i].mesh = compared->mesh;
+    there.inputs = inputs;
+    camber_raster_stages ours = raster_draw(a.on, drawn, area), theirs = raster_draw(compared->on, &there, area);
+    raster_compare(&ours, &theirs);
+    assert_memory_equal(ours.rgba, theirs.rgba, 4 * (size_t)area.width * area.height);
+    camber_free(a.on->context, raster_take_picture(a.on, &theirs));
+    return raster_take_picture(a.on, &ours);
+}
+
 /* A scene of the stages alone: one table, a brush a row, with layers and a group among them, and a fill. The rich
- * variant makes the same of what is plain. Each picture is tilted by every other pitch: under a pitch the twin is slow.
- */
-static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *mesh, bool linear, size_t first_pitch,
-                              camber_raster_area area) {
+ * variant makes the same of what is plain. By each method the picture is tilted by every other pitch: under a pitch the
+ * twin is slow. */
+static void compare_scene(const drawing *d, subject a, const subject *compared, int which, int method) {
+    const bool linear = which % 2;
+    const camber_raster_area area = {32 * (uint32_t)method, 64, 500, 333};
+    camber_mesh *mesh = a.mesh;
     static const camber_brush_ext nothing[2 * CAMBER_KERNEL_ROWS + 1];
     const uint32_t fill = 2 * CAMBER_KERNEL_ROWS;
     float rows[2 * CAMBER_KERNEL_ROWS + 1][CAMBER_RASTER_ROW_WORDS] = {{0}};
@@ -94,21 +122,23 @@ static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *m
     const camber_raster_input runs[] = {
         {mesh, 0, count, 0}, {NULL, 0, 0, fill}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
     camber_raster_scene drawn = {rows[0], fill + 1, brushes, fill + 1, runs, 3, {0.2f, 0.3f, 0.4f, 1}, linear};
-    uint8_t *plain = raster_draw_twice(e, &drawn, area);
+    uint8_t *plain = compare_stages(a, compared, &drawn, area);
     drawn.brush_ext = nothing;
-    uint8_t *rich = raster_draw_twice(e, &drawn, area);
+    camber_raster_stages stages = raster_draw(a.on, &drawn, area);
+    uint8_t *rich = raster_take_picture(a.on, &stages);
     assert_memory_equal(plain, rich, 4 * (size_t)area.width * area.height);
-    camber_free(e->context, rich);
-    camber_free(e->context, plain);
-    for (size_t i = first_pitch; i < sizeof PITCHES / sizeof *PITCHES; i += 2) {
+    camber_free(a.on->context, rich);
+    camber_free(a.on->context, plain);
+    for (size_t i = (size_t)method % 2; i < sizeof PITCHES / sizeof *PITCHES; i += 2) {
         raster_tilt(&drawn, PITCHES[i], SIDE_PX, SIDE_PX);
-        camber_free(e->context, raster_draw_twice(e, &drawn, area));
+        camber_free(a.on->context, compare_stages(a, compared, &drawn, area));
     }
 }
 
+static const camber_method METHODS[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
+
 static void test_twin(void **state) {
     const fixture *e = *state;
-    static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
     for (int which = 0; which < SCENES; which++)
         for (int m = 0; m < 3; m++) {
             if (IS_SANITIZED && m != which % 3)
@@ -116,9 +146,8 @@ static void test_twin(void **state) {
             drawing d = begin_drawing();
             fill_scene(&d.lines, which);
             d.has_arc_length = (which + m) % 2;
-            camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, methods[m]);
-            compare_with_twin(e, &d, mesh, which % 2, (size_t)m % 2,
-                              (camber_raster_area){32 * (uint32_t)m, 64, 500, 333});
+            camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, METHODS[m]);
+            compare_scene(&d, (subject){e, mesh}, NULL, which, m);
             camber_mesh_destroy(mesh);
             camber_made_scene_free(&d.lines);
         }
@@ -387,7 +416,8 @@ static void test_steps(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
-/* Vectors of every width, whatever the device has: the twin's bytes, and the same picture, in slices too. */
+/* Vectors of every width, whatever the device has: the bytes of the device's own width, which test_twin compares with
+ * the twin's, and the same picture, in slices too. */
 static void compare_lanes(const fixture *e, uint32_t lanes) {
     fixture other = {.context = e->context};
     const camber_device_desc desc = {.lanes = lanes}, small = {.lanes = lanes, .largest_buffer_bytes = 300 * 1024};
@@ -396,12 +426,16 @@ static void compare_lanes(const fixture *e, uint32_t lanes) {
     assert_int_equal(camber_renderer_create(other.on.device, NULL, NULL, &other.on.renderer[CAMBER_FIXTURE_OPENCL]),
                      CAMBER_OK);
     for (int which = 0; which < SCENES; which++) {
+        const int m = which % 3;
         drawing d = begin_drawing();
         fill_scene(&d.lines, which);
-        camber_mesh *mesh = make_mesh(&other, other.on.renderer[CAMBER_FIXTURE_OPENCL], &d, (camber_method)(which % 3));
-        compare_with_twin(&other, &d, mesh, which % 2, (size_t)which / 2 % 2,
-                          (camber_raster_area){32 * (uint32_t)which, 64, 500, 333});
+        d.has_arc_length = (which + m) % 2;
+        camber_mesh *mesh = make_mesh(&other, other.on.renderer[CAMBER_FIXTURE_OPENCL], &d, METHODS[m]),
+                    *own = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, METHODS[m]);
+        compare_scene(&d, (subject){&other, mesh}, &(subject){e, own}, which, m);
         camber_mesh_destroy(mesh);
+        camber_mesh_destroy(own);
+        d.has_arc_length = false;
         d.passes[0].overlap = which % 2 ? CAMBER_OVERLAP_ACCUMULATE : CAMBER_OVERLAP_UNITE;
         d.passes[1].opacity = 0.5f;
         d.passes[2].overlap = which < 2 ? CAMBER_OVERLAP_FLATTEN : CAMBER_OVERLAP_UNITE;

@@ -45,7 +45,7 @@ camber_status camber_contents_add_store(camber_contents *contents, int descripto
                                         uint32_t *store);
 void camber_contents_free(camber_contents *contents);
 
-enum { CAMBER_NO_CONTENT = UINT32_MAX };
+#define CAMBER_NO_CONTENT UINT32_MAX
 
 /* Finds bytes that are stored already. *index: CAMBER_NO_CONTENT where they are not. */
 camber_status camber_contents_find(camber_contents *contents, const void *bytes, size_t size_bytes, uint64_t hash,

@@ -22,7 +22,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-enum { NOT_YET = UINT32_MAX };
+#define NOT_YET UINT32_MAX
 enum { SHARES_A_THREAD = 8 }; /* a share of wide lines takes longer than one of narrow ones */
 
 typedef struct metatile_pair {

@@ -38,13 +38,14 @@ mount_root() {
         cp -a "$base/." "$root"
     mount -t proc none "$root/proc"
     mount -t sysfs none "$root/sys"
-    mount --bind /dev "$root/dev"
+    mount --rbind /dev "$root/dev" # with its terminals
     mount --bind "$kept/$1.debs" "$root/var/cache/apt/archives"
     mkdir -p "$root/kept/objects" "$root/kept/pocl" "$kept/$1.pocl" "$objects"
     chmod 777 "$kept/$1.pocl"
     mount --bind "$objects" "$root/kept/objects"
     mount --bind "$kept/$1.pocl" "$root/kept/pocl"
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+    cp -L /etc/ssl/certs/ca-certificates.crt "$root/kept/certificates" # npm's registry is trusted as it is here
     echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fresh" # nothing of it outlives this run
 }
 
@@ -57,6 +58,7 @@ in_root() {
     chroot "$2/root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
         DEBIAN_FRONTEND=noninteractive CAMBER_URL=/checkout CMAKE_C_COMPILER_LAUNCHER=ccache CCACHE_DIR=/kept/objects \
         CCACHE_UMASK=000 CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=/root/here POCL_CACHE_DIR=/kept/pocl \
+        npm_config_cafile=/kept/certificates \
         bash -c 'cd /root/here && exec bash -eux /script.sh'
 }
 
@@ -145,7 +147,7 @@ CLONE
         echo 'git status --porcelain | tee /tmp/left && test ! -s /tmp/left'
         echo TOLD
         echo 'export CCACHE_BASEDIR=/home/newcomer'
-        echo 'sudo -u newcomer --preserve-env=CMAKE_C_COMPILER_LAUNCHER,CCACHE_DIR,CCACHE_UMASK,CCACHE_NOHASHDIR,CCACHE_BASEDIR,CCACHE_READONLY,CCACHE_TEMPDIR,POCL_CACHE_DIR bash -c "cd && exec bash -eux as-told"'
+        echo 'sudo -u newcomer --preserve-env=CMAKE_C_COMPILER_LAUNCHER,CCACHE_DIR,CCACHE_UMASK,CCACHE_NOHASHDIR,CCACHE_BASEDIR,CCACHE_READONLY,CCACHE_TEMPDIR,POCL_CACHE_DIR,npm_config_cafile bash -c "cd && exec bash -eux as-told"'
         ;;
     demo)
         echo 'cp -a /checkout camber && cd camber'

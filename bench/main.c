@@ -111,9 +111,8 @@ int main(int argc, char **argv) {
         return publish(argv + 2, argc - 2);
     if (!parse(argc, argv, &r))
         return usage();
-    /* As the tool does: a core for each of PoCL's threads, and one build of each kernel. */
+    /* As the tool does: a core for each of PoCL's threads. */
     setenv("POCL_AFFINITY", "1", 0);
-    setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
     const char *data = getenv("CAMBER_DATA");
     bench b = {.size = r.size,
                .warm_ups = r.size == BENCH_FULL ? 2 : 1,

@@ -797,8 +797,7 @@ static bool open_viewer(viewer *v) {
 
 int main(int argc, char **argv) {
     viewer v = {0};
-    /* PoCL and camber want these before the first thread (docs/drivers.md). */
-    setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
+    /* PoCL wants it before the first thread (docs/drivers.md). */
     setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0);
     if (!parse_options(argc, argv, &v.options)) {
         fprintf(stderr, "viewer FILE... [--style NAME|FILE] [--theme light|dark] [--size WxH] [--draw cl|gl] "

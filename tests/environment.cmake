@@ -7,7 +7,7 @@
 set(CAMBER_TEST_CACHE ${CMAKE_BINARY_DIR}/cache CACHE PATH "Where tests keep what they compile")
 set(CAMBER_TEST_KERNELS ${CMAKE_BINARY_DIR}/src/camber-kernels CACHE PATH "Kernels that are compiled before the tests")
 file(MAKE_DIRECTORY ${CAMBER_TEST_CACHE}/pocl)
-set(environment XDG_CACHE_HOME=${CAMBER_TEST_CACHE} POCL_CACHE_DIR=${CAMBER_TEST_CACHE}/pocl POCL_WORK_GROUP_SPECIALIZATION=0
+set(environment XDG_CACHE_HOME=${CAMBER_TEST_CACHE} POCL_CACHE_DIR=${CAMBER_TEST_CACHE}/pocl
     CAMBER_KERNELS=${CAMBER_TEST_KERNELS})
 get_property(all DIRECTORY PROPERTY TESTS)
 foreach(test IN LISTS all)

@@ -150,6 +150,8 @@ bool camber_cache_is_on(const camber_context *context);
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
 /* The same from the shared folder. */
 bool camber_cache_load_shared(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
+/* Whether there is a folder that files can be saved to. */
+bool camber_cache_can_save(const camber_context *context);
 /* Writes a temporary file and renames it, so that readers see the whole file or none. */
 bool camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes);
 

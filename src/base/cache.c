@@ -100,6 +100,11 @@ bool camber_cache_folder(const camber_context *context, char folder[PATH_SIZE]) 
     return users_folder(context, folder) && make_folders(folder, 0700);
 }
 
+bool camber_cache_can_save(const camber_context *context) {
+    char folder[PATH_SIZE];
+    return camber_cache_folder(context, folder) && access(folder, W_OK | X_OK) == 0;
+}
+
 /* ---- Files ---- */
 
 /* Reads an open regular file, if nobody but its owner can write it and the owner is root, this user or the given one.

@@ -11,10 +11,12 @@
  *          |
  *     in the cache by now?  -- no -- compile, save the binary -----> use it
  *
- * A binary's file name is a hash of everything that it depends on, and its first 8 bytes are a hash of its contents. */
+ * A binary's file name is a hash of everything that it depends on, and its first 8 bytes are a hash of its contents.
+ * With PoCL the run that compiles a program also loads what it saved (pocl.c). */
 #include "cl/program.h"
 
 #include "base/embedded.h"
+#include "cl/pocl.h"
 #include "kernels/layout.h"
 
 #include <stdio.h>
@@ -42,11 +44,14 @@ typedef struct recipe {
     char options[256];
 } recipe;
 
+/* Changes if the same program is saved in another form. */
+static const char FORM[] = "without LLVM's code";
+
 /* A hash of everything that a binary depends on. */
 static uint64_t cache_key(const camber_device_info *info, const recipe *from) {
     uint64_t key = camber_hash(CAMBER_HASH_START, from->source, from->source_size);
     const char *options = from->options;
-    const char *parts[] = {info->platform, info->name, info->version, info->driver, options};
+    const char *parts[] = {info->platform, info->name, info->version, info->driver, options, FORM};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         key = camber_hash(key, parts[i], strlen(parts[i]) + 1);
     return key;
@@ -120,14 +125,6 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
-/* A binary from PoCL contains kernels for work-groups of any size. Unless it is told otherwise, PoCL does not run
- * those: it compiles kernels anew for the size, offset and count of each launch. Then a saved binary is useless, and
- * PoCL's own cache has to do. */
-static bool is_worth_saving(const camber_device *device) {
-    const char *specialized = getenv("POCL_WORK_GROUP_SPECIALIZATION");
-    return strcmp(device->info.platform, "Portable Computing Language") != 0 || (specialized && specialized[0] == '0');
-}
-
 static camber_status build_from_source(camber_device *device, camber_program *program, const recipe *from) {
     cl_int code;
     program->cl = clCreateProgramWithSource(device->cl, 1, (const char *[]){from->source}, &from->source_size, &code);
@@ -142,11 +139,12 @@ static camber_status build_from_source(camber_device *device, camber_program *pr
     return CAMBER_OK;
 }
 
-/* Saves the binary in the cache. Returns false where it could not be saved, which is no failure. */
+/* Saves the binary in the cache. Returns false where it could not be saved, which is no failure. PoCL compiles all
+ * kernels of a program when it is asked for the binary. */
 static bool save_binary(camber_device *device, const camber_program *program) {
     size_t size = 0;
     bool saved = false;
-    if (!is_worth_saving(device))
+    if (!camber_cache_can_save(device->context))
         return false;
     if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
         return false;
@@ -155,7 +153,8 @@ static bool save_binary(camber_device *device, const camber_program *program) {
     if (!bytes)
         return false;
     unsigned char *binary = bytes + sizeof hash;
-    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
+    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS &&
+        (!camber_is_pocl(&device->info) || camber_pocl_strip(binary, &size))) {
         char name[64];
         hash = hash_binary(program->key, binary, size);
         memcpy(bytes, &hash, sizeof hash);
@@ -209,6 +208,17 @@ static bool load_alone(camber_device *device, camber_program *program, const cha
     return loaded;
 }
 
+/* Puts what was saved in the place of what was compiled: of the latter PoCL would compile each kernel once more when it
+ * is launched. */
+static bool use_saved(camber_device *device, camber_program *program, const char *options) {
+    camber_program saved = {.key = program->key};
+    if (!load_cached(device, &saved, options))
+        return false;
+    clReleaseProgram(program->cl);
+    program->cl = saved.cl;
+    return true;
+}
+
 /* Builds under the program's lock, unless another process has done so while this one waited. */
 static camber_status build_alone(camber_device *device, camber_program *program, const recipe *from) {
     static const double LONGEST_MS = 60e3;
@@ -219,6 +229,8 @@ static camber_status build_alone(camber_device *device, camber_program *program,
         camber_progress(device->context, "compiling kernels", -1);
         status = build_from_source(device, program, from);
         program->kept = status == CAMBER_OK && save_binary(device, program);
+        if (program->kept && lock >= 0 && camber_is_pocl(&device->info))
+            program->kept = use_saved(device, program, from->options);
     }
     camber_cache_unlock(lock);
     return status;

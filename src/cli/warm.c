@@ -73,9 +73,8 @@ int camber_warm(camber_session *session) {
                                   "CAMBER_KERNELS to one that can");
     if (warmed.kept < warmed.programs)
         return camber_report_fail(session->report, CAMBER_EXIT_IO,
-                                  "%s: %zu of %zu programs could not be kept; make room, and leave "
-                                  "POCL_WORK_GROUP_SPECIALIZATION alone",
-                                  warmed.folder, warmed.programs - warmed.kept, warmed.programs);
+                                  "%s: %zu of %zu programs could not be kept; make room", warmed.folder,
+                                  warmed.programs - warmed.kept, warmed.programs);
     const double ms = camber_clock_ms() - begin_ms;
     if (session->options->json)
         return camber_report_json(session->report, describe(session, &warmed, ms));

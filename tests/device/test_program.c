@@ -1,6 +1,7 @@
 /* Devices, and the kernels in the cache folder. */
 #include "core.h"
 
+#include "cl/pocl.h"
 #include "tess/mesh.h"
 
 #include <dirent.h>
@@ -291,8 +292,64 @@ static void test_unwritable_cache(void **state) {
     folder_remove(folder);
 }
 
+/* ---- Binaries of PoCL ---- */
+
+enum { CODE_BYTES = 5, BINARY_BYTES = 77 + 8 + 8 + 15 + 4 + CODE_BYTES + 3 };
+
+/* Makes a binary with CODE_BYTES of code, and "end" in place of kernels. From version 10 on it has the size of globals,
+ * which is 0. Returns the binary's size. */
+static size_t make_binary(unsigned char binary[BINARY_BYTES], unsigned char version) {
+    static const unsigned char FILE_SIZE[8] = {15 + 4 + CODE_BYTES}, NAME_SIZE[4] = {11}, CODE_SIZE[4] = {CODE_BYTES};
+    memset(binary, 0, BINARY_BYTES);
+    memcpy(binary, "poclbin", 8);
+    binary[16] = version;
+    binary[24] = version > 9 ? 2 : 0;
+    memset(binary + 36, 'P', 40);
+    unsigned char *at = binary + 77 + (version > 9 ? 8 : 0);
+    memcpy(at, FILE_SIZE, 8);
+    memcpy(at + 8, NAME_SIZE, 4);
+    memcpy(at + 12, "/program.bc", 11);
+    memcpy(at + 23, CODE_SIZE, 4);
+    memcpy(at + 27, "ABCDEend", CODE_BYTES + 3);
+    return (size_t)(at + 27 + CODE_BYTES + 3 - binary);
+}
+
+static void test_pocl_strip(void **state) {
+    (void)state;
+    unsigned char binary[BINARY_BYTES], whole[BINARY_BYTES];
+    for (unsigned char version = 8; version <= 13; version++) {
+        const size_t size = make_binary(binary, version);
+        const bool known = version >= 9 && version <= 12;
+        size_t left = size;
+        assert_int_equal(camber_pocl_strip(binary, &left), known);
+        assert_int_equal(left, known ? size - CODE_BYTES : size);
+        if (known) {
+            const unsigned char *at = binary + left - 3 - 27;
+            assert_memory_equal(at, "\x13\0\0\0\0\0\0\0\x0b\0\0\0/no-code.bc\0\0\0\0end", 30);
+            assert_memory_equal(binary + 36, "cPPP", 4);    /* a folder of its own */
+            assert_false(camber_pocl_strip(binary, &left)); /* there is no code any more */
+        }
+    }
+    /* A binary that is cut short, or has another byte in a size, a name or the version, stays as it is. */
+    const size_t size = make_binary(whole, 9);
+    for (size_t left = 0; left < size - 3; left++) {
+        size_t now = left;
+        memcpy(binary, whole, size);
+        assert_false(camber_pocl_strip(binary, &now));
+        assert_int_equal(now, left);
+        assert_memory_equal(binary, whole, size);
+    }
+    for (size_t i = 0; i < 77 + 27; i++) {
+        size_t now = size;
+        memcpy(binary, whole, size);
+        binary[i] ^= 0x80;
+        const bool counts = i < 8 || (i >= 16 && i < 20) || i >= 77;
+        assert_int_equal(camber_pocl_strip(binary, &now), !counts);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest first[] = {cmocka_unit_test(test_no_platform)};
+    const struct CMUnitTest first[] = {cmocka_unit_test(test_no_platform), cmocka_unit_test(test_pocl_strip)};
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_device_list),
         cmocka_unit_test(test_device_match),
@@ -304,7 +361,6 @@ int main(void) {
     char pocl_cache[64];
     pocl_cache_apart(pocl_cache);
     setenv("CAMBER_KERNELS", "", 1);
-    setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 1); /* or binaries are not kept */
     int failed = cmocka_run_group_tests_name("no platform", first, NULL, NULL);
     if (device_is_there())
         failed += cmocka_run_group_tests_name("program", tests, NULL, NULL);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The examples, built without a warning against the installed tree, and run; and README.md quotes the first one:
-# test_examples.sh SOURCE BUILD MAP [OUT]
+# The examples, built without a warning against the installed tree, and run: nothing is compiled for them. And README.md
+# quotes the first one: test_examples.sh SOURCE BUILD MAP [OUT]
 # The pictures that they draw stay in OUT.
 set -eu
 source=$1
@@ -9,6 +9,7 @@ map=$3
 folder=$(mktemp -d)
 out=${4:-$folder/pictures}
 mkdir -p "$out"
+unset LD_PRELOAD CAMBER_KERNELS POCL_WORK_GROUP_SPECIALIZATION # what is installed brings its kernels
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$folder"' EXIT
 # Another test installs from the same folder; its list of files is put back.
@@ -17,7 +18,6 @@ manifest=$build/install_manifest.txt
 cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
 rm -f "$manifest"
 [ ! -f "$folder/manifest" ] || mv "$folder/manifest" "$manifest"
-unset LD_PRELOAD
 
 cmake -S "$source/examples" -B "$folder/build" -G Ninja -DCMAKE_PREFIX_PATH="$folder/usr" -DCMAKE_C_FLAGS=-Werror \
     >"$folder/log" 2>&1 && cmake --build "$folder/build" >>"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
@@ -42,10 +42,36 @@ if "$folder/usr/bin/camber" info | grep -q '^device *none'; then
     echo "built, not run: no OpenCL device"
     exit 77
 fi
+
+# A first run finds all kernels installed. In its cache PoCL would have program.bc of each program that it compiles, and
+# kernels for work-groups of one size.
+mkdir "$folder/cache" "$folder/pocl"
+export XDG_CACHE_HOME=$folder/cache POCL_CACHE_DIR=$folder/pocl
+expect_none_compiled() { # WHO
+    [ -e "$build/src/camber-kernels.stamp" ] || return 0 # this build compiles none ahead
+    local compiled
+    compiled=$(find "$POCL_CACHE_DIR" -name program.bc -o -name '*.so' ! -path '*/0-0-0/*')
+    [ -z "$compiled" ] || { echo "compiled for $1:"; echo "$compiled"; exit 1; }
+}
+# The same as another user, if root runs this test.
+as_nobody() { setpriv --reuid=65534 --clear-groups "$@"; }
+run_as_nobody() {
+    mkdir "$folder/theirs" && cp "$source/tests/data/santa_cruz/osm.mbtiles" "$folder/theirs"
+    chmod 755 "$folder" && chown -R 65534 "$folder/theirs" && cd "$folder/theirs"
+    as_nobody test -x "$folder/build/hello" || { echo "skipped: another user, who cannot read $folder"; return 0; }
+    local -x XDG_CACHE_HOME=$folder/theirs/cache POCL_CACHE_DIR=$folder/theirs
+    as_nobody "$folder/build/hello"
+    expect_none_compiled "another user's hello"
+    [ "$map" != ON ] || as_nobody "$folder/build/map" osm.mbtiles
+    expect_none_compiled "another user's map"
+}
+[ "$(id -u)" != 0 ] || ! as_nobody true 2>/dev/null || run_as_nobody
 cd "$out"
 "$folder/build/hello"
+expect_none_compiled hello
 "$folder/build/validate"
 [ "$map" != ON ] || "$folder/build/map" "$source/tests/data/santa_cruz/osm.mbtiles"
+expect_none_compiled "validate and map"
 
 # A tile from the example's own server.
 ask_for_tile() {
@@ -71,4 +97,5 @@ ask_for_tile() {
 status=0
 [ ! -x "$folder/build/texture" ] || "$folder/build/texture" || status=$?
 [ "$status" = 0 ] || [ "$status" = 77 ] || exit "$status"
+expect_none_compiled "tiles, viewer and texture"
 ls -l

@@ -1,0 +1,13 @@
+/* Makes PoCL run the kernels of a saved binary as they are. */
+#ifndef CAMBER_CL_POCL_H
+#define CAMBER_CL_POCL_H
+
+#include "cl/device.h"
+
+/* Whether the device is a CPU under PoCL. */
+bool camber_is_pocl(const camber_device_info *info);
+/* Takes LLVM's code out of a binary of PoCL: *size_bytes shrinks. Returns false, and changes nothing, if the binary is
+ * not laid out as it is in PoCL 3 to 7. */
+bool camber_pocl_strip(unsigned char *binary, size_t *size_bytes);
+
+#endif

@@ -153,9 +153,12 @@ static bool save_binary(camber_device *device, const camber_program *program) {
     if (!bytes)
         return false;
     unsigned char *binary = bytes + sizeof hash;
-    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS &&
-        (!camber_is_pocl(&device->info) || camber_pocl_strip(binary, &size))) {
+    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
         char name[64];
+        /* The binary of a PoCL that camber does not know is saved whole: its kernels run as they are if
+         * POCL_WORK_GROUP_SPECIALIZATION is 0, as the tool sets it, and are compiled once more if not. */
+        if (camber_is_pocl(&device->info))
+            camber_pocl_strip(binary, &size);
         hash = hash_binary(program->key, binary, size);
         memcpy(bytes, &hash, sizeof hash);
         cache_name(program->key, name);

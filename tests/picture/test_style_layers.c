@@ -3,7 +3,6 @@
 #include "map_picture.h"
 
 #include <math.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { SIDE = 128 };
@@ -314,10 +313,6 @@ static void write_layers(char *json, size_t size) {
     snprintf(json + used, size - used, "]}");
 }
 
-static double cpu_ms(void) {
-    return (double)clock() * 1e3 / CLOCKS_PER_SEC;
-}
-
 static void test_many_layers(void **state) {
     fixture *s = *state;
     static char json[1 << 20];
@@ -328,10 +323,8 @@ static void test_many_layers(void **state) {
         skip();
     write_layers(json, sizeof json);
     map m = {0};
-    const double start_ms = cpu_ms();
     if (camber_style_parse(s->context, json, strlen(json), "many", &m.style) != CAMBER_OK)
         fail_msg("%s", s->h.last);
-    const double parse_ms = cpu_ms() - start_ms;
     assert_int_equal(camber_features_create(s->context, m.style, &m.features), CAMBER_OK);
     assert_int_equal(camber_features_read(m.features, &(camber_source_desc){.path = path}), CAMBER_OK);
     const camber_scene_desc desc = {.on_device = true};
@@ -340,20 +333,17 @@ static void test_many_layers(void **state) {
     const camber_scene_info info = camber_scene_get_info(m.scene);
     const camber_view_desc view = {
         .kind = CAMBER_VIEW_CENTER, .longitude = info.longitude, .latitude = info.latitude, .zoom = info.zoom + 0.25};
-    const double before_ms = cpu_ms();
     assert_int_equal(camber_scene_move(m.scene, &view), CAMBER_OK);
-    const double evaluate_ms = cpu_ms() - before_ms;
     camber_mesh *mesh = NULL;
     camber_frame_stats stats = {0};
     assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(m.scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
     const camber_frame frame = camber_scene_get_frame(m.scene, mesh);
     assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
-    printf("%d layers: %zu bytes parsed in %.1f ms, evaluated in %.1f ms, %zu passes, %zu draw calls\n", LAYERS,
-           strlen(json), parse_ms, evaluate_ms, frame.pass_count, stats.draw_calls);
+    printf("%d layers: %zu bytes, %zu passes, %zu draw calls\n", LAYERS, strlen(json), frame.pass_count,
+           stats.draw_calls);
     assert_in_range(frame.pass_count, 2, LAYERS);
     assert_in_range(stats.draw_calls, draws_in_cl() ? 0 : 1, draws_in_cl() ? 0 : 10);
-    assert_true(IS_SANITIZED || parse_ms + evaluate_ms < 300);
     camber_mesh_destroy(mesh);
     map_close(&m);
 }

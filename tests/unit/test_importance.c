@@ -4,7 +4,6 @@
 #include "lines/importance.h"
 
 #include <math.h>
-#include <time.h>
 
 enum { MOST = 150 };
 
@@ -255,7 +254,7 @@ static void test_part_of_a_set(void **state) {
 }
 
 /* A comb of teeth that shrink has its farthest point next to its start each time: n splits of n points. In the spiral
- * every turn is inside the last. */
+ * every turn is inside the last. Each takes a second; without the bound it takes hours, and ctest ends it. */
 static void test_worst_case_is_bounded(void **state) {
     (void)state;
     enum { COUNT = 1000000 };
@@ -268,10 +267,7 @@ static void test_worst_case_is_bounded(void **state) {
             points[2 * i] = shape ? left * cos(i * 0.7) : i * 1e-9;
             points[2 * i + 1] = shape ? left * sin(i * 0.7) : (i % 2 ? left : -left);
         }
-        const clock_t start = clock();
         weigh_one(&h, points, COUNT, w);
-        const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
-        assert_true(seconds < 40.0); /* 1 s here; without the bound it takes hours */
         assert_true(count_at_least(w, COUNT, 1e-7f) > COUNT / 2);
     }
     free(w);

@@ -7,7 +7,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -109,21 +108,19 @@ static void test_rings(void **state) {
     assert_int_equal(camber_simplify(same, 4, 0.1, keep), 2);
 }
 
-/* A comb of teeth that shrink has its farthest point next to its start each time: n splits of n points. */
+/* A comb of teeth that shrink has its farthest point next to its start each time: n splits of n points. It takes a
+ * second; without the bound on splits it takes half an hour, and ctest ends it. */
 static void test_worst_case_is_bounded(void **state) {
     (void)state;
-    enum { COUNT = 400000 };
+    enum { COUNT = 2000000 };
     double *points = malloc(2 * COUNT * sizeof *points);
     unsigned char *keep = malloc(COUNT);
     for (int i = 0; i < COUNT; i++) {
         points[2 * i] = i * 1e-3;
         points[2 * i + 1] = (i % 2 ? 1.0 : -1.0) * (COUNT - i);
     }
-    const clock_t start = clock();
     const size_t kept = camber_simplify(points, COUNT, 0.1, keep);
-    const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     assert_true(kept > COUNT / 2);
-    assert_true(seconds < 20.0); /* 1 s here with sanitizers; without the bound it takes minutes */
     free(keep);
     free(points);
 }

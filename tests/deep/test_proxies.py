@@ -15,7 +15,6 @@ import json
 import os
 import re
 import shutil
-import socket
 import ssl
 import subprocess
 import sys
@@ -27,7 +26,7 @@ import urllib.request
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
 
-from served import COLUMN, ROW, ZOOM, Server, expect, write_map  # noqa: E402
+from served import COLUMN, PATIENCE_S, ROW, ZOOM, Server, expect, find_port, write_map  # noqa: E402
 
 TOOL, EXAMPLES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 TILE = f"/{ZOOM}/{COLUMN}/{ROW}.png"
@@ -46,18 +45,12 @@ def replace(text, *pairs):
     return text
 
 
-def find_port():
-    with socket.socket() as made:
-        made.bind(("127.0.0.1", 0))
-        return made.getsockname()[1]
-
-
 def get(url, **headers):
     """Status, headers, body of a server whose certificate nobody signed."""
     anyone = ssl._create_unverified_context()
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}), urllib.request.HTTPSHandler(context=anyone))
     try:
-        with opener.open(urllib.request.Request(url, headers=headers), timeout=30) as answer:
+        with opener.open(urllib.request.Request(url, headers=headers), timeout=PATIENCE_S) as answer:
             return answer.status, answer.headers, answer.read()
     except urllib.error.HTTPError as error:
         return error.code, error.headers, error.read()
@@ -66,7 +59,7 @@ def get(url, **headers):
 def start(url, *command):
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     atexit.register(process.kill)
-    end = time.monotonic() + 30
+    end = time.monotonic() + PATIENCE_S
     while True:
         try:
             if get(url)[0] == 200:
@@ -82,7 +75,7 @@ def start(url, *command):
 def stop(process):
     """The status says nothing of camber: Apache, as one process, was seen to end with another than 0."""
     process.terminate()
-    process.wait(timeout=30)
+    process.wait(timeout=PATIENCE_S)
 
 
 def expect_same(server, url):
@@ -134,11 +127,11 @@ def check_unit():
     with open("camber.service", "w", encoding="utf-8") as file:
         file.write(replace(read_example("camber.service"), ("/usr/local/bin/camber", TOOL),
                            ("Documentation=man:camber(1)\n", "")))  # which is looked for on this machine
-    done = subprocess.run(["systemd-analyze", "verify", "./camber.service"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(["systemd-analyze", "verify", "./camber.service"], capture_output=True, text=True, timeout=PATIENCE_S)
     said = [line for line in (done.stdout + done.stderr).splitlines() if "camber" in line]
     expect(done.returncode == 0 and not said, f"the unit: {done.stderr}")
     done = subprocess.run(["systemd-analyze", "security", "--offline=true", f"--threshold={MOST_EXPOSED}",
-                           "./camber.service"], capture_output=True, text=True, timeout=60)
+                           "./camber.service"], capture_output=True, text=True, timeout=PATIENCE_S)
     found = re.search(r"Overall exposure level.*: ([0-9.]+) ", done.stdout)
     expect(done.returncode == 0 and found, f"the unit: {done.stdout[-400:]}{done.stderr}")
     print(f"the unit: exposed by {found.group(1)} of 10")
@@ -188,12 +181,12 @@ def check_mod_tile(_):
     column, row = COLUMN - COLUMN % METATILE, ROW - ROW % METATILE
     done = subprocess.run(["render_list", *options, "-a", "-z", str(ZOOM), "-Z", str(ZOOM), "-x", str(column), "-X",
                            str(column + METATILE), "-y", str(row), "-Y", str(row + METATILE - 1), "-f"],
-                          capture_output=True, text=True, timeout=60)
+                          capture_output=True, text=True, timeout=PATIENCE_S)
     expect(done.returncode == 0 and "Rendered 2 tiles" in done.stdout + done.stderr, done.stdout + done.stderr)
     before = find_metatiles()
     # The tile itself and the one above it, which are there, and no other.
     done = subprocess.run(["render_expired", *options, "-z", str(ZOOM - 1), "-Z", str(ZOOM)],
-                          input=f"{ZOOM}/{COLUMN}/{ROW}\n", capture_output=True, text=True, timeout=60)
+                          input=f"{ZOOM}/{COLUMN}/{ROW}\n", capture_output=True, text=True, timeout=PATIENCE_S)
     expect(done.returncode == 0, done.stdout + done.stderr)
     after = find_metatiles()
     changed = {path for path in after if after[path] != before.get(path)}

@@ -1,11 +1,12 @@
 /* Writes an archive of made-up tiles by the writer that draws use, for the tests from outside.
  *
- *     make_archive OUT COUNT [shard=K/N] [style=NAME] [resume] [force] [pause=MICROSECONDS] [lossy] [forward]
+ *     make_archive OUT COUNT [shard=K/N] [style=NAME] [resume] [force] [pause=MICROSECONDS] [halt=UNITS]
+ *                  [lossy] [forward]
  *
  * The tiles are those of the numbers 0 to COUNT - 1, in units of 1024, from the last unit to the first and from each
  * unit's last tile to its first; forward: from the first to the last, as an archive has them. pause: time to kill it,
- * after each unit. lossy: every 7th tile is left out. Exit statuses are the tool's: 74 where writing failed, 65 where
- * units are of another run. */
+ * after each unit. halt: it prints a line after so many units, and goes on when its standard input ends. lossy: every
+ * 7th tile is left out. Exit statuses are the tool's: 74 where writing failed, 65 where units are of another run. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
@@ -21,7 +22,7 @@ enum { UNIT_TILES = 1024 };
 typedef struct making {
     camber_archive_writer *writer;
     uint64_t count;
-    long pause_us;
+    long pause_us, halt; /* 0: nowhere */
     bool lossy, forward;
 } making;
 
@@ -48,11 +49,19 @@ static camber_status add_unit(const making *m, uint64_t unit) {
     return status == CAMBER_OK ? camber_archive_writer_end_unit(m->writer, unit) : status;
 }
 
+static void halt(void) {
+    puts("halted");
+    fflush(stdout);
+    while (getchar() != EOF)
+        continue;
+}
+
 static camber_status make(const making *m, uint32_t shard, uint32_t shards) {
     const uint64_t units = (m->count + UNIT_TILES - 1) / UNIT_TILES;
     const uint64_t first = shards ? units * (shard - 1) / shards : 0, end = shards ? units * shard / shards : units;
     const struct timespec pause = {.tv_nsec = m->pause_us * 1000};
     camber_status status = CAMBER_OK;
+    long ended = 0;
     if (camber_archive_writer_is_done(m->writer))
         return CAMBER_OK;
     for (uint64_t i = 0; i < end - first && status == CAMBER_OK; i++) {
@@ -60,6 +69,8 @@ static camber_status make(const making *m, uint32_t shard, uint32_t shards) {
         if (camber_archive_writer_has_unit(m->writer, unit))
             continue;
         status = add_unit(m, unit);
+        if (++ended == m->halt)
+            halt();
         nanosleep(&pause, NULL);
     }
     return status == CAMBER_OK ? camber_archive_writer_finish(m->writer) : status;
@@ -85,6 +96,8 @@ int main(int argc, char **argv) {
             snprintf(fingerprint, sizeof fingerprint, "input=made style=%s version=1", argv[i] + 6);
         else if (strncmp(argv[i], "pause=", 6) == 0)
             m.pause_us = strtol(argv[i] + 6, NULL, 10);
+        else if (strncmp(argv[i], "halt=", 5) == 0)
+            m.halt = strtol(argv[i] + 5, NULL, 10);
         desc.resume = desc.resume || strcmp(argv[i], "resume") == 0;
         desc.force = desc.force || strcmp(argv[i], "force") == 0;
         m.forward = m.forward || strcmp(argv[i], "forward") == 0;

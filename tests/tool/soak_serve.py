@@ -19,7 +19,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "fixtures"))
 
-from served import COLUMN, ROW, TOOL, ZOOM, Server, expect, is_sanitized, write_map  # noqa: E402
+from served import COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, is_sanitized, wait_until, write_map  # noqa: E402
 
 SECONDS, ODD_URLS = float(sys.argv[2]), int(sys.argv[3])
 BATCH = 200
@@ -48,7 +48,7 @@ class Soak:
                 self.statuses[status] = self.statuses.get(status, 0) + 1
 
     def ask_for_pictures(self, source):
-        connection = http.client.HTTPConnection(self.server.host, self.server.port, timeout=120)
+        connection = http.client.HTTPConnection(self.server.host, self.server.port, timeout=PATIENCE_S)
         etag = '"none"'
         while self.goes_on():
             zoom = source.randint(10, 17)
@@ -69,7 +69,7 @@ class Soak:
             paths = ["/" + "".join(source.choices(PIECES, k=source.randint(1, 8))) for _ in range(BATCH)]
             request = "".join(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n" for path in paths[:-1])
             request += f"GET {paths[-1]} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"
-            back = self.server.send(request.encode("latin-1"), seconds=120)
+            back = self.server.send(request.encode("latin-1"))
             statuses = [int(status) for status in re.findall(rb"HTTP/1\.1 (\d\d\d) ", back)]
             if len(statuses) != BATCH:
                 self.wrong = f"{len(statuses)} of {BATCH} answers; the last one is to {paths[len(statuses) - 1]!r}"
@@ -89,16 +89,19 @@ class Soak:
         expect(self.wrong is None, self.wrong)
 
 
-def count_requests(server, at_least=0):
+def count_requests(server, at_least):
     """All but those that this asks itself. The server counts one after its client has the answer: some may be late."""
-    for asked in range(500):
+    asked = 0
+
+    def count():
+        nonlocal asked
         text = server.get("/metrics", port=server.metrics_port)[2].decode()
         found = re.findall(r"^camber_requests_total\{.*\} (\d+)$", text, re.M)
         counted = sum(int(count) for count in found) - asked
-        if counted >= at_least:
-            break
-        time.sleep(0.01)
-    return counted
+        asked += 1
+        return (counted,) if counted >= at_least else None
+
+    return wait_until(count, f"the server has counted fewer than {at_least} requests")[0]
 
 
 def main():
@@ -107,8 +110,8 @@ def main():
         write_map("map.json", count=300)
         server = Server("map.json", "--cache", "4M")
         soak = Soak(server)
-        time.sleep(0.1)  # the server counts the questions whether it was there
-        start, before = time.monotonic(), count_requests(server) + 1  # with the request that asked for it
+        # With the questions whether the server was there, and the request that asked how many they were.
+        start, before = time.monotonic(), count_requests(server, server.asked) + 1
         soak.run()
         seconds = time.monotonic() - start
         answers = sum(soak.statuses.values())

@@ -27,6 +27,7 @@ TOOL, MAKER = sys.argv[1], sys.argv[2]
 NODE = sys.argv[3] if len(sys.argv) > 3 and sys.argv[3] else None
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 STEP_OF_MILLION = 331
+UNITS_HALF_WAY = 10  # of thirty
 
 
 def run(*arguments, **more):
@@ -434,15 +435,25 @@ def test_killed():
             os.unlink(name)
 
 
+def start_halting(units, name, count, *options):
+    """Starts a run and waits until it has halted after so many units of its own. go_on lets it end."""
+    child = subprocess.Popen([MAKER, name, str(count), *options, f"halt={units}"], stdin=subprocess.PIPE,
+                             stdout=subprocess.PIPE)
+    expect(child.stdout.readline() == b"halted\n", f"{name}: a run ended before {units} units")
+    return child
+
+
+def go_on(child):
+    child.communicate()
+    return child.returncode
+
+
 def stop_half_way(name, count, *options):
-    """Kills a run that has ended a unit. Returns the size of its journal."""
-    child = subprocess.Popen([MAKER, name, str(count), *(options or ["resume"]), "pause=20000"])
-    journal = name + ".camber-units"
-    while not os.path.exists(journal) or os.path.getsize(journal) < 100000:
-        time.sleep(0.005)
+    """Kills a run that has ended units. Returns the size of its journal."""
+    child = start_halting(UNITS_HALF_WAY, name, count, *(options or ["resume"]))
     child.send_signal(signal.SIGKILL)
-    child.wait()
-    return os.path.getsize(journal)
+    go_on(child)
+    return os.path.getsize(name + ".camber-units")
 
 
 def test_resume():
@@ -484,11 +495,9 @@ def test_second_names():
     """Where tiles come in the archive's order, their file becomes it; a run that is killed then leaves second names."""
     count, journal, own = 30000, "named.pmtiles.camber-units", "named.pmtiles.camber-tiles"
     wanted = read("calm.pmtiles")
-    child = subprocess.Popen([MAKER, "named.pmtiles", str(count), "forward", "pause=2000"])
-    while not os.path.exists(journal) or os.path.getsize(journal) < 1000:
-        time.sleep(0.001)
+    child = start_halting(1, "named.pmtiles", count, "forward")
     number = os.stat(own).st_ino
-    child.wait()
+    go_on(child)
     expect(os.stat("named.pmtiles").st_ino == number, "the tiles were copied")
     expect(read("named.pmtiles") == wanted, "in order: other bytes than out of it")
     # It is whole and has its name: another run must not write into it before its own is.
@@ -505,11 +514,9 @@ def test_second_names():
     os.unlink("named.pmtiles")
     before = stop_half_way("named.pmtiles", count, "forward")
     os.link(own, "named.pmtiles.camber-whole")
-    child = subprocess.Popen([MAKER, "named.pmtiles", str(count), "resume", "forward", "pause=5000"])
-    while not os.path.exists(journal) or os.path.getsize(journal) <= before:
-        expect(child.poll() is None and os.path.getsize(journal) >= before, "a run did not go on")
-        time.sleep(0.001)
-    child.wait()
+    child = start_halting(1, "named.pmtiles", count, "resume", "forward")
+    expect(os.path.getsize(journal) > before, "a run did not go on")
+    go_on(child)
     expect(read("named.pmtiles") == wanted, "gone on after the end: other bytes")
     alone("named.pmtiles")
     # The tiles lie in another folder: a second name would be that of the link.
@@ -521,16 +528,12 @@ def test_second_names():
 
 
 def test_locked():
-    child = subprocess.Popen([MAKER, "held.pmtiles", "30000", "pause=30000"])
-    while not os.path.exists("held.pmtiles.camber-units"):
-        time.sleep(0.01)
-    time.sleep(0.05)
+    child = start_halting(1, "held.pmtiles", 30000)
     line = make("held.pmtiles", 10, "resume", status=74)
     expect("another process" in line and line.count("\n") == 1, line)
     write("a1.pmtiles", archive([(0, 1, len(png(0)), 0)], png(0), high=0))
     tiles("merge", "a1.pmtiles", "-o", "held.pmtiles", status=74)
-    child.wait()
-    expect(child.returncode == 0, "the writer that has the archive ends well")
+    expect(go_on(child) == 0, "the writer that has the archive ends well")
     tiles("verify", "held.pmtiles")
 
 
@@ -563,6 +566,7 @@ def test_full():
 
 
 def main():
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # under nohup or a shell's & it is ignored, and by children
     with tempfile.TemporaryDirectory(prefix="camber-archives-") as folder:
         os.chdir(folder)
         tests = [test_readers, test_pmtiles_rules, test_mbtiles_rules, test_folder_rules, test_merge, test_killed,

@@ -1,11 +1,12 @@
 // What the tests that drive Debian's Chromium share: starting it, and comparing what it shows with what camber draws.
 import {spawn} from 'node:child_process';
-import {existsSync} from 'node:fs';
+import {existsSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {createServer} from 'node:net';
 import {join} from 'node:path';
 
 const modules = process.env.NODE_PATH ?? '';
+export const PATIENCE_MS = 240000; // for what happens at once on an idle machine: only what hangs takes longer
 
 export function skip(what) {
     console.log(`skipped: ${what}`);
@@ -14,7 +15,7 @@ export function skip(what) {
 
 // Skips where something is missing: Chromium on PATH, npm's playwright-core and the packages named in NODE_PATH. Names
 // that begin with -- are Chromium's switches.
-export function launchBrowser(...names) {
+export async function launchBrowser(...names) {
     const isSwitch = name => name.startsWith('--');
     for (const name of [...names.filter(name => !isSwitch(name)), 'playwright-core'])
         if (!existsSync(join(modules, name)))
@@ -23,38 +24,59 @@ export function launchBrowser(...names) {
         ['chromium', 'chromium-browser', 'google-chrome'].map(name => join(path, name))).find(existsSync);
     if (!executablePath)
         skip('no Chromium (Debian: chromium)');
-    return createRequire(import.meta.url)('playwright-core').chromium.launch({executablePath,
-        args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
+    const browser = await createRequire(import.meta.url)('playwright-core').chromium.launch({executablePath,
+        timeout: PATIENCE_MS, args: ['--no-sandbox', '--ignore-gpu-blocklist', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
             ...names.filter(isSwitch)]});
+    const newContext = browser.newContext.bind(browser);
+    browser.newContext = async options => {
+        const context = await newContext(options);
+        context.setDefaultTimeout(PATIENCE_MS);
+        return context;
+    };
+    browser.newPage = async options => (await browser.newContext(options)).newPage();
+    return browser;
 }
 
-// Starts `camber serve` of an input: its URL without a slash at its end, and what stops it. Where the build has no
-// server, the URL is null.
-export async function startServe(tool, input) {
-    const port = await new Promise(resolve => {
-        const socket = createServer().listen(0, '127.0.0.1', () => {
+// A free port of those that the system gives nobody who asks for any: none is likely to take it before it is used.
+export function findPort() {
+    const given = Number(readFileSync('/proc/sys/net/ipv4/ip_local_port_range', 'ascii').split(/\s/)[0]);
+    return new Promise(resolve => {
+        const port = given > 20000 ? 20000 + Math.floor(Math.random() * (given - 20000)) : 0;
+        const socket = createServer().listen(port, '127.0.0.1', () => {
             const found = socket.address().port;
             socket.close(() => resolve(found));
-        });
+        }).on('error', () => resolve(findPort()));
     });
-    const url = `http://127.0.0.1:${port}`;
-    const serve = spawn(tool, ['serve', '-q', input, '--listen', `127.0.0.1:${port}`],
-        {stdio: ['ignore', 'ignore', 'pipe']});
-    let complaint = '';
+}
+
+// Starts `camber serve` with the options, at that port or at one that the system chooses: its URL without a slash at its
+// end, its port, and what stops it. Where the build has no server, the URL is null.
+export async function startServe(tool, options, port = 0) {
+    const serve = spawn(tool, ['serve', '-q', ...options, '--json', '--listen', `127.0.0.1:${port}`],
+        {stdio: ['ignore', 'pipe', 'pipe']});
+    let about = '', complaint = '';
+    serve.stdout.on('data', text => about += text);
     serve.stderr.on('data', text => complaint += text);
     const gone = new Promise(resolve => serve.on('close', resolve));
-    const isReady = () => fetch(url + '/health').then(answer => answer.ok, () => false);
-    for (let wait = 0; wait < 100 && serve.exitCode === null && !await isReady(); wait++)
-        await new Promise(resolve => setTimeout(resolve, 100));
+    const parse = () => {
+        try {
+            return JSON.parse(about).url;
+        } catch {
+            return null;
+        }
+    };
+    const isReady = async () => parse() && await fetch(parse() + '/health').then(answer => answer.ok, () => false);
+    while (serve.exitCode === null && !await isReady())
+        await new Promise(resolve => setTimeout(resolve, 20));
     const stop = () => {
         serve.kill();
         return gone;
     };
     if (serve.exitCode === null)
-        return {url, stop};
+        return {url: parse(), port: Number(new URL(parse()).port), stop};
     await gone;
     if (!complaint.includes('this build has no server'))
-        throw new Error(complaint);
+        throw new Error(`camber serve ${options.join(' ')}: ${complaint}`);
     return {url: null, stop};
 }
 

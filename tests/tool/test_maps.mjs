@@ -4,13 +4,13 @@
 // npm's maplibre-gl, ol, pmtiles and playwright-core are found through NODE_PATH, Chromium on PATH. Of each view a map
 // shows tiles pixel by pixel: its centre is a corner of tiles, and its zoom theirs. Pictures of views that fail stay in
 // FOLDER. Exit status: 1 where they differ, 77 where something is not installed.
-import {execFileSync, spawn} from 'node:child_process';
+import {execFileSync} from 'node:child_process';
 import {createServer} from 'node:http';
 import {closeSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, readSync, rmSync, statSync,
     writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {extname, join} from 'node:path';
-import {comparePictures, cornerAt, launchBrowser} from './browser.mjs';
+import {comparePictures, cornerAt, launchBrowser, startServe} from './browser.mjs';
 
 const SIDE = 768, TILE = 256, CENTER = [-122.0268, 36.9735], ZOOMS = [12, 14, 15];
 // camber's own promise across the pictures that tiles are cut from. The map shows texels as they are: nothing is added.
@@ -107,25 +107,8 @@ async function check(page, work, zoom, maps) {
     return all;
 }
 
-// Starts camber serve on a port of the system's, and gives its process and its URL. null: the tool has no server.
-async function startServing() {
-    const started = spawn(tool, ['serve', input, '-q', '--json', '--listen', '127.0.0.1:0'],
-        {stdio: ['ignore', 'pipe', 'ignore']});
-    let text = '';
-    for await (const piece of started.stdout) {
-        text += piece;
-        if (!text.trimEnd().endsWith('}'))
-            continue;
-        const {url} = JSON.parse(text);
-        while (started.exitCode === null && !(await fetch(`${url}/health`)).ok)
-            await new Promise(resolve => setTimeout(resolve, 50));
-        return {process: started, url};
-    }
-    return null;
-}
-
 const work = mkdtempSync(join(tmpdir(), 'camber-maps-'));
-const server = serve(work), served = await startServing();
+const server = serve(work), served = await startServe(tool, [input]);
 let right = true;
 try {
     // With empty tiles: else the page shows through where there is the background alone.
@@ -134,7 +117,7 @@ try {
     await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
     const own = `http://127.0.0.1:${server.address().port}/`;
     const maps = [['MapLibre of an archive', 'maplibre', `pmtiles://${own}city.pmtiles`]];
-    if (served)
+    if (served.url)
         maps.push(['MapLibre of a server', 'maplibre', `${served.url}/tiles.json`],
             ['OpenLayers of a server', 'openlayers', `${served.url}/tiles.json`]);
     const page = await browser.newPage({viewport: {width: SIDE, height: SIDE}, deviceScaleFactor: 1});
@@ -144,7 +127,7 @@ try {
 } finally {
     await browser.close();
     server.close();
-    served?.process.kill();
+    await served.stop();
     rmSync(work, {recursive: true});
 }
 process.exit(right ? 0 : 1);

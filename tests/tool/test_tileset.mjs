@@ -86,10 +86,10 @@ async function look(tab, tileset, from) {
     tab.on('console', message => ['error', 'warning'].includes(message.type()) && said.push(message.text()));
     tab.on('pageerror', error => said.push(String(error)));
     await tab.goto(`http://127.0.0.1:${server.address().port}/${tileset}`);
-    await tab.waitForFunction(() => window.models > 0 && window.visible > 0 && window.loading === 0, null, {timeout: 90000})
+    await tab.waitForFunction(() => window.models > 0 && window.visible > 0 && window.loading === 0)
         .catch(error => said.push(String(error)));
     const start = await tab.evaluate(() => window.frames ?? 0);
-    await tab.waitForFunction(least => window.frames > least, start + 3, {timeout: 30000}).catch(error => said.push(String(error)));
+    await tab.waitForFunction(least => window.frames > least, start + 3).catch(error => said.push(String(error)));
     const shown = await tab.screenshot();
     const state = await tab.evaluate(() => ({errors: window.errors, models: window.models, visible: window.visible}));
     check(state.models > 0 && state.visible > 0, `tiles ${from} are loaded and seen`, state);
@@ -101,7 +101,7 @@ async function look(tab, tileset, from) {
 }
 const tab = await browser.newPage({viewport: SIZE}), shown = await look(tab, '', 'of a folder');
 writeFileSync(join(folder, 'tileset.png'), shown);
-const {url: served, stop} = await startServe(tool, drawn);
+const {url: served, stop} = await startServe(tool, [drawn]);
 if (served !== null) {
     const other = await browser.newPage({viewport: SIZE});
     const again = await look(other, '?tiles=' + encodeURIComponent(served + '/tileset.json'), 'of camber serve');

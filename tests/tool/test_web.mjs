@@ -126,7 +126,7 @@ async function openPage(browser, style, zoom, options = {}) {
     return page;
 }
 // All tiles in view are drawn once this says so, in the frame before.
-const waitForTiles = page => page.waitForFunction(() => document.body.dataset.loading === '0', null, {timeout: 60000});
+const waitForTiles = page => page.waitForFunction(() => document.body.dataset.loading === '0');
 const waitForFrames = (page, count) => page.evaluate(frames => new Promise(resolve => {
     const next = () => frames-- > 0 ? requestAnimationFrame(next) : resolve();
     next();
@@ -156,10 +156,10 @@ async function checkMoves(browser) {
     const page = await openPage(browser, 'roads', 14);
     // The hash follows when the map rests.
     const readPlace = async () => {
-        await page.waitForFunction(() => !isAsked && glide === 0 && hashTimer === 0, null, {timeout: 60000});
+        await page.waitForFunction(() => !isAsked && glide === 0 && hashTimer === 0);
         return page.evaluate(() => location.hash.slice(1).split('/').map(Number));
     };
-    const [, , east] = await readPlace(), start = await page.evaluate(() => performance.now());
+    const [, , east] = await readPlace();
     await page.mouse.move(900, 360);
     await page.mouse.down();
     for (let i = 1; i <= FRAMES; i++) {
@@ -167,8 +167,6 @@ async function checkMoves(browser) {
         await waitForFrames(page, 1);
     }
     await page.mouse.up();
-    const seconds = (await page.evaluate(() => performance.now()) - start) / 1000;
-    console.log(`# a pan of ${FRAMES} frames: ${(FRAMES / seconds).toFixed(0)} frames a second`);
     const after = await readPlace(), degree = 512 * 2 ** 14 / 360; // px
     check(Math.abs((after[2] - east) * degree - 6 * FRAMES) < 1, 'a drag moves the map as far as the pointer',
         {east, after});
@@ -261,7 +259,7 @@ async function checkSubtrees(browser) {
     const page = await openPage(browser, 'roads', 14), told = await page.locator('#notice').textContent();
     check(/is missing: subtree .*: 503/.test(told), 'subtrees that cannot be had are told', told);
     isBusy = () => false;
-    await page.waitForFunction(() => document.getElementById('notice').textContent === '', null, {timeout: 60000});
+    await page.waitForFunction(() => document.getElementById('notice').textContent === '');
     const state = await page.locator('#state').textContent();
     check(/ [1-9][0-9]* tiles/.test(state), 'and asked for again', state);
     await page.context().close();
@@ -300,9 +298,9 @@ async function checkMemory(browser) {
             if (isAborted)
                 old.abort.abort();
             const newer = tileAt(...place);
-            const isDone = () => newer.state === 'ready' && performance.now() > start + 300, start = performance.now();
-            while (!isDone() && performance.now() < start + 20000)
+            while (newer.state !== 'ready')
                 await new Promise(resolve => setTimeout(resolve, 20));
+            await new Promise(resolve => setTimeout(resolve, 300)); // for the old one to come late
             isRight.push(tiles.get(name) === newer && newer.state === 'ready' && !old.tile && !old.picture);
         }
         return [...isRight, performance.getEntriesByType('measure').length === 0];
@@ -337,7 +335,7 @@ async function checkDamage(browser) {
 // The same tiles from camber serve, at another address.
 async function checkServe(browser) {
     complaints.length = 0;
-    const {url: at, stop} = await startServe(tool, makeTiles('roads') + '/');
+    const {url: at, stop} = await startServe(tool, [makeTiles('roads') + '/']);
     if (at === null)
         return;
     const page = await openPage(browser, encodeURIComponent(at + '/tiles.json'), 14);

@@ -106,7 +106,7 @@ CONF
     slurmctld -D -c >/dev/null 2>&1 &
     for node in n1 n2; do slurmd -D -N $node >/dev/null 2>&1 & done
     disown -a # the shell need not tell that they were killed
-    await 30 "two idle nodes" nodes_are_idle
+    await 400 "two idle nodes" nodes_are_idle
 }
 nodes_are_idle() { [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ]; }
 
@@ -151,10 +151,10 @@ times_of_parts() { stat -c '%n %y' city.?-of-4.pmtiles; }
 test_array() {
     local node
     "$scripts/slurm.sh" 4 "$work/city.pmtiles" "$input" "${options[@]}"
-    await 60 "task 2 draws" [ -s stopped ]
+    await 400 "task 2 draws" [ -s stopped ]
     node=$(cat stopped)
     lose_node "$node"
-    await 100 "the array and its merge end" queue_is_empty
+    await 400 "the array and its merge end" queue_is_empty
     cmp single/city.pmtiles city.pmtiles || die "the merge of four shards is not what a single run writes"
     for task in 0 1 2 3; do
         sort -u runs | grep -q "^$task 0 " || die "task $task was not run: $(cat runs)"
@@ -168,7 +168,7 @@ test_again() {
     times_of_parts >times.txt
     touch calm
     "$scripts/slurm.sh" 4 "$work/city.pmtiles" "$input" "${options[@]}"
-    await 40 "finished shards end at once" queue_is_empty
+    await 400 "finished shards end at once" queue_is_empty
     times_of_parts | cmp - times.txt || die "a finished shard was drawn again"
     cmp single/city.pmtiles city.pmtiles
 }
@@ -176,7 +176,7 @@ test_again() {
 # Shards that cannot be drawn: each log says why, and nothing is merged.
 test_failing() {
     "$scripts/slurm.sh" 2 "$work/none.pmtiles" "$input" --style "$work/missing.json"
-    await 40 "a merge without its parts ends" queue_is_empty
+    await 400 "a merge without its parts ends" queue_is_empty
     [ ! -e none.pmtiles ] || die "there is an archive without parts"
     grep -q missing.json none.0.log || die "the log does not say why: $(cat none.0.log)"
     grep -q '1-of-2' none.merge.log || die "the merge does not name what is missing: $(cat none.merge.log)"

@@ -75,7 +75,7 @@ class Zsh:
 
     def ask(self, text, end):
         os.write(self.terminal, text.encode())
-        got, until = "", time.monotonic() + 20
+        got, until = "", time.monotonic() + 300  # seconds, which only a hang takes
         while end not in got and time.monotonic() < until:
             if select.select([self.terminal], [], [], 0.5)[0]:
                 got += os.read(self.terminal, 65536).decode(errors="replace")

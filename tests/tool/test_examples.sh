@@ -73,13 +73,14 @@ expect_none_compiled hello
 [ "$map" != ON ] || "$folder/build/map" "$source/tests/data/santa_cruz/osm.mbtiles"
 expect_none_compiled "validate and map"
 
-# A tile from the example's own server.
+# A tile from the example's own server, at the first port that is free.
 ask_for_tile() {
     local port=$((20000 + RANDOM % 12000))
+    while (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do port=$((port + 1)); done
     "$folder/build/tiles" "$source/tests/data/santa_cruz/osm.mbtiles" "$port" &
     server=$!
-    for _ in $(seq 300); do
-        ! (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null || break
+    until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do
+        kill -0 $server 2>/dev/null || { echo "the example tiles does not start"; exit 1; }
         sleep 0.1
     done
     exec 3<>"/dev/tcp/127.0.0.1/$port"

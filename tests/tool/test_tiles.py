@@ -28,6 +28,7 @@ from png_rows import decode, difference  # noqa: E402
 
 TOOL = sys.argv[1]
 ZOOM, COLUMN, ROW = 13, 4304, 2776  # the corner of four metatiles: columns and rows there are multiples of 8
+JOURNAL_HEAD_BYTES = 512  # of a journal that has no unit yet
 ENVIRONMENT = {name: text for name, text in os.environ.items()
                if not name.startswith(("SLURM", "OMPI", "PMI", "JOB_COMPLETION", "AWS_BATCH"))}
 
@@ -351,13 +352,19 @@ def test_auto():
     tiles(*common, status=2, env={**ENVIRONMENT, "PMI_RANK": "x", "PMI_SIZE": "2"})
 
 
+def size_of(path):
+    try:
+        return os.path.getsize(path)
+    except FileNotFoundError:
+        return 0
+
+
 def test_killed():
-    """kill -9 at random moments, then --resume: the same bytes as uninterrupted."""
+    """kill -9 at random moments after a unit has ended, then --resume: the same bytes as uninterrupted."""
     make_lines("lines.geojson", 120)
     common = ("lines.geojson", "--style", write_style("wide", STYLES["wide"]), "--min-zoom", 9, "--max-zoom", 13)
-    start = time.monotonic()
     tiles(*common, "-o", "whole.pmtiles", "--resume")  # from the start, where nothing is there
-    took, whole = time.monotonic() - start, read("whole.pmtiles")
+    whole = read("whole.pmtiles")
     chance, resumed = random.Random(), 0
     seed = chance.randrange(10 ** 9)
     chance.seed(seed)
@@ -366,7 +373,9 @@ def test_killed():
         for _ in range(chance.randrange(1, 4)):
             child = subprocess.Popen([TOOL, "tiles", *map(str, common), "-o", "killed.pmtiles", "-q", "--resume",
                                       "--name", "whole"], env=ENVIRONMENT)
-            time.sleep(chance.uniform(0.1, took))
+            while child.poll() is None and size_of("killed.pmtiles.camber-units") <= JOURNAL_HEAD_BYTES:
+                time.sleep(0.002)
+            time.sleep(chance.uniform(0, 0.5) if left % 2 else 0)
             child.kill()
             expect(child.wait() in (0, -signal.SIGKILL), f"seed {seed}: ended with {child.returncode}")
             left -= 1
@@ -388,16 +397,22 @@ def test_killed():
     expect(told["done"] and told["units"] == 0, f"a whole archive is drawn again: {told}")
 
 
+def wait_for_units(child, name, before=0):
+    """Until the run's journal, which it has locked, is longer than before."""
+    while size_of(name + ".camber-units") <= before:
+        expect(child.poll() is None, "it has ended before it wrote a unit")
+        time.sleep(0.005)
+
+
 def test_stopped():
     """A signal ends the run with its status; nothing is half-written, and --resume goes on."""
     make_lines("lines.geojson", 400)
     common = ["tiles", "lines.geojson", "--style", write_style("wide", STYLES["wide"]), "--max-zoom", "17", "-q"]
     for number in (signal.SIGINT, signal.SIGTERM):
+        before = size_of("stopped.pmtiles.camber-units")
         child = subprocess.Popen([TOOL, *common, "-o", "stopped.pmtiles", "--resume"], env=ENVIRONMENT,
                                  stderr=subprocess.PIPE, text=True)
-        while not os.path.exists("stopped.pmtiles.camber-units") and child.poll() is None:
-            time.sleep(0.01)
-        time.sleep(0.05)
+        wait_for_units(child, "stopped.pmtiles", before)
         child.send_signal(number)
         told = child.communicate()[1]
         expect(child.returncode == 128 + number, f"signal {number}: {child.returncode}")
@@ -418,9 +433,7 @@ def test_other_run():
     style = write_style("wide", STYLES["wide"])
     common = ["tiles", "lines.geojson", "-o", "locked.pmtiles", "--style", style, "--max-zoom", "15"]
     child = subprocess.Popen([TOOL, *common, "-q"], env=ENVIRONMENT)
-    while not os.path.exists("locked.pmtiles.camber-units") and child.poll() is None:
-        time.sleep(0.01)
-    time.sleep(0.15)
+    wait_for_units(child, "locked.pmtiles")
     line = camber(*common, status=74).stderr
     expect("another process" in line, line)
     child.kill()
@@ -651,6 +664,7 @@ def test_usage():
 
 
 def main():
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # under nohup or a shell's & it is ignored, and by children
     tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed,
              test_stopped, test_other_run, test_renew, test_merged_sizes, test_area, test_folders, test_metadata, test_full]
     named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]

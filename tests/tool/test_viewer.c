@@ -12,7 +12,7 @@ int viewer_main(int argc, char **argv);
 #include <unistd.h>
 
 #define CITY CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"
-enum { WIDTH = 400, HEIGHT = 260, PATIENCE_MS = 60000, SMALL_FRAMES = 800 };
+enum { WIDTH = 400, HEIGHT = 260, PATIENCE_MS = 300000, SMALL_FRAMES = 800 };
 
 #ifdef __SANITIZE_ADDRESS__
 enum { IS_SANITIZED = true };

@@ -35,7 +35,7 @@ begin() {
 draw() { # seconds, statuses that are right as 0|143, arguments...
     local seconds=$1 right=$2 status=0
     shift 2
-    timeout --preserve-status -k 60 "$seconds" "${fixed[@]}" "$folder/src/camber" render "$@" --size 64x64 -o "$work/out.png" -f \
+    timeout --preserve-status -k 600 "$seconds" "${fixed[@]}" "$folder/src/camber" render "$@" --size 64x64 -o "$work/out.png" -f \
         >"$work/log" 2>&1 || status=$?
     [[ "|$right|" == *"|$status|"* ]] && return
     cat "$work/log"
@@ -49,10 +49,10 @@ run_tool() {
     work=$(mktemp -d)
     trap 'rm -rf "$work"' EXIT
     echo '{"type":"LineString","coordinates":[[0,0],[1,1],[2,0]]}' >"$work/lines.geojson"
-    draw 120 0 "$city" --draw cl
-    draw 120 0 "$work/lines.geojson" --draw cl # read by GDAL
-    draw 120 '0|69' "$work/lines.geojson" --draw gl # 69: there is no GL
-    draw 120 0 - --draw cl <"$city"
+    draw 600 0 "$city" --draw cl
+    draw 600 0 "$work/lines.geojson" --draw cl # read by GDAL
+    draw 600 '0|69' "$work/lines.geojson" --draw gl # 69: there is no GL
+    draw 600 0 - --draw cl <"$city"
     for pause in 0.1 0.2 0.3 0.4; do
         draw "$pause" '0|143' - --draw cl <"$city"
     done

@@ -23,7 +23,7 @@ fuzz() {
     done
     [ ! -f "$here/$target.dict" ] || options+=("-dict=$here/$target.dict")
     before=$(ls "$folder/broken")
-    "$program" "$folder/corpus/$target" "${kept[@]}" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 \
+    "$program" "$folder/corpus/$target" "${kept[@]}" -max_total_time="$seconds" -timeout=300 -rss_limit_mb=2048 \
         -malloc_limit_mb=512 -max_len=4096 -reload=0 -print_final_stats=1 -artifact_prefix="$folder/broken/$target-" \
         "${options[@]}" >"$log" 2>&1
     local status=$?

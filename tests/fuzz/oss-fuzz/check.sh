@@ -62,7 +62,7 @@ run_target() { # NAME
     python3 -m zipfile -e "$folder/away/${name}_seed_corpus.zip" "$seeds" || fail "$name has no seeds"
     (cd "$folder/away" && ldd "./$name") | grep -E 'not found|=> /(usr/)?lib.*/lib(gdal|sqlite3|png16|OpenCL)\.so' &&
         fail "$name takes libraries from this system"
-    timeout 60 "$folder/away/$name" "$seeds" -max_total_time=1 -max_len=4096 -rss_limit_mb=2048 \
+    timeout 600 "$folder/away/$name" "$seeds" -max_total_time=1 -max_len=4096 -rss_limit_mb=2048 \
         -artifact_prefix="$folder/broken-" >"$folder/$1.log" 2>&1 ||
         { fail "$name does not run"; tail -n 5 "$folder/$1.log"; }
 }

@@ -1,6 +1,6 @@
 # Every test of this directory gets one cache for all, kernels that were compiled before the first of them, a count of
 # those that are compiled all the same, and what the sanitizers are told. And it gets processors, of which ./dev counts
-# halves: one that waits for others most of the time gets a half, one that has bounds of time has asked for more.
+# halves: one that waits for others most of the time gets a half.
 #
 # The last include also writes tests/manifest.txt, from which tests/tiers.py chooses: a line a test, with its name, its cost,
 # what builds for it (a fixture, or -), whether it is such a build (setup, or -), and its labels.

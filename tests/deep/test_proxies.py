@@ -89,23 +89,37 @@ def expect_same(server, url):
     expect(b"<!doctype html>" in get(url + "/")[2].lower(), "the page")
 
 
+def place_cache(text, here):
+    """The text of nginx.conf, and the folder in which its cache is. Root's nginx makes the one that the file names, and
+    it goes with the test; who is not root, or has an nginx that uses it, gets another one."""
+    folder = re.search(r"proxy_cache_path (\S+)", text).group(1)
+    if os.geteuid() == 0 and not os.path.exists(folder):
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        return text, folder
+    print(f"{folder}: left out, since it is {'there already' if os.path.exists(folder) else 'for root to make'}")
+    os.mkdir("cache")
+    os.chmod(".", 0o755)  # root's workers are another user
+    os.chmod("cache", 0o777)
+    return replace(text, (folder, here + "/cache")), here + "/cache"
+
+
 def check_nginx(server):
     port = find_port()
     subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "key.pem", "-out", "cert.pem",
                     "-days", "2", "-subj", "/CN=tiles.example.org"], check=True, capture_output=True)
     here = os.getcwd()
-    text = replace(read_example("nginx.conf"), ("/var/cache/nginx/camber", here + "/cache"),
+    text = replace(read_example("nginx.conf"),
                    ("127.0.0.1:8080", f"127.0.0.1:{server.port}"), ("listen 443", f"listen 127.0.0.1:{port}"),
                    ("/etc/letsencrypt/live/tiles.example.org/fullchain.pem", here + "/cert.pem"),
                    ("/etc/letsencrypt/live/tiles.example.org/privkey.pem", here + "/key.pem"))
+    text, keeps = place_cache(text, here)
     with open("nginx.conf", "w", encoding="utf-8") as file:
-        # Root's workers would be another user, who may not enter the folder.
-        file.write(f"daemon off; pid {here}/pid; error_log stderr; {'user root;' if os.geteuid() == 0 else ''}\n"
-                   f"events {{}}\nhttp {{ access_log off;\n{text}\n}}\n")
+        file.write(f"daemon off; pid {here}/pid; error_log stderr;\nevents {{}}\nhttp {{ access_log off;\n{text}\n}}\n")
     url = f"https://127.0.0.1:{port}"
     process = start(url + "/health", "nginx", "-p", here, "-c", here + "/nginx.conf")
     expect_same(server, url)
     expect(get(url + TILE)[1]["X-Cache"] == "HIT", "a tile is asked for again")
+    expect(any(files for _, _, files in os.walk(keeps)), f"{keeps}: keeps no tile")
     stop(process)
 
 
@@ -125,7 +139,7 @@ def check_caddy(server):
 
 def check_unit():
     with open("camber.service", "w", encoding="utf-8") as file:
-        file.write(replace(read_example("camber.service"), ("/usr/local/bin/camber", TOOL),
+        file.write(replace(read_example("camber.service"), ("ExecStart=camber ", f"ExecStart={TOOL} "),
                            ("Documentation=man:camber(1)\n", "")))  # which is looked for on this machine
     done = subprocess.run(["systemd-analyze", "verify", "./camber.service"], capture_output=True, text=True, timeout=PATIENCE_S)
     said = [line for line in (done.stdout + done.stderr).splitlines() if "camber" in line]

@@ -145,6 +145,10 @@ done
 for job in slurm.sh batch.sh mpirun.sh job.yaml batch.json; do
     [ -r "$folder/usr/share/camber/cluster/$job" ] || { echo "not installed: cluster/$job"; exit 1; }
 done
+# Of the server's files all that there are, if there is a server.
+for file in $([ ! -d "$folder/usr/share/camber/serve" ] || ls "$source/examples/serve"); do
+    cmp "$source/examples/serve/$file" "$folder/usr/share/camber/serve/$file"
+done
 # GDAL comes with the first file, and what is wrong where it cannot come is one line.
 if ldd "$folder/usr/bin/camber" | grep libgdal; then echo "the tool links GDAL from the start"; exit 1; fi
 echo '{"type":"LineString","coordinates":[[0,0],[1,1]]}' >"$folder/line.geojson"

@@ -229,6 +229,8 @@ static int read_archive(reading *it) {
     it->about = json_loads(info->metadata, 0, NULL);
     const char *attribution = json_string_value(json_object_get(it->about, "attribution"));
     it->shown.attribution = options->attribution ? options->attribution : attribution;
+    const char *theme = json_string_value(json_object_get(it->about, "theme"));
+    it->shown.is_dark = theme && strcmp(theme, "dark") == 0;
     it->shown.reader = it->reader;
     it->shown.metadata = info->metadata;
     it->shown.tileset = type == CAMBER_ROUTE_GLB && strcmp(info->format, "folder") == 0 ? options->inputs[0] : NULL;
@@ -367,18 +369,25 @@ static void tell_public_url(camber_session *session, const camber_server *server
                           camber_server_get_url(server));
 }
 
+/* Programs get the addresses as soon as it listens: they ask /health when it serves. */
 static int announce(camber_session *session, const camber_server *server) {
+    if (!session->options->json)
+        return CAMBER_EXIT_DONE;
+    json_t *object =
+        json_pack("{s:s, s:s, s:s?}", "url", camber_server_get_url(server), "listen", camber_server_get_address(server),
+                  "metrics", camber_server_get_metrics_address(server));
+    return camber_report_json(session->report, object);
+}
+
+/* People get a URL that shows a map. */
+static void tell_ready(camber_session *session, const camber_server *server) {
     const char *metrics = camber_server_get_metrics_address(server);
     tell_public_url(session, server);
-    if (session->options->json) {
-        json_t *object = json_pack("{s:s, s:s, s:s?}", "url", camber_server_get_url(server), "listen",
-                                   camber_server_get_address(server), "metrics", metrics);
-        return camber_report_json(session->report, object);
-    }
-    camber_report_say(session->report, "%s/", camber_server_get_url(server));
-    if (metrics)
+    if (!session->options->json)
+        camber_report_say(session->report, "%s/", camber_server_get_url(server));
+    if (!session->options->json && metrics)
         camber_report_say(session->report, "http://%s/metrics", metrics);
-    return CAMBER_EXIT_DONE;
+    camber_report_say(session->report, "ready after %.2f s", 1e-3 * (camber_clock_ms() - session->start_ms));
 }
 
 static void set_begins(wishes *w, bool begins) {
@@ -396,12 +405,12 @@ static int serve(camber_session *session, camber_server *server, wishes *w) {
     if (status != CAMBER_EXIT_DONE)
         return status;
     camber_guard_go_first(session->guard);
-    camber_report_say(session->report, "ready after %.2f s", 1e-3 * (camber_clock_ms() - session->start_ms));
+    tell_ready(session, server);
     while (wait_for_wish(w, server)) {
         if (show(session, server, w, false) == CAMBER_EXIT_DONE)
-            camber_report_say(session->report, "has read %s again", session->options->inputs[0]);
+            camber_report_say(session->report, "reloaded %s", session->options->inputs[0]);
         else
-            camber_report_say(session->report, "goes on with what was read before");
+            camber_report_say(session->report, "still serving the previous map");
     }
     if (w->lost)
         return camber_report_fail(session->report, CAMBER_EXIT_UNAVAILABLE,

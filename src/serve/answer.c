@@ -121,7 +121,7 @@ static enum MHD_Result send_answer(request *r, reply *a) {
 }
 
 static enum MHD_Result send_error(request *r, int status) {
-    const int index = status == 404 ? 0 : status == 405 ? 1 : status == 500 ? 2 : 3;
+    const int index = status == 400 ? 0 : status == 404 ? 1 : status == 405 ? 2 : status == 500 ? 3 : 4;
     reply a = {.status = status,
                .body = camber_body_hold(r->listener->server->errors[index]),
                .media_type = "text/plain; charset=utf-8",
@@ -432,7 +432,10 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
         camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
     const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
-    const int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->path, &r->route) : 404;
+    int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->path, &r->route) : 404;
+    /* Where there are no pictures there are none that are too large. */
+    if (status == 400 && (listener->is_for_metrics || look(listener->server, false, NULL).is_archive))
+        status = 404;
     return status == 200 ? answer(r) : send_error(r, status);
 }
 

@@ -48,7 +48,7 @@ struct camber_server {
     double start_s;
     atomic_bool stopping;
     _Atomic int64_t in_flight; /* requests that are not answered yet */
-    camber_body *errors[4];    /* texts of 404, 405, 500 and 503 */
+    camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
     camber_body **page_bodies; /* two a file: plain, compressed or NULL */
     pthread_mutex_t mutex;     /* of view */
     camber_view_of_shown view;

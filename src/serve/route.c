@@ -99,9 +99,9 @@ static bool take_number(cursor *c, double least, double most, double *number) {
 }
 
 /* [@Rx].type, to the end of the path. */
-static bool take_ending(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+static bool take_ending(cursor *c, camber_route_request *r) {
     r->ratio = 1;
-    if (take(c, "@") && (!take_count(c, &r->ratio) || !take(c, "x") || r->ratio < 1 || r->ratio > limits->most_ratio))
+    if (take(c, "@") && (!take_count(c, &r->ratio) || !take(c, "x") || r->ratio < 1))
         return false;
     if (!take(c, "."))
         return false;
@@ -129,7 +129,7 @@ static bool take_place(cursor *c, const char *between, camber_route_request *r) 
 
 static bool take_tile(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
     r->route = CAMBER_ROUTE_TILE;
-    return take_place(c, "/", r) && take_ending(c, limits, r);
+    return take_place(c, "/", r) && take_ending(c, r) && r->ratio <= limits->most_ratio;
 }
 
 static bool take_subtree(cursor *c, camber_route_request *r) {
@@ -142,7 +142,7 @@ static bool take_of_tileset(cursor *c, const camber_route_limits *limits, camber
     return take(c, SUBTREES) ? take_subtree(c, r) : take_tile(c, limits, r) && r->type == CAMBER_ROUTE_GLB;
 }
 
-static bool take_static(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+static bool take_static(cursor *c, camber_route_request *r) {
     if (!take_number(c, -180, 180, &r->longitude) || !take(c, ",") || !take_number(c, -90, 90, &r->latitude) ||
         !take(c, ",") || !take_number(c, 0, MOST_ZOOM, &r->map_zoom))
         return false;
@@ -150,12 +150,16 @@ static bool take_static(cursor *c, const camber_route_limits *limits, camber_rou
                          (take(c, ",") && !take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg))))
         return false;
     if (!take(c, "/") || !take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) ||
-        !take_ending(c, limits, r))
+        !take_ending(c, r))
         return false;
     r->route = CAMBER_ROUTE_STATIC;
+    return r->width >= 1 && r->height >= 1 && r->type <= CAMBER_ROUTE_WEBP;
+}
+
+static bool is_too_large(const camber_route_request *r, const camber_route_limits *limits) {
     const uint64_t width = (uint64_t)r->width * r->ratio, height = (uint64_t)r->height * r->ratio;
-    return width >= 1 && height >= 1 && width <= limits->most_px && height <= limits->most_px &&
-           r->type <= CAMBER_ROUTE_WEBP;
+    return r->route == CAMBER_ROUTE_STATIC &&
+           (width > limits->most_px || height > limits->most_px || r->ratio > limits->most_ratio);
 }
 
 /* Letters, digits, dots, minus and underscores, and no dot first; the table of files knows the rest. */
@@ -197,7 +201,7 @@ static bool take_path(cursor *c, const camber_route_limits *limits, camber_route
     if (is_digit(c))
         return take_tile(c, limits, r);
     if (take(c, "static/"))
-        return take_static(c, limits, r);
+        return take_static(c, r);
     return take_word(c, "tiles.json", CAMBER_ROUTE_TILEJSON, r) ||
            (!r->dark &&
             (take_word(c, "tileset.json", CAMBER_ROUTE_TILESET, r) || take_word(c, "health", CAMBER_ROUTE_HEALTH, r) ||
@@ -211,7 +215,7 @@ int camber_route_parse(const camber_route_limits *limits, const char *method, co
     if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
         return 405;
     if (take_path(&c, limits, request))
-        return 200;
+        return is_too_large(request, limits) ? 400 : 200;
     *request = (camber_route_request){.name = ""};
     return 404;
 }

@@ -73,7 +73,8 @@ const char *camber_route_get_ending(camber_route_type type);
 bool camber_route_find_type(const char *name, camber_route_type *type);
 
 /* Parses a path as it came, before anything in it is unescaped; what follows a '?' is ignored. The same bytes give the
- * same answer, and nothing is allocated. Returns 200, 404 (request->route is NONE) or 405. */
+ * same answer, and nothing is allocated. Returns 200, 400 (a picture that is larger than the limits), 404
+ * (request->route is NONE) or 405. */
 int camber_route_parse(const camber_route_limits *limits, const char *method, const char *path,
                        camber_route_request *request);
 

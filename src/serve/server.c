@@ -106,8 +106,12 @@ static int start(camber_listener *listener, const char *address, unsigned thread
 /* ---- Bodies that never change ---- */
 
 static bool make_errors(camber_server *server) {
-    static const char *const texts[] = {"404 not found\n", "405 method not allowed\n", "500 internal error\n",
-                                        "503 not now; try again\n"};
+    char large[128];
+    const char *const texts[] = {large, "404 not found\n", "405 method not allowed\n", "500 internal error\n",
+                                 "503 not now; try again\n"};
+    snprintf(large, sizeof large,
+             "400 the picture is too large: a side, times @R, is at most %u px (--max-size), and R %u (--max-ratio)\n",
+             server->desc.most_px, server->desc.most_ratio);
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         if (!(server->errors[i] = camber_body_create(texts[i], strlen(texts[i]))))
             return false;

@@ -41,7 +41,7 @@ typedef struct camber_shown {
     const char *name, *attribution; /* NULL: none */
     const char *metadata;           /* of an archive: a JSON object. NULL: none */
     const char *tileset; /* folder of mesh tiles and their tileset.json; it outlives the server. NULL: none */
-    bool is_dark;        /* what is drawn is the built-in style's dark theme, and nothing else */
+    bool is_dark;        /* it is dark by itself: the dark theme and nothing else, or an archive that says so */
     bool has_bounds, has_center;
     double bounds[4], center[3];
     int min_zoom, max_zoom;

@@ -308,6 +308,32 @@ static void put_text(json_t *metadata, const char *name, const char *text) {
         json_object_set_new(metadata, name, json_string(text));
 }
 
+/* The zoom at which the bounds are about four tiles wide. */
+static int find_center_zoom(const camber_tiles_area *area) {
+    const double side = fmax(area->bounds.x1 - area->bounds.x0, area->bounds.y1 - area->bounds.y0);
+    const double zoom = side > 0.0 ? floor(log2(4.0 / side)) : area->max_zoom;
+    return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
+}
+
+/* Whether the style's backgrounds make a dark map, over which a page's own texts and buttons should be dark, too. They
+ * are looked at at the zoom that is shown first. */
+static bool is_dark(const pyramid *p) {
+    static const float DARK = 0.4f; /* less light than that, of 1; the shipped styles have 0.08 and 0.95 */
+    const camber_style *style = p->engine->features->style;
+    const double zoom = fmax(camber_engine_zoom_desc(&p->engine->desc, find_center_zoom(&p->area)).zoom, 0.0);
+    float light = 1.0f;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        if (layer->kind != CAMBER_LAYER_BACKGROUND || layer->properties[CAMBER_BACKGROUND_PATTERN] ||
+            !camber_style_layer_matches(layer, zoom, NULL))
+            continue;
+        const camber_color color = camber_style_layer_paint(layer, zoom, NULL).color;
+        const float own = 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b;
+        light += color.a * (own - light);
+    }
+    return light < DARK && !p->engine->desc.meshes;
+}
+
 static json_t *make_metadata(const pyramid *p) {
     const camber_tiles_draw_desc *desc = p->desc;
     const camber_features *features = p->engine->features;
@@ -322,16 +348,10 @@ static json_t *make_metadata(const pyramid *p) {
     put_text(metadata, "version", camber_version());
     put_text(metadata, "generator", generator);
     put_text(metadata, "style", features->style->name);
+    put_text(metadata, "theme", is_dark(p) ? "dark" : NULL);
     json_object_set_new(metadata, "tileSize", json_integer((json_int_t)p->engine->tile_px));
     json_object_set_new(metadata, "ratio", json_real(p->engine->desc.ratio));
     return metadata;
-}
-
-/* The zoom at which the bounds are about four tiles wide. */
-static int find_center_zoom(const camber_tiles_area *area) {
-    const double side = fmax(area->bounds.x1 - area->bounds.x0, area->bounds.y1 - area->bounds.y0);
-    const double zoom = side > 0.0 ? floor(log2(4.0 / side)) : area->max_zoom;
-    return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
 static camber_tile_type type_of(const pyramid *p) {
@@ -380,7 +400,7 @@ static camber_status open_writer(pyramid *p) {
                                            0.5 * (whole.bounds[1] + whole.bounds[3]), find_center_zoom(&p->area)};
     if (!camber_archive_get_format(desc->output, &whole.format))
         status = camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
-                             "%s: its name tells no format; name it .pmtiles, .mbtiles, or a folder with a slash",
+                             "%s: unknown extension; name it .pmtiles, .mbtiles, or a folder with a slash",
                              desc->output);
     if (desc->renew)
         describe_renewed(p, &whole);

@@ -57,13 +57,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     memset(&request, 0xa5, sizeof request);
     memset(&again, 0x5a, sizeof again);
     const int status = camber_route_parse(&LIMITS, text, path, &request);
-    REQUIRE(status == 200 || status == 404 || status == 405);
+    REQUIRE(status == 200 || status == 400 || status == 404 || status == 405);
     REQUIRE((status == 405) == (strcmp(text, "GET") != 0 && strcmp(text, "HEAD") != 0));
     REQUIRE(camber_route_parse(&LIMITS, text, path, &again) == status && again.route == request.route);
     if (status == 200)
         check(&request, path);
     else
-        REQUIRE(request.route == CAMBER_ROUTE_NONE);
+        REQUIRE(request.route == (status == 400 ? CAMBER_ROUTE_STATIC : CAMBER_ROUTE_NONE));
     free(text);
     return 0;
 }

@@ -146,6 +146,13 @@ async function checkHash(page, url) {
     await page.goto(url + hashAt(CENTER, ZOOM - 1));
     await page.waitForFunction(zoom => document.getElementById('zoom').textContent === `zoom ${zoom}`, ZOOM - 1);
     check(true, 'a hash that is typed moves the map');
+    await page.goto(url + hashAt(CENTER, ZOOM - 0.5));
+    await page.locator('#zoom', {hasText: String(ZOOM - 0.5)}).waitFor();
+    check((await readPlace(page))[0] === ZOOM - 0.5, 'the map moves to a zoom between two', await readPlace(page));
+    await page.reload();
+    await page.waitForFunction(() => document.querySelector('img.leaflet-tile-loaded'));
+    check((await readPlace(page))[0] === ZOOM - 0.5, 'and opens there', await readPlace(page));
+    await shoot(page, 'between-zooms');
     await page.goto(url + '#x/<b>/1');
     await page.reload();
     await page.waitForFunction(() => /^#\d/.test(location.hash));
@@ -287,14 +294,42 @@ async function checkForeignText(browser) {
     await server.stop();
 }
 
+// OpenStreetMap's name leads to its licence, unless it leads somewhere already. Around it there is text.
+async function checkLicence(browser) {
+    const links = page => page.evaluate(() => [...document.querySelectorAll('#attribution *')].map(part =>
+        part.outerHTML).join());
+    const licence = 'href="https://www.openstreetmap.org/copyright" rel="noopener"';
+    for (const [text, shown, wanted] of [
+        ['(c) OpenStreetMap contributors', '© OpenStreetMap contributors',
+            `<a ${licence}>OpenStreetMap contributors</a>`],
+        ['&lt;b&gt;OpenStreetMap&lt;/b&gt;, <i onclick=alert(5)>us</i>', '<b>OpenStreetMap</b>, us',
+            `<a ${licence}>OpenStreetMap</a>`],
+        ['<a href="https://example.org/osm">OpenStreetMap</a>', 'OpenStreetMap',
+            '<a href="https://example.org/osm" rel="noopener">OpenStreetMap</a>'],
+    ]) {
+        const server = await startServer(input, ...DRAWN, '--attribution', text);
+        const page = await openPage(browser, server.url + hashAt(CENTER));
+        check(await page.locator('#attribution').textContent() === shown && await links(page) === wanted,
+            `the licence's link of ${text}`, await links(page));
+        await page.context().close();
+        await server.stop();
+    }
+}
+
 // A map that is dark by itself has a dark page, whatever the system's theme, and no button.
 async function checkDarkMap(browser) {
-    const server = await startServer(input, '--theme', 'dark');
-    const page = await openPage(browser, server.url + hashAt(CENTER));
-    check(await page.evaluate(() => document.documentElement.dataset.theme) === 'dark' &&
-        await page.locator('#theme').isHidden(), 'a dark map has a dark page');
-    await page.context().close();
-    await server.stop();
+    const archive = join(folder, 'dark.pmtiles');
+    execFileSync(tool, ['tiles', '-q', '-f', input, ...DRAWN, '-o', archive, '--theme', 'dark', '--min-zoom', '12',
+        '--max-zoom', String(ZOOM + 1)]);
+    for (const [what, shown] of [['map', [input, '--theme', 'dark']], ['archive', [archive]]]) {
+        const server = await startServer(...shown);
+        const page = await openPage(browser, server.url + hashAt(CENTER));
+        check(await page.evaluate(() => document.documentElement.dataset.theme) === 'dark' &&
+            await page.locator('#theme').isHidden(), `a dark ${what} has a dark page`);
+        await shoot(page, `dark-${what}`);
+        await page.context().close();
+        await server.stop();
+    }
 }
 
 // The browser reports that nothing answers; so this page's console is not silent.
@@ -415,6 +450,7 @@ try {
     await page.context().close();
     await checkPhone(browser, server.url);
     await checkForeignText(browser);
+    await checkLicence(browser);
     await checkDarkMap(browser);
     await checkRestart(browser);
     await checkArchive(browser, blank);

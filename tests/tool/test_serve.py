@@ -72,7 +72,11 @@ def test_routes():
     expect("default-src 'none'" in headers["content-security-policy"], headers)
     expect(server.get("/page/page.css")[1]["content-type"].startswith("text/css"), "page.css")
     expect(server.get("/health")[::2] == (200, b"ok\n"), "health")
-    for path in ("/metrics", "/page/none.js", "/static/0,0,0/601x1.png", "/static/0,0,0/301x1@2x.png", "/events",
+    for path in ("/static/0,0,0/601x1.png", "/static/0,0,0/301x1@2x.png", "/static/0,0,0/1x1@5x.webp"):
+        status, headers, body = server.get(path)
+        expect(status == 400 and b"at most 600 px (--max-size), and R 4 (--max-ratio)" in body, f"{path}: {status}: {body}")
+        expect(server.get(path, port=server.metrics_port)[0] == 404, "pictures at the metrics' address")
+    for path in ("/metrics", "/page/none.js", "/events",
                  tile + "@5x.png", tile + ".pbf", "/dark" + tile + ".jpg", "/favicon.ico", "/robots.txt"):
         status, headers, body = server.get(path)
         expect(status == 404 and body == b"404 not found\n", f"{path}: {status}")
@@ -151,6 +155,10 @@ def test_usage():
     done = subprocess.run([TOOL, "serve", "bad.json", "-q", "--listen", "127.0.0.1:0"], capture_output=True, text=True,
                           timeout=PATIENCE_S)
     expect(done.returncode == 65 and done.stderr.count("\n") == 1, f"bad input: {done.returncode} {done.stderr}")
+    # Nobody is told the address of a server that ends at once.
+    for name, status in (("bad.json", 65), ("none.json", 66)):
+        done = subprocess.run([TOOL, "serve", name, "--listen", "127.0.0.1:0"], capture_output=True, text=True, timeout=PATIENCE_S)
+        expect(done.returncode == status and "http://" not in done.stderr, f"{name}: {done.returncode} {done.stderr}")
     server = Server("map.json")
     done = subprocess.run([TOOL, "serve", "map.json", "--listen", f"127.0.0.1:{server.port}"], capture_output=True,
                           text=True, timeout=PATIENCE_S)
@@ -172,6 +180,7 @@ def test_public_url():
         child.terminate()
         child.wait()
         expect(("--public-url" in said) != bool(options), said)
+        expect(re.search(r"^(http://0\.0\.0\.0:\d+|https://tiles\.example\.org)/$", said, re.M), said)
 
 
 def test_caching():
@@ -449,7 +458,8 @@ def test_reload():
     with open("map.json", "w", encoding="utf-8") as file:
         file.write("{")
     server.process.send_signal(signal.SIGHUP)
-    wait_until(lambda: any("goes on" in line for line in server.errors), lambda: f"a broken input is not told: {server.errors}")
+    wait_until(lambda: any("still serving the previous map" in line for line in server.errors),
+               lambda: f"a broken input is not told: {server.errors}")
     expect(server.get(path)[1]["etag"] == tag, "a broken input changes what is served")
     wait_until(lambda: len(results) > 100, lambda: f"{len(results)} requests in all this time")
     stop.set()
@@ -701,9 +711,15 @@ def test_archives():
             status, headers, nothing = server.get(path)
             expect(status == 204 and nothing == b"" and "content-type" not in headers, f"{name}: {path}: {status}")
         for path in (f"/{ZOOM}/{COLUMN}/{ROW}.webp", f"/{ZOOM}/{COLUMN}/{ROW}@2x.png", "/dark/" + tile,
-                     "/static/0,0,0/10x10.png"):
+                     "/static/0,0,0/10x10.png", "/static/0,0,0/9999x10.png"):
             expect(server.get(path)[0] == 404, f"{name}: {path}")
         server.stop()
+    subprocess.run([TOOL, "tiles", "map.json", "-o", "dark.mbtiles", "-q", "--max-zoom", "9", "--theme", "dark"],
+                   check=True, timeout=PATIENCE_S)
+    server = Server("dark.mbtiles")
+    about = json.loads(server.get("/tiles.json")[2])
+    expect(about["camber"]["theme"] == "dark", f"an archive of a dark map: {about}")
+    server.stop()
     server = Server("a.pmtiles")
     write_map("map.json", seed=9)
     subprocess.run([TOOL, "tiles", "map.json", "-o", "a.pmtiles", "-q", "--max-zoom", "13", "-f"], check=True, timeout=PATIENCE_S)

@@ -582,6 +582,16 @@ def test_metadata():
     shown = json.loads(camber("tiles", "show", "told.pmtiles", "--json").stdout)
     metadata = shown["metadata"]
     expect((metadata["name"], metadata["description"], metadata["attribution"]) == ("Lines", "made up", "nobody"), shown)
+    expect("theme" not in metadata, "a light map has a theme")
+    for name, options in (("dark.pmtiles", ("--theme", "dark")), ("own.mbtiles", ("--style", "own.json"))):
+        with open("own.json", "w") as file:
+            json.dump({"version": 8, "sources": {}, "layers": [
+                {"id": "light", "type": "background", "paint": {"background-color": "#fff"}},
+                {"id": "dark", "type": "background", "paint": {"background-color": "rgba(10, 20, 30, 0.9)"}},
+                {"id": "lines", "type": "line", "paint": {"line-color": "#fff"}}]}, file)
+        tiles("lines.geojson", "-o", name, "--max-zoom", 9, *options)
+        about = json.loads(camber("tiles", "show", name, "--json").stdout)["metadata"]
+        expect(about["theme"] == "dark", f"{name}: {about}")
     longitude, latitude = place(COLUMN, ROW)
     west, south, east, north = shown["bounds"]
     expect(west < longitude < east and south < latitude < north and east - west < 2, shown)

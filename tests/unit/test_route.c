@@ -158,9 +158,6 @@ static void knows_no_other_path(void **state) {
                                         "/healthz",
                                         "/static/0,0,0/0x1.png",
                                         "/static/0,0,0/1x0.png",
-                                        "/static/0,0,0/2049x1.png",
-                                        "/static/0,0,0/1025x1@2x.png",
-                                        "/static/0,0,0/99999999x1@4x.png",
                                         "/static/0,0,0/1x1.pbf",
                                         "/static/0,0,0/1X1.png",
                                         "/static/0,0/1x1.png",
@@ -191,6 +188,19 @@ static void knows_no_other_path(void **state) {
     assert_int_equal(parse("/static/0.123456789012345,0,0/1x1.png", &request), 200);
 }
 
+/* They are pictures, and it is the server's limits that they do not keep. */
+static void tells_pictures_that_are_too_large(void **state) {
+    static const char *const paths[] = {"/static/0,0,0/2049x1.png", "/static/0,0,0/1x2049.png",
+                                        "/static/0,0,0/1025x1@2x.png", "/static/0,0,0/99999999x1@4x.webp",
+                                        "/dark/static/0,0,0/1x1@5x.png"};
+    camber_route_request request;
+    (void)state;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (parse(paths[i], &request) != 400 || request.route != CAMBER_ROUTE_STATIC)
+            fail_msg("\"%s\" is not too large", paths[i]);
+    assert_int_equal(parse("/static/0,0,0/2049x1.pbf", &request), 404);
+}
+
 static void takes_two_methods(void **state) {
     static const char *const methods[] = {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "get", "GETS", ""};
     camber_route_request request;
@@ -216,7 +226,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_each_route), cmocka_unit_test(reads_a_tile),        cmocka_unit_test(reads_a_picture),
         cmocka_unit_test(reads_a_name),     cmocka_unit_test(knows_no_other_path), cmocka_unit_test(takes_two_methods),
-        cmocka_unit_test(names_types),
+        cmocka_unit_test(names_types),      cmocka_unit_test(tells_pictures_that_are_too_large),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,6 +67,17 @@ function showNotice(text, place = '') {
 const ATTRIBUTION_PART = /<a\s[^>]*?href\s*=\s*(?:"([^"]*)"|'([^']*)')[^>]*>|(<\/a\s*>)|<\/?[a-z!][^>]*>|([^<]+|<)/gi;
 const ENTITIES = {amp: '&', copy: '©', gt: '>', lt: '<', nbsp: '\u00a0', quot: '"', '#39': "'", '#169': '©'};
 
+// Where OpenStreetMap's attribution leads by its licence. An attribution that has its own link keeps that one.
+const OSM_NAME = /(OpenStreetMap(?: contributors)?)/, OSM_COPYRIGHT = 'https://www.openstreetmap.org/copyright';
+
+function makeLink(target, text = '') {
+    const link = document.createElement('a');
+    link.href = target;
+    link.rel = 'noopener';
+    link.textContent = text;
+    return link;
+}
+const linkNames = text => text.split(OSM_NAME).map((part, i) => i % 2 ? makeLink(OSM_COPYRIGHT, part) : part);
 const readEntities = text => text.replace(/&(#?\w+);/g, (whole, name) => ENTITIES[name] ?? whole);
 function showAttribution(text) {
     const line = element('attribution');
@@ -77,11 +88,10 @@ function showAttribution(text) {
         if (end) {
             place = line;
         } else if (words) {
-            place.append(readEntities(words).replace(/\(c\)/gi, '©'));
+            const text = readEntities(words).replace(/\(c\)/gi, '©');
+            place.append(...place === line ? linkNames(text) : [text]);
         } else if (/^https?:\/\//i.test(target)) {
-            place = document.createElement('a');
-            place.href = target;
-            place.rel = 'noopener';
+            place = makeLink(target);
             line.append(place);
         }
     }
@@ -101,7 +111,15 @@ function readHash() {
 }
 function writeHash(map) {
     const zoom = map.getZoom() - 1, center = map.getCenter().wrap(), decimals = decimalsAt(zoom);
-    history.replaceState(null, '', `#${zoom}/${center.lat.toFixed(decimals)}/${center.lng.toFixed(decimals)}`);
+    history.replaceState(null, '', `#${+zoom.toFixed(2)}/${center.lat.toFixed(decimals)}/${center.lng.toFixed(decimals)}`);
+}
+
+// Leaflet rounds zooms; one that was typed stays as it is.
+function goTo(map, place) {
+    const snap = map.options.zoomSnap;
+    map.options.zoomSnap = 0;
+    map.setView(place.center, place.zoom, {animate: false});
+    map.options.zoomSnap = snap;
 }
 
 function describePlace(place, zoom) {
@@ -112,7 +130,7 @@ function describePlace(place, zoom) {
 function showPlace(map, place) {
     const zoom = map.getZoom() - 1;
     element('place').textContent = describePlace(place, zoom);
-    element('zoom').textContent = `zoom ${+zoom.toFixed(1)}`;
+    element('zoom').textContent = `zoom ${+zoom.toFixed(2)}`;
 }
 // The bar is as long as the largest round number of metres that fits, in the middle of the map.
 function showScale(map) {
@@ -142,7 +160,7 @@ function followPlace(map) {
         const zoom = map.getZoom() - 1;
         writeHash(map);
         clearTimeout(silence);
-        silence = setTimeout(() => say(`Zoom ${zoom}, ${describePlace(map.getCenter(), zoom)}`), 800);
+        silence = setTimeout(() => say(`Zoom ${+zoom.toFixed(2)}, ${describePlace(map.getCenter(), zoom)}`), 800);
     });
     map.on('zoomend zoomlevelschange', () => {
         element('zoom-in').setAttribute('aria-disabled', String(map.getZoom() >= map.getMaxZoom()));
@@ -151,7 +169,7 @@ function followPlace(map) {
     addEventListener('hashchange', () => {
         const place = readHash();
         if (place)
-            map.setView(place.center, place.zoom, {animate: false});
+            goTo(map, place);
     });
 }
 
@@ -331,7 +349,7 @@ function findFirstZoom(map, bounds) {
 function showFirst(map, tiles) {
     const place = readHash(), bounds = getBounds(tiles);
     if (place)
-        map.setView(place.center, place.zoom);
+        goTo(map, place);
     else if (bounds)
         map.setView(bounds.getCenter(), findFirstZoom(map, bounds));
     else

@@ -66,7 +66,7 @@ def parse_color(color):
             values = ()
         if len(values) in (3, 4) and all(0 <= value <= 1 for value in values):
             return values + (1.0,) * (len(values) == 3)
-    raise ArgumentError("%r is no colour; give \"#rgb\", \"#rrggbb\", either with alpha behind it, or three or four "
+    raise ArgumentError("%r is not a colour; give \"#rgb\", \"#rrggbb\", either with alpha behind it, or three or four "
                         "numbers from 0 to 1" % (color,))
 
 
@@ -178,7 +178,7 @@ def as_output(out, width, height):
         first = -block.ctypes.data % step
         return block[first:first + size].reshape(height, width, 4)
     if not isinstance(out, numpy.ndarray) or out.dtype != numpy.uint8 or out.shape != (height, width, 4):
-        raise ArgumentError("out is no uint8 array of %d x %d x 4" % (height, width))
+        raise ArgumentError("out is not a uint8 array of %d x %d x 4" % (height, width))
     if not out.flags.writeable:
         raise ArgumentError("out is read-only")
     if out.strides[1:] != (4, 1) or out.strides[0] < 4 * width:

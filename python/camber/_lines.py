@@ -161,7 +161,7 @@ class _Arrow:
         """Offsets of a list's elements."""
         kind = {"+l": numpy.int32, "+L": numpy.int64}.get(_format(schema))
         if kind is None or array.n_buffers != 2 or array.n_children != 1:
-            raise TypeError("Arrow's format %r is no list of %s; %s" % (_format(schema), what, WANTED))
+            raise TypeError("Arrow's format %r is not a list of %s; %s" % (_format(schema), what, WANTED))
         offsets = self.buffer(array, 1, kind, array.offset + first, count + 1)
         if count and (offsets[0] < 0 or (offsets[1:] < offsets[:-1]).any() or offsets[-1] > array.children[0].length):
             raise ValueError("offsets of an Arrow list do not ascend within its %s" % what)
@@ -177,7 +177,7 @@ class _Arrow:
         elif kind == "+s" and array.n_children >= 2 and all(_format(schema.children[i]) == "g" for i in (0, 1)):
             values = numpy.stack([self.numbers(array.children[i], array.offset + first, count) for i in (0, 1)], axis=1)
         else:
-            raise TypeError("Arrow's format %r is no point; %s" % (kind, WANTED))
+            raise TypeError("Arrow's format %r is not a point; %s" % (kind, WANTED))
         is_valid = self.is_valid(array, first, count)
         return values if is_valid is None else numpy.where(is_valid[:, None], values, numpy.nan)
 

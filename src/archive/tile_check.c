@@ -19,7 +19,7 @@ static uint32_t little_endian(const unsigned char *at, size_t size) {
 static const char *check_png(const unsigned char *bytes, size_t size, uint32_t *width, uint32_t *height) {
     bool has_pixels = false;
     if (size < 8 || memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) != 0)
-        return "is no PNG";
+        return "is not a PNG";
     for (size_t at = 8; size - at >= 12;) {
         const uint32_t length = big_endian(bytes + at);
         const unsigned char *name = bytes + at + 4;
@@ -47,7 +47,7 @@ static const char *check_png(const unsigned char *bytes, size_t size, uint32_t *
 /* RIFF: a length, WEBP, and a first chunk that tells the size in one of three ways. */
 static const char *check_webp(const unsigned char *bytes, size_t size, uint32_t *width, uint32_t *height) {
     if (size < 12 || memcmp(bytes, "RIFF", 4) != 0 || memcmp(bytes + 8, "WEBP", 4) != 0)
-        return "is no WebP";
+        return "is not a WebP";
     if (size < 30)
         return "is a WebP that is cut off";
     const uint64_t told = (uint64_t)little_endian(bytes + 4, 4) + 8;
@@ -87,7 +87,7 @@ static const char *check_vector(const unsigned char *bytes, size_t size) {
     while (at < end) {
         uint64_t key, length;
         if (!take_varint(&at, end, &key) || (key & 7) != 2 || key >> 3 == 0)
-            return "is no vector tile";
+            return "is not a vector tile";
         if (!take_varint(&at, end, &length) || length > (uint64_t)(end - at))
             return "is a vector tile that is cut off";
         at += length;
@@ -97,13 +97,13 @@ static const char *check_vector(const unsigned char *bytes, size_t size) {
 
 static const char *check_glb(const unsigned char *bytes, size_t size) {
     if (size < 12 || memcmp(bytes, "glTF", 4) != 0 || little_endian(bytes + 4, 4) != 2)
-        return "is no GLB";
+        return "is not a GLB";
     return little_endian(bytes + 8, 4) == size ? NULL : "is a GLB that is cut off";
 }
 
 static const char *check_jpeg(const unsigned char *bytes, size_t size) {
     if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8)
-        return "is no JPEG";
+        return "is not a JPEG";
     return bytes[size - 2] == 0xff && bytes[size - 1] == 0xd9 ? NULL : "is a JPEG that is cut off";
 }
 
@@ -116,7 +116,7 @@ const char *camber_tile_check(camber_tile_type type, const unsigned char *bytes,
     case CAMBER_TILE_JPEG: return check_jpeg(bytes, size_bytes);
     case CAMBER_TILE_MVT: return check_vector(bytes, size_bytes);
     case CAMBER_TILE_GLB: return check_glb(bytes, size_bytes);
-    case CAMBER_TILE_AVIF: return size_bytes < 12 || memcmp(bytes + 4, "ftypavi", 7) != 0 ? "is no AVIF" : NULL;
+    case CAMBER_TILE_AVIF: return size_bytes < 12 || memcmp(bytes + 4, "ftypavi", 7) != 0 ? "is not an AVIF" : NULL;
     case CAMBER_TILE_MLT:
     case CAMBER_TILE_OTHER: break;
     }

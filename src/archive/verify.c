@@ -143,7 +143,7 @@ static void check_size(camber_verify *v, const char *name, uint32_t width, uint3
         v->width = width;
         v->height = height;
         if (width != height)
-            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "tile %s is no square: %u x %u px", name, width, height);
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "tile %s is not square: %u x %u px", name, width, height);
     }
     if (width != v->width || height != v->height)
         camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s has %u x %u px, and others %u x %u", name, width,
@@ -193,7 +193,7 @@ static void check_metadata(camber_verify *v) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         const json_t *value = json_object_get(about, texts[i]);
         if (value && !json_is_string(value))
-            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s in the metadata is no text", texts[i]);
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s in the metadata is not a text", texts[i]);
     }
 }
 

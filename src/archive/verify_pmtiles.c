@@ -55,9 +55,9 @@ static void check_sections(camber_verify *v, const camber_pmtiles_file *file) {
     if (h->clustered > 1)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "clustered is %d, neither 0 nor 1", h->clustered);
     if (!v->archive->set->about)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the metadata are no JSON");
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the metadata are not JSON");
     else if (!json_is_object(v->archive->set->about))
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the metadata are no JSON object");
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the metadata are not a JSON object");
 }
 
 /* ---- Entries ---- */

@@ -85,7 +85,7 @@ static camber_status take_metadata(void *user, sqlite3_stmt *row) {
     if (strcmp(name, "bounds") == 0) {
         t->has_bounds = true;
         if (sscanf(value, "%lf,%lf,%lf,%lf", b, b + 1, b + 2, b + 3) != 4)
-            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "bounds in the metadata are no four numbers");
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "bounds in the metadata are not four numbers");
     }
     if (strcmp(name, "format") == 0) {
         bool found = strchr(value, '/') != NULL; /* a media type */
@@ -209,7 +209,7 @@ static void check_root(tileset *t, const char *found, size_t size_bytes, bool sa
     t->is_left = !same;
     if (!same)
         camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, !read, "tileset.json %s",
-                           read ? "is not the one that camber tiles writes; subtrees are not checked" : "is no JSON");
+                           read ? "is not the one that camber tiles writes; subtrees are not checked" : "is not JSON");
     json_decref(read);
 }
 
@@ -301,7 +301,7 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
 }
 
 static camber_status take_stranger(void *user, const char *path) {
-    camber_verify_tell(user, CAMBER_VERIFY_NAME, true, "%s: is no tile by its name, ZOOM/COLUMN/ROW.EXTENSION", path);
+    camber_verify_tell(user, CAMBER_VERIFY_NAME, true, "%s: is not a tile by its name, ZOOM/COLUMN/ROW.EXTENSION", path);
     return CAMBER_OK;
 }
 

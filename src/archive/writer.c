@@ -198,7 +198,7 @@ static camber_status look_at_existing(camber_archive_writer *writer) {
         status = fail_existing(writer, there);
     else if (status != CAMBER_OK && !desc->force)
         status = camber_fail(writer->context, CAMBER_ERROR_INPUT,
-                             "%s: exists, and is no archive of tiles; name another file, or replace it with --force",
+                             "%s: exists, and is not an archive of tiles; name another file, or replace it with --force",
                              writer->path);
     else
         status = CAMBER_OK;

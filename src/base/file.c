@@ -78,7 +78,7 @@ static camber_status check_root(camber_context *context, const char *path, cambe
     if (naming == CAMBER_NAMED_BY_CALLER || camber_file_is_reached(context, path))
         return CAMBER_OK;
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: is no file in %s, beyond which a style may name none; put it there", path,
+                       "%s: is not a file in %s, beyond which a style may name none; put it there", path,
                        context->desc.access.root);
 }
 

@@ -35,7 +35,7 @@ int camber_failure_folder_check(const camber_session *session) {
                                         "%s: cannot be made (%s); name a folder that can", folder, strerror(errno));
     }
     if (!S_ISDIR(info.st_mode))
-        return camber_report_fail(session->report, CAMBER_EXIT_CREATE, "%s: is no folder; name one", folder);
+        return camber_report_fail(session->report, CAMBER_EXIT_CREATE, "%s: is not a folder; name one", folder);
     if (access(folder, W_OK | X_OK) != 0)
         return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
                                   "%s: cannot be written to (%s); name a folder that you may write to", folder,

@@ -79,6 +79,11 @@ bool camber_path_ends_with(const char *path, const char *end) {
     return length > tail && strcasecmp(path + length - tail, end) == 0;
 }
 
+void camber_path_blame_extension(const char *path, char blame[64]) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    snprintf(blame, 64, dot && dot > name && dot[1] ? "unknown extension %.32s" : "no extension", dot ? dot : "");
+}
+
 /* Finite decimal numbers only: strtod alone also takes blanks, hexadecimal, inf and nan. *text moves behind. */
 static bool parse_number(const char **text, double *value) {
     const size_t span = strspn(*text, "0123456789+-.eE");
@@ -209,6 +214,10 @@ static int parse_words(const camber_option_reader *p, const camber_option_spec *
 }
 
 static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
+    /* Of two outputs one would be lost without a word. */
+    if (spec->offset == offsetof(camber_options, output) && p->options->output)
+        return camber_options_refuse(p, "-o %s: is the second output, after -o %s; give one of them", text,
+                                     p->options->output);
     p->options->given[spec - camber_option_specs] = true;
     char *field = (char *)p->options + spec->offset;
     switch (spec->kind) {

@@ -64,9 +64,12 @@ static int check_format(const camber_option_reader *p, bool out) {
                        : out && glb         ? CAMBER_FORMAT_GLB
                        : out                ? CAMBER_FORMAT_PNG
                                             : -1;
-    if (format < 0)
-        return camber_options_refuse(p, "%s: its extension tells no format; name it OUT.%s, or give --format %s",
-                                     options->output, glb ? "glb" : "png", glb ? "glb" : "png");
+    if (format < 0) {
+        char blame[64];
+        camber_path_blame_extension(options->output, blame);
+        return camber_options_refuse(p, "%s: %s; camber %s writes %s: name it OUT.%s, or give --format", options->output,
+                                     blame, p->verb, glb ? "glb" : "png, png8 and webp", glb ? "glb" : "png");
+    }
     const bool wrong = (format == CAMBER_FORMAT_GLB) != glb || (named >= 0 && (named == CAMBER_FORMAT_GLB) != glb);
     if (wrong)
         return camber_options_refuse(p, "%s: %s writes %s; camber %s writes %s", options->output, p->verb,
@@ -199,9 +202,11 @@ static int check_draw(const camber_option_reader *p) {
 
 static int check_plot(const camber_option_reader *p) {
     const char *plot = p->options->plot;
-    if (plot && !camber_path_ends_with(plot, ".svg") && !camber_path_ends_with(plot, ".png"))
-        return camber_options_refuse(p, "--plot %s: its extension tells no format; name it OUT.svg or OUT.png", plot);
-    return CAMBER_EXIT_DONE;
+    char blame[64];
+    if (!plot || camber_path_ends_with(plot, ".svg") || camber_path_ends_with(plot, ".png"))
+        return CAMBER_EXIT_DONE;
+    camber_path_blame_extension(plot, blame);
+    return camber_options_refuse(p, "--plot %s: %s; name it OUT.svg or OUT.png", plot, blame);
 }
 
 int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size) {

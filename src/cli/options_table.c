@@ -139,7 +139,7 @@ const camber_option_spec camber_option_specs[] = {
      "memory that the run may take, as in 512M; data that takes more, and over 128M, is refused", 262144,
      1099511627776.0},
     {"allow-remote", 0, CAMBER_OPTION_FLAG, READING | PYRAMIDS, FIELD(allow_remote), NULL,
-     "allow INPUT to be on the network or to lead there"},
+     "allow INPUT to be a network address, or to lead to one"},
     {"allow-vrt", 0, CAMBER_OPTION_FLAG, READING | PYRAMIDS, FIELD(allow_vrt), NULL,
      "allow INPUT to name other files (VRT)"},
     {"root", 0, CAMBER_OPTION_FOLDER, READING | PYRAMIDS, FIELD(root), "FOLDER",

@@ -70,5 +70,8 @@ typedef struct camber_option_reader {
 int camber_options_refuse(const camber_option_reader *reader, const char *format, ...);
 /* Whether a path ends so, in small or large letters, and has something before it. */
 bool camber_path_ends_with(const char *path, const char *end);
+/* Writes what is wrong with the extension of a path whose format cannot be told: "unknown extension .xyz", or "no
+ * extension". */
+void camber_path_blame_extension(const char *path, char blame[64]);
 
 #endif

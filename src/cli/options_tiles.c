@@ -20,8 +20,9 @@ static int check_archive_name(const camber_option_reader *p) {
     if (camber_path_ends_with(output, ".pmtiles") || camber_path_ends_with(output, ".mbtiles") ||
         camber_path_ends_with(output, "/"))
         return CAMBER_EXIT_DONE;
-    return camber_options_refuse(
-        p, "%s: its extension tells no format; name it OUT.pmtiles, OUT.mbtiles, or OUT/ for a folder", output);
+    char blame[64];
+    camber_path_blame_extension(output, blame);
+    return camber_options_refuse(p, "%s: %s; name it OUT.pmtiles, OUT.mbtiles, or OUT/ for a folder", output, blame);
 }
 
 /* ---- show, verify, merge ---- */
@@ -77,7 +78,7 @@ static int check_zooms(const camber_option_reader *p) {
     if (options->max_zoom == UINT32_MAX)
         options->max_zoom = options->min_zoom > 14 ? options->min_zoom : 14;
     if (options->min_zoom > options->max_zoom)
-        return camber_options_refuse(p, "--min-zoom %u: lies above --max-zoom %u; give the lower one first",
+        return camber_options_refuse(p, "--min-zoom %u: is greater than --max-zoom %u; swap them",
                                      options->min_zoom, options->max_zoom);
     return CAMBER_EXIT_DONE;
 }
@@ -132,7 +133,7 @@ static int check_schedule(const camber_option_reader *p) {
         return camber_options_refuse(p, "--schedule: is of files, and a style's own sources are none; name an INPUT");
     for (size_t i = 0; i < options->input_count; i++)
         if (strcmp(options->inputs[i], "-") == 0 || strncmp(options->inputs[i], "/vsi", 4) == 0)
-            return camber_options_refuse(p, "--schedule: %s is no file that could be compared; copy it to one",
+            return camber_options_refuse(p, "--schedule: %s is not a file that could be compared; copy it to one",
                                          options->inputs[i]);
     return CAMBER_EXIT_DONE;
 }

@@ -64,7 +64,7 @@ static int add_line(job *j, const char *path, char *line, size_t number) {
         for (char *c = line; *c; c++)
             *c = (unsigned char)*c < 0x20 || (unsigned char)*c >= 0x7f ? '?' : *c;
         return camber_report_fail(j->session->report, CAMBER_EXIT_DATA,
-                                  "%s: line %zu, \"%.40s\", is no tile; give zoom/column/row, as in 12/1950/1533", path,
+                                  "%s: line %zu, \"%.40s\", is not a tile; give zoom/column/row, as in 12/1950/1533", path,
                                   number, line);
     }
     j->place_count++;
@@ -390,7 +390,7 @@ static void print_text(const job *j) {
                           j->session->options->renewed ? "renew" : "do");
         return;
     }
-    camber_report_say(report, "%s: %s%llu tile%s in %llu unit%s, %llu points, %.1f MB", j->output,
+    camber_report_say(report, "%s: %s%llu tile%s in %llu metatile%s, %llu points, %.1f MB", j->output,
                       j->session->options->dry_run ? "would have " : "", (unsigned long long)stats->tiles,
                       camber_plural((size_t)stats->tiles), (unsigned long long)stats->units,
                       camber_plural((size_t)stats->units), (unsigned long long)stats->points,
@@ -399,7 +399,7 @@ static void print_text(const job *j) {
         camber_report_say(report, "%llu tile%s taken out, since nothing is there now",
                           (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));
     if (stats->resumed)
-        camber_report_say(report, "%llu unit%s had been drawn before", (unsigned long long)stats->resumed,
+        camber_report_say(report, "%llu metatile%s had been drawn before", (unsigned long long)stats->resumed,
                           camber_plural((size_t)stats->resumed));
     if (!report->verbose)
         return;

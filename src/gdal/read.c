@@ -335,12 +335,12 @@ static camber_status fail_where(const reader *self) {
                        OGR_L_GetName(self->layer), fields);
 }
 
-/* A key that no feature has is mostly one that is spelt wrong, or a value in double quotes. */
+/* A tag that no feature has is mostly one that is spelt wrong, or a value in double quotes. */
 static void warn_where(const reader *self) {
     char key[256];
     if (self->dataset.osm && camber_where_find_unknown(&self->dataset, self->layer, key, sizeof key))
         camber_log(self->context, CAMBER_LOG_WARNING,
-                   "%s: nothing passes the filter \"%s\": no line has the key \"%s\"; check it, and put values in "
+                   "%s: nothing passes the filter \"%s\": no feature has the tag \"%s\"; check it, and put values in "
                    "single quotes, as in highway = 'primary'",
                    self->desc->path, self->desc->where, key);
     else

@@ -519,13 +519,13 @@ static camber_status check_desc(camber_context *context, const camber_glb_desc *
         const camber_color c = paint->color;
         if (!isfinite(paint->width_px) || !isfinite(c.r) || !isfinite(c.g) || !isfinite(c.b) || !isfinite(c.a))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "GLB: the width or the colour of paint %zu is no finite number; give one", i);
+                               "GLB: the width or the colour of paint %zu is not a finite number; give one", i);
     }
     for (size_t i = 0; desc->areas && i < desc->areas->fill_count; i++) {
         const camber_color c = desc->areas->fills[i].color;
         if (!isfinite(c.r) || !isfinite(c.g) || !isfinite(c.b) || !isfinite(c.a))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "GLB: the colour of fill %zu is no finite number; give one", i);
+                               "GLB: the colour of fill %zu is not a finite number; give one", i);
     }
     return CAMBER_OK;
 }

@@ -479,7 +479,7 @@ static void add_stats(const reader *self) {
     features->stats.antimeridian_splits += self->splits;
     if (self->skipped)
         camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is no line (points, areas, empty geometry) of %zu features", self->desc->path,
+                   "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
                    self->skipped);
     if (self->clamped)
         camber_log(self->context, CAMBER_LOG_WARNING, "%s: %zu points beyond latitude 85.051129 are moved there",

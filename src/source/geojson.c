@@ -207,7 +207,7 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
         if (read_position(json_array_get(json, i), self->points + 2 * count))
             count++;
         else
-            note_damage(self, "a position that is no longitude and latitude");
+            note_damage(self, "a position that is not a longitude and a latitude");
     }
     if (count < 2) {
         note_damage(self, "a line of fewer than two positions");
@@ -229,7 +229,7 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
 /* depth: how deep the lines are in the coordinates. hole: all lines of a polygon but the first are holes. */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool hole) {
     if (!json_is_array(json)) {
-        note_damage(self, "coordinates that are no array");
+        note_damage(self, "coordinates that are not an array");
         return CAMBER_OK;
     }
     if (depth == 0)

@@ -74,7 +74,7 @@ static int64_t unzigzag(uint32_t word) {
 static bool close_ring(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
     if (p->commands->kind == CAMBER_GEOMETRY_LINE || geometry->point_count == p->first) {
-        note_damage(geometry, "it closes what is no ring");
+        note_damage(geometry, "it closes what is not a ring");
         return true;
     }
     p->closed = true;

@@ -116,7 +116,7 @@ static void warn_of_losses(const camber_sources *sources, const char *what, size
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
     if (skipped)
-        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is no line of %zu features", what, skipped);
+        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is not a line of %zu features", what, skipped);
 }
 
 static camber_status fail_damaged(const camber_sources *sources, const char *what, const char *damage) {
@@ -252,7 +252,7 @@ static camber_status open_vector(camber_sources *sources, source *one) {
     one->is_bounded = json_object_get(about, "bounds") != NULL;
     take_bounds(one);
     if (status == CAMBER_OK && one->set->min_zoom > one->set->max_zoom)
-        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d lies above maxzoom %d; swap them", one->what,
+        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d is greater than maxzoom %d; swap them", one->what,
                              one->set->min_zoom, one->set->max_zoom);
 done:
     camber_free(context, url.path);

@@ -195,8 +195,8 @@ static camber_status load_either_density(camber_sprites *sprites, const camber_s
 /* Warns of a sprite that cannot be read: a map without its patterns is better than none. */
 static void warn_left_out(const camber_sprites *sprites, const camber_style_sprite *sprite) {
     camber_log(sprites->context, CAMBER_LOG_WARNING,
-               "sprite \"%s\": %s is on the network, which camber does not use; what is drawn with its images is left "
-               "out: download it, and name the file",
+               "sprite \"%s\": %s is a network address, and sprites are read from files only; what is drawn with its "
+               "images is left out: download it, and name the file",
                sprite->id, sprite->url);
 }
 

@@ -326,7 +326,7 @@ static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
         camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is no line (points, areas, empty geometry) of %zu features", self->desc->path,
+                   "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
                    stats->skipped_features);
 }
 

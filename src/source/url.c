@@ -52,8 +52,9 @@ bool camber_url_is_remote(const char *text) {
 static camber_status fail_scheme(camber_context *context, const char *what, const char *text, const char *rest) {
     if (camber_url_is_remote(rest))
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: %s is on the network, which camber does not use; download it, and name the file", what,
-                           text);
+                           "%s: %s is a network address, and a style's sources are read from files only; download it, "
+                           "and name the file",
+                           what, text);
     return camber_fail(context, CAMBER_ERROR_INPUT,
                        "%s: %s has an unknown scheme; name a path, file://, mbtiles:// or pmtiles://", what, text);
 }

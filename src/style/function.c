@@ -79,7 +79,7 @@ static bool read_space(function *f) {
     else if (!name || strcmp(name, "rgb") != 0)
         return camber_compiler_fail(f->c, "colorSpace: expected \"rgb\", \"hcl\" or \"lab\"; write one of them");
     if (f->space != CAMBER_SPACE_RGB && f->shape == SHAPE_EXPONENTIAL && f->property->type != CAMBER_TYPE_COLOR)
-        return camber_compiler_fail(f->c, "colorSpace: %s is no colour; leave it out", f->property->name);
+        return camber_compiler_fail(f->c, "colorSpace: %s is not a colour; leave it out", f->property->name);
     return true;
 }
 
@@ -194,7 +194,7 @@ static bool read_stop(function *f, size_t index, const json_t **input, double *z
     if (f->composite) {
         const json_t *at = json_object_get(*input, "zoom");
         if (!json_is_number(at) || json_number_value(at) < *zoom)
-            return camber_compiler_fail(f->c, "the stop's zoom is no number or below the one before; sort the stops");
+            return camber_compiler_fail(f->c, "the stop's zoom is not a number, or is below the one before; sort the stops");
         *zoom = json_number_value(at);
         *input = json_object_get(*input, "value");
     }

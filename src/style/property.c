@@ -83,7 +83,7 @@ static bool check_name(camber_compiler *c, const camber_property *property, cons
         if (used < sizeof names)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s\"%s\"", between, property->values[i]);
     }
-    return camber_compiler_fail(c, "\"%.64s\" is no %s; use %s", name, property->name, names);
+    return camber_compiler_fail(c, "\"%.64s\" is not a %s; use %s", name, property->name, names);
 }
 
 enum { RANGE_SIZE = 64 };
@@ -169,7 +169,7 @@ static void warn_of_output(camber_compiler *c, const camber_property *property, 
         if (strcmp(property->values[i], name) == 0)
             return;
     c->held_count++;
-    camber_compiler_warn(c, "\"%.64s\" is no %s; features with it are drawn with the default", name, property->name);
+    camber_compiler_warn(c, "\"%.64s\" is not a %s; features with it are drawn with the default", name, property->name);
 }
 
 /* An array that is out of range has no meaning. */

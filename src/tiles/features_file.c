@@ -219,7 +219,7 @@ camber_status camber_features_save(const camber_features *features, uint64_t inp
     json_decref(json);
     if (!text)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "%s: a property is no finite number, or memory is out; draw without a schedule", path);
+                           "%s: a property is not a finite number, or memory is out; draw without a schedule", path);
     const header head = {MAGIC,
                          input,
                          strlen(text),

@@ -207,7 +207,7 @@ static camber_status parse(camber_context *context, const char *path, camber_til
         status = CAMBER_ERROR_MEMORY;
     else if (!take_json(json, made))
         status = camber_fail(context, CAMBER_ERROR_INPUT,
-                             "%s: is no schedule of tiles, or damaged; make it with --dry-run --schedule", path);
+                             "%s: is not a schedule of tiles, or is damaged; make it with --dry-run --schedule", path);
     if (status == CAMBER_OK)
         *schedule = made;
     else

@@ -243,14 +243,14 @@ def broken_pmtiles():
     yield "has no bytes", archive([(0, 1, 0, 0), (1, 4, n, 0)], tile, contents=1)
     yield "no tile's", archive(good, two)
     yield "overlap", archive([(0, 1, n, 0), (1, 4, n, n - 1)], two[:-1])
-    yield "no JSON object", archive(good, tile, metadata=b"[]")
-    yield "is no text", archive(good, tile, metadata=b'{"name":3}')
+    yield "not a JSON object", archive(good, tile, metadata=b"[]")
+    yield "is not a text", archive(good, tile, metadata=b'{"name":3}')
     yield "no vector_layers", archive(good, tile, type=1)
     yield "type 9", archive(good, tile, type=9)
     yield "zooms make no sense", archive(good, tile, low=2)
     yield "a checksum does not fit", archive(good, bad)
-    yield "is no PNG", archive(good, b"x" * n)
-    yield "is no WebP", archive(good, tile, type=4)
+    yield "is not a PNG", archive(good, b"x" * n)
+    yield "is not a WebP", archive(good, tile, type=4)
     yield "not compressed", archive(good, tile, tile_packed=2)
     yield "is cut off", archive(good, tile[:-12] + b"0" * 12)
     yield "not in order", archive([(1, 1, n, 0), (1, 4, n, 0)], tile)
@@ -295,7 +295,7 @@ def test_mbtiles_rules():
         ("no format", "DELETE FROM metadata WHERE name = 'format'"),
         ("no bounds", "DELETE FROM metadata WHERE name = 'bounds'"),
         ("no minzoom", "DELETE FROM metadata WHERE name = 'minzoom'"),
-        ("no four numbers", "UPDATE metadata SET value = '1,2,3' WHERE name = 'bounds'"),
+        ("not four numbers", "UPDATE metadata SET value = '1,2,3' WHERE name = 'bounds'"),
         ("none of pbf", "UPDATE metadata SET value = 'bmp' WHERE name = 'format'"),
         ("twice", "DROP INDEX metadata_index; INSERT INTO metadata VALUES ('name', 'y')"),
         ("no table metadata", "DROP TABLE metadata"),
@@ -306,7 +306,7 @@ def test_mbtiles_rules():
         ("no tile's", "INSERT INTO images VALUES ('spare', x'00')"),
         ("have no image", "DELETE FROM images WHERE tile_id = '3'"),
         ("ids of images", "DROP INDEX images_index; INSERT INTO images SELECT * FROM images LIMIT 1"),
-        ("is no PNG", "UPDATE images SET tile_data = x'0011' WHERE tile_id = '3'"),
+        ("is not a PNG", "UPDATE images SET tile_data = x'0011' WHERE tile_id = '3'"),
         ("is empty", "UPDATE images SET tile_data = x'' WHERE tile_id = '3'"),
         ("rows count from the north", "UPDATE metadata SET value = '-180,1,180,85' WHERE name = 'bounds';"
          "DELETE FROM map WHERE zoom_level < 4 OR tile_row >= 8; UPDATE metadata SET value = '4' WHERE name = 'minzoom';"
@@ -330,9 +330,9 @@ def test_folder_rules():
     make("rule/", 300)
     tile = read("rule/1/0/0.png")
     change(None, lambda: None)
-    change("is no tile by its name", lambda: write("rule/tileset.json", b"{}")) # these are not meshes
-    change("is no tile by its name", lambda: write("rule/1/0/01.png", tile))
-    change("is no tile by its name", lambda: os.mkdir("rule/maps"))
+    change("is not a tile by its name", lambda: write("rule/tileset.json", b"{}")) # these are not meshes
+    change("is not a tile by its name", lambda: write("rule/1/0/01.png", tile))
+    change("is not a tile by its name", lambda: os.mkdir("rule/maps"))
     change("no such column or row", lambda: write("rule/1/0/2.png", tile))
     change("not named as a tile of type", lambda: os.rename("rule/1/0/0.png", "rule/1/0/0.webp"))
     change("there twice", lambda: write("rule/1/0/0.webp", tile))

@@ -113,6 +113,15 @@ expect 2 "no input" render -o a.png
 expect 2 "no output" render "$osm"
 expect 2 "input for info" info "$osm"
 expect 2 "unknown extension" render "$osm" -o a.gif
+says "^camber: a\.gif: unknown extension \.gif; camber render writes png, png8 and webp: name it OUT\.png, or give --format$"
+expect 2 "no extension" tessellate "$osm" -o maps.d/a
+says "^camber: maps\.d/a: no extension; camber tessellate writes glb: name it OUT\.glb, or give --format$"
+for verb in render tessellate "tiles --max-zoom 3"; do
+    # shellcheck disable=SC2086
+    expect 2 "two outputs: $verb" $verb "$osm" -o a.png --output=b.png
+    says '^camber: -o b\.png: is the second output, after -o a\.png; give one of them$'
+done
+expect 2 "two outputs of merge" tiles merge "$osm" -o a.pmtiles -o a.pmtiles
 expect 2 "png from tessellate" tessellate "$osm" -o a.png
 expect 2 "glb from render" render "$osm" -o a.glb
 expect 2 "glb by its format" render "$osm" -o a.png --format glb
@@ -168,6 +177,7 @@ expect 2 "compare with an output" compare "$osm" -o a.png
 expect 2 "compare of both" compare "$osm" --polylines x
 expect 2 "compare polylines by an attribute" compare --polylines x --where 'a = 1'
 expect 2 "a plot of no known kind" compare "$osm" --plot a.pdf
+says '^camber: --plot a\.pdf: unknown extension \.pdf; name it OUT\.svg or OUT\.png$'
 expect 2 "a plot on standard output" compare "$osm" --plot -
 expect 2 "an empty filter" compare "$osm" --where ''
 for tolerance in 0 -1 nan 2x; do
@@ -820,7 +830,7 @@ for where in "lit = 'yes'" "\"highway\" = 'primary'" "osm_id = '10'" "other_tags
 done
 for where in "hihgway = 'primary':hihgway" 'highway = "primary":primary'; do
     expect 0 "filter ${where%:*}" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "${where%:*}"
-    says "^camber: warning: .*nothing passes the filter .*: no line has the key \"${where#*:}\"; check it, and put values in single quotes"
+    says "^camber: warning: .*nothing passes the filter .*: no feature has the tag \"${where#*:}\"; check it, and put values in single quotes"
     [ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
 done
 expect 0 "filter of values that are not there" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "highway = 'x'"
@@ -970,7 +980,7 @@ says 'sprite "default": .*/none.png: no such file; check the path in the style'
 expect 66 "nor its large form" render --style "$tmp/in/nosprite.json" -o a.png --ratio 2
 sed 's|"vast"|"https://example.org/sprite"|' "$tmp/in/pattern.json" >"$tmp/in/farsprite.json"
 expect 0 "a style whose sprite is elsewhere" render --style "$tmp/in/farsprite.json" -o a.png --size 64x64
-says '^camber: warning: sprite "default": https://example.org/sprite is on the network'
+says '^camber: warning: sprite "default": https://example.org/sprite is a network address'
 rm -f a.png
 expect 0 "the built-in style by its name" render "$tiger" --style city --theme dark -qo named.png --size 64x64
 expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --size 64x64

@@ -211,7 +211,7 @@ static void test_tilesets(void **state) {
                 {"rm -r subtrees", "subtrees/0.0.0.subtree is missing", true},
                 {"rm tileset.json", "tileset.json is missing", false},
                 {"echo {} >tileset.json", "tileset.json is not the one that camber tiles writes", false},
-                {"echo { >tileset.json", "tileset.json is no JSON", true}};
+                {"echo { >tileset.json", "tileset.json is not JSON", true}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char path[128], command[256];
         camber_tiles_findings *found = NULL;

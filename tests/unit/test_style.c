@@ -471,7 +471,7 @@ static void test_wrong_fills(void **state) {
         {FILL_LAYER("\"paint\": {\"fill-antialias\": \"yes\"}"), "/layers/0/paint/fill-antialias: expected a boolean"},
         {FILL_LAYER("\"paint\": {\"fill-antialias\": [\"get\", \"a\"]}"), "fill-antialias cannot depend on features"},
         {FILL_LAYER("\"paint\": {\"fill-translate\": [1]}"), "/layers/0/paint/fill-translate"},
-        {FILL_LAYER("\"paint\": {\"fill-translate-anchor\": \"sky\"}"), "\"sky\" is no fill-translate-anchor"},
+        {FILL_LAYER("\"paint\": {\"fill-translate-anchor\": \"sky\"}"), "\"sky\" is not a fill-translate-anchor"},
         {FILL_LAYER("\"paint\": {\"fill-layer-opacity\": [\"get\", \"a\"]}"), "cannot depend on features"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -667,7 +667,7 @@ static void test_wrong(void **state) {
         {LINE("\"paint\": {\"line-color\": \"sour\"}"), "/layers/0/paint/line-color: cannot be evaluated"},
         {LINE("\"paint\": []"), "/layers/0/paint: expected an object, found an array"},
         {LINE("\"layout\": 3"), "/layers/0/layout: expected an object, found a number"},
-        {LINE("\"layout\": {\"line-cap\": \"pointed\"}"), "/layers/0/layout/line-cap: \"pointed\" is no line-cap"},
+        {LINE("\"layout\": {\"line-cap\": \"pointed\"}"), "/layers/0/layout/line-cap: \"pointed\" is not a line-cap"},
         {LINE("\"paint\": {\"line-dasharray\": [-1, 2]}"), "/layers/0/paint/line-dasharray: -1 is out of range"},
         {LINE("\"paint\": {\"line-width\": [\"/\", 0, 0]}"), "/layers/0/paint/line-width: the number is none (NaN)"},
         {LINE("\"paint\": {\"line-width\": [\"/\", 1, 0]}"), "/layers/0/paint/line-width: the number is infinite"},

@@ -485,7 +485,7 @@ static void test_errors(void **state) {
                  "\"s\": {\"type\": \"geojson\", \"data\": {\"type\": \"FeatureCollection\", \"features\": "
                  "[{\"geometry\": {\"type\": \"Point\", \"coordinates\": [1, 1]}}, "
                  "{\"geometry\": {\"type\": \"LineString\", \"coordinates\": \"none\"}}]}}",
-                 "no feature can be read: /features/1: coordinates that are no array");
+                 "no feature can be read: /features/1: coordinates that are not an array");
     write_text(it, "lone.json", "{\"tilejson\": \"3.0.0\"}");
     /* Files that are not there, or no sets of tiles, are named. */
     const camber_view_desc view = view_at(1.0, 1.0, 1.0, 1, 64, 64);

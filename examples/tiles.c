@@ -1,6 +1,7 @@
 /* tiles FILE PORT: a program with an HTTP server of its own draws tiles of a map: http://127.0.0.1:PORT/z/x/y.png */
 #include <arpa/inet.h>
 #include <camber_tiles.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,8 +82,10 @@ int main(int argc, char **argv) {
             CAMBER_OK ||
         !(m.rgba = malloc(camber_tiles_engine_get_picture_bytes(m.engine))))
         return 1;
-    const int listening = listen_at(argc > 2 ? argv[2] : "8080");
+    const char *port = argc > 2 ? argv[2] : "8080";
+    const int listening = listen_at(port);
     for (int client; listening >= 0 && (client = accept(listening, NULL, NULL)) >= 0;)
         answer(&m, client);
-    return 1; /* the port is in use */
+    fprintf(stderr, "tiles: port %s: %s\n", port, strerror(errno)); /* it is in use, most likely */
+    return 1;
 }

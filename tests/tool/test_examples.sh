@@ -83,6 +83,13 @@ ask_for_tile() {
         kill -0 $server 2>/dev/null || { echo "the example tiles does not start"; exit 1; }
         sleep 0.1
     done
+    # A second one finds the port taken, and says so.
+    local status=0 said
+    said=$("$folder/build/tiles" "$source/tests/data/santa_cruz/osm.mbtiles" "$port" 2>&1) || status=$?
+    [ "$status" = 1 ] && [ "$said" = "tiles: port $port: Address already in use" ] || {
+        echo "the example tiles, where its port is taken: status $status, '$said'"
+        exit 1
+    }
     exec 3<>"/dev/tcp/127.0.0.1/$port"
     printf 'GET /12/659/1593.png HTTP/1.0\r\n\r\n' >&3
     cat <&3 >tile.http

@@ -390,11 +390,14 @@ static void print_text(const job *j) {
                           j->session->options->renewed ? "renew" : "do");
         return;
     }
-    camber_report_say(report, "%s: %s%llu tile%s in %llu metatile%s, %llu points, %.1f MB", j->output,
-                      j->session->options->dry_run ? "would have " : "", (unsigned long long)stats->tiles,
-                      camber_plural((size_t)stats->tiles), (unsigned long long)stats->units,
-                      camber_plural((size_t)stats->units), (unsigned long long)stats->points,
-                      (double)stats->bytes / 1e6);
+    const bool dry = j->session->options->dry_run;
+    char size[64] = "";
+    if (!dry || !j->session->options->schedule) /* which tries no picture */
+        snprintf(size, sizeof size, ", %s%.1f MB", dry ? "about " : "", (double)stats->bytes / 1e6);
+    camber_report_say(report, "%s: %s%llu tile%s in %llu metatile%s, %llu points%s", j->output,
+                      dry ? "would have " : "", (unsigned long long)stats->tiles, camber_plural((size_t)stats->tiles),
+                      (unsigned long long)stats->units, camber_plural((size_t)stats->units),
+                      (unsigned long long)stats->points, size);
     if (stats->emptied)
         camber_report_say(report, "%llu tile%s taken out, since nothing is there now",
                           (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));

@@ -22,6 +22,7 @@ typedef struct camber_encode_job {
     bool drops_background;     /* tiles of this colour alone are left out: */
     uint8_t background[4];
     uint64_t unit;
+    double weight; /* of a dry run: each of its bytes stands for so many. Else 1 */
     camber_encoded_tile tiles[64];
     uint64_t waiting; /* tiles that no thread has taken yet */
     size_t left;      /* that are not encoded yet */

@@ -145,7 +145,7 @@ static void put_count(double count, FILE *to) {
 
 /* ---- Frames: the table of README.md ---- */
 
-/* A scene drawn in one run: camber's milliseconds, and how many times each peer's better way takes those. */
+/* A scene drawn in one run: camber's milliseconds, and how many times that each peer takes in its faster mode. */
 static void put_frame(const page *p, const json_t *row) {
     const double frame_ms = bench_number(row, "cl_frame_ms");
     put_number(frame_ms, 1, p->to);
@@ -252,8 +252,8 @@ static void put_frames(const page *p) {
     fprintf(
         p->to,
         "\nms: camber's, a frame of %d x %d px, every point, from lines to pixels in memory, in OpenCL on all cores. "
-        "Peers: how many times as long, in their [better way](docs/performance.md), Blend2D and ThorVG on as many "
-        "threads, the others on one; AGG's templates are compiled like camber.\n",
+        "Other columns: time relative to camber, each library in its [faster mode](docs/performance.md), Blend2D and "
+        "ThorVG on as many threads, the others on one; AGG is compiled like camber.\n",
         BENCH_SIDE_PX, BENCH_SIDE_PX);
     for (i = 0; i < p->run_count; i++) {
         const run *r = p->runs + i;
@@ -365,7 +365,7 @@ static void put_fly(const page *p) {
 
 /* ---- Areas: the table of docs/areas.md ---- */
 
-/* Camber's milliseconds and error; of each library how many times as long its better way takes, and its error. */
+/* Camber's milliseconds and error; of each library the time relative to that, in its faster mode, and its error. */
 static void put_areas_row(const page *p, const json_t *row) {
     const double frame_ms = bench_number(row, "cl_frame_ms");
     const json_t *peers = json_object_get(row, "peers");
@@ -387,9 +387,9 @@ static void put_areas(const page *p) {
         fprintf(p->to, " %s |", bench_text(json_object_get(r->peers, p->libraries[k]), "name"));
     put_rule(3 + p->library_count, p->to);
     json_array_foreach(rows_of(r, "areas"), i, row) put_areas_row(p, row);
-    fputs("\nFrames of 2048 x 2048 px, all areas black and one path, from rings in memory to pixels in memory. Peers: "
-          "how "
-          "many times as long in their better way. Behind each: the mean error beside 16 x 16 samples a pixel, of 255.",
+    fputs("\nFrames of 2048 x 2048 px, all areas black and one path, from rings in memory to pixels in memory. Other "
+          "columns: time relative to camber, each library in its faster mode, and after it the mean error beside "
+          "16 x 16 samples a pixel, of 255.",
           p->to);
     json_array_foreach(rows_of(r, "city"), i, row)
         fprintf(p->to, "%s %s in %.1f ms, Mapnik in %.1f times that",

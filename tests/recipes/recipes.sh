@@ -72,7 +72,7 @@ make_base() {
         [ -e /usr/share/debootstrap/scripts/noble ] || script=/usr/share/debootstrap/scripts/gutsy # older than the system
     fi
     rm -rf --one-file-system "${kept:?}/$1"
-    debootstrap --variant=minbase --include=ccache,sudo --components="$components" "$1" "$kept/$1.part" "$mirror" $script &&
+    debootstrap --variant=minbase --include=ccache --components="$components" "$1" "$kept/$1.part" "$mirror" $script &&
         mv "$kept/$1.part" "$kept/$1"
 }
 
@@ -111,6 +111,9 @@ steps() {
          END                               { flush() }'
 }
 
+# The function that README.md gives to root without sudo.
+without_sudo() { grep -o 'sudo() {[^`]*}' "$source/README.md"; }
+
 # A recipe as a script, with the checks that follow it. The newcomer to Debian 12 has clang and Chromium, the others have
 # what ./dev installs.
 script_of() { # NAME SYSTEM
@@ -133,9 +136,9 @@ ROADS
         echo 'test -s camber.xml && test -s roads.xml'
         ;;
     newcomer)
-        echo 'useradd -m newcomer && echo "newcomer ALL=(ALL) NOPASSWD: ALL" >/etc/sudoers.d/newcomer'
-        echo 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates'
+        echo 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates sudo'
         [ "$2" != bookworm ] || echo 'apt-get install -y -qq --no-install-recommends clang chromium'
+        echo 'useradd -m newcomer && echo "newcomer ALL=(ALL) NOPASSWD: ALL" >/etc/sudoers.d/newcomer'
         echo 'git config --system safe.directory "*"' # the clone is of another user's folder
         cat <<'CLONE'
 [ -w /kept/objects ] && sudo -u newcomer test -w /kept/objects || export CCACHE_READONLY=1 CCACHE_TEMPDIR=/tmp
@@ -253,7 +256,7 @@ for system; do
         failures=$((failures + 1))
         continue
     fi
-    script_of "$recipe" "$system" >"$run/$recipe"
+    { [ "$recipe" = newcomer ] || without_sudo && script_of "$recipe" "$system"; } >"$run/$recipe"
     if { [[ $recipe = @(packages|newcomer) ]] || [ "$(block "$recipe" | wc -l)" != 0 ]; } &&
         inside in_root "$system" "$run/$system.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
         grep -E '^[0-9]+% tests passed|^skipped, and why|^  test_.*: ' "$run/log" || true

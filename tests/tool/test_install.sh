@@ -145,10 +145,20 @@ done
 for job in slurm.sh batch.sh mpirun.sh job.yaml batch.json; do
     [ -r "$folder/usr/share/camber/cluster/$job" ] || { echo "not installed: cluster/$job"; exit 1; }
 done
-# Of the server's files all that there are, if there is a server.
+# All files of the server are installed, if there is a server.
 for file in $([ ! -d "$folder/usr/share/camber/serve" ] || ls "$source/examples/serve"); do
     cmp "$source/examples/serve/$file" "$folder/usr/share/camber/serve/$file"
 done
+# The recipe of docs/styles.md works as it stands there, for New York.
+city=${CAMBER_DATA:-}/data/nyc.osm.pbf
+if [ -f "$city" ] && [ -x /usr/bin/tilemaker ] && command -v osmium >/dev/null && command -v python3 >/dev/null; then
+    mkdir "$folder/styles"
+    ln -s "$city" "$folder/styles/city.osm.pbf"
+    sed -n '/^    examples=/,/^$/s/^    //p' "$source/docs/styles.md" >"$folder/styles/recipe"
+    (cd "$folder/styles" && PATH=$folder/usr/bin:$PATH bash -eu recipe) >"$folder/log" 2>&1 &&
+        [ "$(head -c 4 "$folder/styles/lines.png")" = "$(head -c 4 "$source/tests/data/styles/transit.png")" ] &&
+        ! grep -q 'nothing\|no line' "$folder/log" || { cat "$folder/log"; echo "docs/styles.md does not work"; exit 1; }
+fi
 # GDAL comes with the first file, and what is wrong where it cannot come is one line.
 if ldd "$folder/usr/bin/camber" | grep libgdal; then echo "the tool links GDAL from the start"; exit 1; fi
 echo '{"type":"LineString","coordinates":[[0,0],[1,1]]}' >"$folder/line.geojson"

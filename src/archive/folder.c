@@ -194,10 +194,11 @@ camber_status camber_folder_may_go(camber_context *context, const char *path) {
         is_empty = is_empty && is_dots(entry->d_name);
         has_metadata = has_metadata || strcmp(entry->d_name, "metadata.json") == 0;
         if (!is_dots(entry->d_name) && !is_beside(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
-            status = camber_fail(context, CAMBER_ERROR_IO,
-                                 "%s: has %s, which is not part of an archive of tiles, and would be lost; name another "
-                                 "folder",
-                                 path, entry->d_name);
+            status =
+                camber_fail(context, CAMBER_ERROR_IO,
+                            "%s: has %s, which is not part of an archive of tiles, and would be lost; name another "
+                            "folder",
+                            path, entry->d_name);
     }
     if (opened)
         closedir(opened);

@@ -190,8 +190,7 @@ camber_status camber_tiles_merge(camber_context *context, const camber_tiles_mer
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: no parts to merge; name them", desc->output);
     if (!camber_archive_get_format(desc->output, &format))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "%s: unknown extension; name it .pmtiles, .mbtiles, or a folder with a slash",
-                           desc->output);
+                           "%s: unknown extension; name it .pmtiles, .mbtiles, or a folder with a slash", desc->output);
     if (!(m.parts = camber_alloc_zero(context, desc->part_count, sizeof *m.parts)))
         return CAMBER_ERROR_MEMORY;
     camber_budget_begin(context);

@@ -143,7 +143,8 @@ static void check_size(camber_verify *v, const char *name, uint32_t width, uint3
         v->width = width;
         v->height = height;
         if (width != height)
-            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "tile %s is not square: %u x %u px", name, width, height);
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "tile %s is not square: %u x %u px", name, width,
+                               height);
     }
     if (width != v->width || height != v->height)
         camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s has %u x %u px, and others %u x %u", name, width,

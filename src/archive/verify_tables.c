@@ -301,7 +301,8 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
 }
 
 static camber_status take_stranger(void *user, const char *path) {
-    camber_verify_tell(user, CAMBER_VERIFY_NAME, true, "%s: is not a tile by its name, ZOOM/COLUMN/ROW.EXTENSION", path);
+    camber_verify_tell(user, CAMBER_VERIFY_NAME, true, "%s: is not a tile by its name, ZOOM/COLUMN/ROW.EXTENSION",
+                       path);
     return CAMBER_OK;
 }
 

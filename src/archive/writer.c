@@ -197,9 +197,9 @@ static camber_status look_at_existing(camber_archive_writer *writer) {
     if (status == CAMBER_OK && !writer->done && !desc->force)
         status = fail_existing(writer, there);
     else if (status != CAMBER_OK && !desc->force)
-        status = camber_fail(writer->context, CAMBER_ERROR_INPUT,
-                             "%s: exists, and is not an archive of tiles; name another file, or replace it with --force",
-                             writer->path);
+        status = camber_fail(
+            writer->context, CAMBER_ERROR_INPUT,
+            "%s: exists, and is not an archive of tiles; name another file, or replace it with --force", writer->path);
     else
         status = CAMBER_OK;
     camber_archive_close(there);

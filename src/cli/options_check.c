@@ -67,8 +67,9 @@ static int check_format(const camber_option_reader *p, bool out) {
     if (format < 0) {
         char blame[64];
         camber_path_blame_extension(options->output, blame);
-        return camber_options_refuse(p, "%s: %s; camber %s writes %s: name it OUT.%s, or give --format", options->output,
-                                     blame, p->verb, glb ? "glb" : "png, png8 and webp", glb ? "glb" : "png");
+        return camber_options_refuse(p, "%s: %s; camber %s writes %s: name it OUT.%s, or give --format",
+                                     options->output, blame, p->verb, glb ? "glb" : "png, png8 and webp",
+                                     glb ? "glb" : "png");
     }
     const bool wrong = (format == CAMBER_FORMAT_GLB) != glb || (named >= 0 && (named == CAMBER_FORMAT_GLB) != glb);
     if (wrong)

@@ -78,8 +78,8 @@ static int check_zooms(const camber_option_reader *p) {
     if (options->max_zoom == UINT32_MAX)
         options->max_zoom = options->min_zoom > 14 ? options->min_zoom : 14;
     if (options->min_zoom > options->max_zoom)
-        return camber_options_refuse(p, "--min-zoom %u: is greater than --max-zoom %u; swap them",
-                                     options->min_zoom, options->max_zoom);
+        return camber_options_refuse(p, "--min-zoom %u: is greater than --max-zoom %u; swap them", options->min_zoom,
+                                     options->max_zoom);
     return CAMBER_EXIT_DONE;
 }
 

@@ -373,9 +373,8 @@ static void tell_public_url(camber_session *session, const camber_server *server
 static int announce(camber_session *session, const camber_server *server) {
     if (!session->options->json)
         return CAMBER_EXIT_DONE;
-    json_t *object =
-        json_pack("{s:s, s:s, s:s?}", "url", camber_server_get_url(server), "listen", camber_server_get_address(server),
-                  "metrics", camber_server_get_metrics_address(server));
+    json_t *object = json_pack("{s:s, s:s, s:s?}", "url", camber_server_get_url(server), "listen",
+                               camber_server_get_address(server), "metrics", camber_server_get_metrics_address(server));
     return camber_report_json(session->report, object);
 }
 

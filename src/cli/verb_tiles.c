@@ -106,10 +106,11 @@ static int verify(camber_session *session, const char *path) {
         camber_report_say(report, "%s: %s: %s", path, found->findings[i].error ? "error" : "warning",
                           found->findings[i].message);
     if (exit_status == CAMBER_EXIT_DONE && found->count)
-        exit_status = camber_report_fail(report, CAMBER_EXIT_CHECK, "%s: %zu problem%s found%s; rebuild the archive%s", path,
-                                         found->count + found->left_out, camber_plural(found->count + found->left_out),
-                                         found->left_out ? ", the first of each kind listed" : "",
-                                         broken ? "" : ", or rewrite it with camber tiles merge");
+        exit_status =
+            camber_report_fail(report, CAMBER_EXIT_CHECK, "%s: %zu problem%s found%s; rebuild the archive%s", path,
+                               found->count + found->left_out, camber_plural(found->count + found->left_out),
+                               found->left_out ? ", the first of each kind listed" : "",
+                               broken ? "" : ", or rewrite it with camber tiles merge");
     camber_tiles_findings_destroy(found);
     return exit_status;
 }

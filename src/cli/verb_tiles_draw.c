@@ -64,8 +64,8 @@ static int add_line(job *j, const char *path, char *line, size_t number) {
         for (char *c = line; *c; c++)
             *c = (unsigned char)*c < 0x20 || (unsigned char)*c >= 0x7f ? '?' : *c;
         return camber_report_fail(j->session->report, CAMBER_EXIT_DATA,
-                                  "%s: line %zu, \"%.40s\", is not a tile; give zoom/column/row, as in 12/1950/1533", path,
-                                  number, line);
+                                  "%s: line %zu, \"%.40s\", is not a tile; give zoom/column/row, as in 12/1950/1533",
+                                  path, number, line);
     }
     j->place_count++;
     return CAMBER_EXIT_DONE;

@@ -207,7 +207,8 @@ static camber_status check_exists(camber_context *context, const char *path, boo
     *directory = false;
     if (!context->desc.access.remote && camber_gdal_is_remote(path))
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: is a network address; download the file, or allow network access (--allow-remote)", path);
+                           "%s: is a network address; download the file, or allow network access (--allow-remote)",
+                           path);
     /* Devices and pipes may have no end. */
     struct stat found;
     const char *file = find_file(path);

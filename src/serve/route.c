@@ -149,8 +149,7 @@ static bool take_static(cursor *c, camber_route_request *r) {
     if (take(c, "@") && (!take_number(c, -360, 360, &r->bearing_deg) ||
                          (take(c, ",") && !take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg))))
         return false;
-    if (!take(c, "/") || !take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) ||
-        !take_ending(c, r))
+    if (!take(c, "/") || !take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) || !take_ending(c, r))
         return false;
     r->route = CAMBER_ROUTE_STATIC;
     return r->width >= 1 && r->height >= 1 && r->type <= CAMBER_ROUTE_WEBP;

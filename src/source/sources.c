@@ -252,8 +252,8 @@ static camber_status open_vector(camber_sources *sources, source *one) {
     one->is_bounded = json_object_get(about, "bounds") != NULL;
     take_bounds(one);
     if (status == CAMBER_OK && one->set->min_zoom > one->set->max_zoom)
-        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d is greater than maxzoom %d; swap them", one->what,
-                             one->set->min_zoom, one->set->max_zoom);
+        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d is greater than maxzoom %d; swap them",
+                             one->what, one->set->min_zoom, one->set->max_zoom);
 done:
     camber_free(context, url.path);
     json_decref(about);

@@ -194,7 +194,8 @@ static bool read_stop(function *f, size_t index, const json_t **input, double *z
     if (f->composite) {
         const json_t *at = json_object_get(*input, "zoom");
         if (!json_is_number(at) || json_number_value(at) < *zoom)
-            return camber_compiler_fail(f->c, "the stop's zoom is not a number, or is below the one before; sort the stops");
+            return camber_compiler_fail(f->c,
+                                        "the stop's zoom is not a number, or is below the one before; sort the stops");
         *zoom = json_number_value(at);
         *input = json_object_get(*input, "value");
     }

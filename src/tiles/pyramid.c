@@ -263,8 +263,9 @@ static camber_status draw_all(pyramid *p) {
 
 /* ---- A dry run ---- */
 
-/* What a task adds to the bytes, about, in those of a point. A tile takes as many as 70 to 260 points (least squares,
- * Porto and Liechtenstein at zooms 15 and 16, PNG and WebP, 2026-11-29). It need not be right: it says where to look. */
+/* Guesses what a task adds to the bytes, in those of a point. A tile takes as many as 70 to 260 points (least squares,
+ * Porto and Liechtenstein at zooms 15 and 16, PNG and WebP, 2026-11-29). It need not be right: it says where to look.
+ */
 static double guess_bytes(const camber_tile_task *task) {
     static const double TILE_POINTS = 100.0;
     return TILE_POINTS * (double)count_bits(task->wanted) + (double)task->points;
@@ -425,9 +426,9 @@ static camber_status open_writer(pyramid *p) {
     whole.center = (camber_archive_center){true, 0.5 * (whole.bounds[0] + whole.bounds[2]),
                                            0.5 * (whole.bounds[1] + whole.bounds[3]), find_center_zoom(&p->area)};
     if (!camber_archive_get_format(desc->output, &whole.format))
-        status = camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
-                             "%s: unknown extension; name it .pmtiles, .mbtiles, or a folder with a slash",
-                             desc->output);
+        status =
+            camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
+                        "%s: unknown extension; name it .pmtiles, .mbtiles, or a folder with a slash", desc->output);
     if (desc->renew)
         describe_renewed(p, &whole);
     if (status == CAMBER_OK)

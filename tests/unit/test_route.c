@@ -224,9 +224,10 @@ static void names_types(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_each_route), cmocka_unit_test(reads_a_tile),        cmocka_unit_test(reads_a_picture),
-        cmocka_unit_test(reads_a_name),     cmocka_unit_test(knows_no_other_path), cmocka_unit_test(takes_two_methods),
-        cmocka_unit_test(names_types),      cmocka_unit_test(tells_pictures_that_are_too_large),
+        cmocka_unit_test(finds_each_route),    cmocka_unit_test(reads_a_tile),
+        cmocka_unit_test(reads_a_picture),     cmocka_unit_test(reads_a_name),
+        cmocka_unit_test(knows_no_other_path), cmocka_unit_test(takes_two_methods),
+        cmocka_unit_test(names_types),         cmocka_unit_test(tells_pictures_that_are_too_large),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -214,7 +214,7 @@ static int parse_words(const camber_option_reader *p, const camber_option_spec *
 }
 
 static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
-    /* Only one of two outputs would be written, without a word of the other. */
+    /* Only one of two outputs would be written. */
     if (spec->offset == offsetof(camber_options, output) && p->options->output)
         return camber_options_refuse(p, "-o %s: is the second output, after -o %s; give one of them", text,
                                      p->options->output);

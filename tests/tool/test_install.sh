@@ -145,7 +145,7 @@ done
 for job in slurm.sh batch.sh mpirun.sh job.yaml batch.json; do
     [ -r "$folder/usr/share/camber/cluster/$job" ] || { echo "not installed: cluster/$job"; exit 1; }
 done
-# All files of the server are installed, if there is a server.
+# If there is a server, all of its files are there.
 for file in $([ ! -d "$folder/usr/share/camber/serve" ] || ls "$source/examples/serve"); do
     cmp "$source/examples/serve/$file" "$folder/usr/share/camber/serve/$file"
 done

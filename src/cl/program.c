@@ -204,7 +204,7 @@ static camber_status make_kernels(camber_device *device, camber_program *program
 /* Loads under the program's lock. PoCL unpacks a binary file by file, and a process that unpacks the same one might
  * look for a file before it is there. */
 static bool load_alone(camber_device *device, camber_program *program, const char *options) {
-    static const double LONGEST_MS = 500; /* it takes 2 ms: after much longer something else is wrong */
+    static const double LONGEST_MS = 30e3; /* it takes 2 ms, on a busy machine much longer */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     const bool loaded = load_cached(device, program, options);
     camber_cache_unlock(lock);
@@ -224,7 +224,7 @@ static bool use_saved(camber_device *device, camber_program *program, const char
 
 /* Builds under the program's lock, unless another process has done so while this one waited. */
 static camber_status build_alone(camber_device *device, camber_program *program, const recipe *from) {
-    static const double LONGEST_MS = 60e3;
+    static const double LONGEST_MS = 600e3; /* a lock ends with its process; without it this one would compile, too */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     camber_status status = CAMBER_OK;
     program->kept = load_cached(device, program, from->options);

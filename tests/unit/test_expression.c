@@ -383,7 +383,7 @@ static void test_properties(void **state) {
         const char *value, *message; /* NULL: it compiles */
     } samples[] = {
         {{.name = "p", .type = STRING, .values = names}, "\"map\"", NULL},
-        {{.name = "p", .type = STRING, .values = names}, "\"top\"", "\"top\" is no p; use \"map\" or \"viewport\""},
+        {{.name = "p", .type = STRING, .values = names}, "\"top\"", "\"top\" is not a p; use \"map\" or \"viewport\""},
         {{.name = "p", .type = CAMBER_TYPE_ARRAY, .item = NUMBER, .length = 2}, "[1, 2]", NULL},
         {{.name = "p", .type = CAMBER_TYPE_ARRAY, .item = NUMBER, .length = 2},
          "[1, 2, 3]",

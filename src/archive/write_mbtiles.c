@@ -160,7 +160,7 @@ static camber_status put_tile(writing *w, uint64_t number, uint32_t content) {
     snprintf(id, sizeof id, "%u", w->ids[content]);
     sqlite3_bind_int(w->put_tile, 1, zoom);
     sqlite3_bind_int64(w->put_tile, 2, column);
-    sqlite3_bind_int64(w->put_tile, 3, (INT64_C(1) << zoom) - 1 - row); /* rows count from the south */
+    sqlite3_bind_int64(w->put_tile, 3, (sqlite3_int64)((INT64_C(1) << zoom) - 1 - row)); /* rows count from the south */
     sqlite3_bind_text(w->put_tile, 4, id, -1, SQLITE_TRANSIENT);
     const camber_status status = sqlite3_step(w->put_tile) == SQLITE_DONE ? next_row(w) : fail(w);
     sqlite3_reset(w->put_tile);

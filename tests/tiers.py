@@ -364,7 +364,10 @@ def main():
     changed, number, recipes, line = find_change(root)
     choice = choose(root, tests, changed, number, recipes)
     print("\n".join(report(choice, number, line)), file=sys.stderr)
-    for name, value in (("chosen_tests", expression(choice.reached | choice.share)), ("chosen_lint", choice.lint),
+    chosen = choice.reached | choice.share
+    needs_build = any(test.name in chosen and test.labels[0] != "tree" for test in tests)
+    for name, value in (("chosen_tests", expression(chosen)), ("chosen_lint", choice.lint),
+                        ("chosen_need_build", "yes" if needs_build else ""),
                         ("CAMBER_CHANGED", "\n".join(changed)), ("CAMBER_SANITIZED", expression(choice.sanitized))):
         print("%s=%s" % (name, shlex.quote(value)))
 

@@ -180,14 +180,17 @@ static void invalid_points(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
+/* Random numbers are drawn one a statement: compilers do not agree on the order in which arguments are evaluated. */
+
 /* Steps of coordinates far from 0 and close to it, where floats are coarse and where products underflow. */
 static void extreme_coordinates(camber_made_scene *scene, uint64_t *seed) {
     const double scales[] = {1e-30, 1e-19, 1e-10, 1e-3, 1e4, 1e6, 1e8, 9.9e8};
     for (size_t i = 0; i < 160; i++) {
         const double scale = scales[i % 8];
-        for (size_t k = 0; k < 3 + i % 10; k++)
-            camber_made_scene_point(scene, camber_random_between(seed, -scale, scale),
-                                    camber_random_between(seed, i % 3 ? -scale : scale * 0.999, scale));
+        for (size_t k = 0; k < 3 + i % 10; k++) {
+            const double y = camber_random_between(seed, i % 3 ? -scale : scale * 0.999, scale);
+            camber_made_scene_point(scene, camber_random_between(seed, -scale, scale), y);
+        }
         end_line(scene);
     }
 }
@@ -344,11 +347,11 @@ void camber_scene_add_degenerate(camber_made_scene *s, uint64_t *seed) {
         const size_t count = camber_random_below(seed, 8);
         for (size_t k = 0; k < count; k++) {
             const size_t kind = camber_random_below(seed, 12);
-            camber_made_scene_point(s,
-                                    kind == 0   ? (double)NAN
-                                    : kind == 1 ? (double)INFINITY
-                                                : (double)camber_random_below(seed, 3),
-                                    kind == 2 ? 2e9 : (double)camber_random_below(seed, 3));
+            const double y = kind == 2 ? 2e9 : (double)camber_random_below(seed, 3);
+            const double x = kind == 0   ? (double)NAN
+                             : kind == 1 ? (double)INFINITY
+                                         : (double)camber_random_below(seed, 3);
+            camber_made_scene_point(s, x, y);
         }
         camber_made_scene_end(s, i % CAMBER_KERNEL_ROWS);
     }
@@ -358,9 +361,10 @@ void camber_scene_add_sizes(camber_made_scene *s, uint64_t *seed) {
     for (int exponent = -45; exponent <= 9; exponent++) { /* floats from the least to the farthest that is kept */
         const double size = pow(10, exponent);
         for (int repeat = 0; repeat < 4; repeat++) {
-            for (int k = 0; k < 12; k++)
-                camber_made_scene_point(s, camber_random_between(seed, -size, size),
-                                        camber_random_between(seed, -size, size));
+            for (int k = 0; k < 12; k++) {
+                const double y = camber_random_between(seed, -size, size);
+                camber_made_scene_point(s, camber_random_between(seed, -size, size), y);
+            }
             camber_made_scene_end(s, camber_random_below(seed, CAMBER_KERNEL_ROWS));
         }
     }

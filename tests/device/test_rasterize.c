@@ -374,9 +374,10 @@ static void test_spills(void **state) {
     uint64_t seed = 6;
     uint32_t slices[2];
     for (int i = 0; i < 3000; i++) {
-        for (int k = 0; k < 40; k++)
-            camber_made_scene_point(&d.lines, camber_random_between(&seed, 20, 110),
-                                    camber_random_between(&seed, 20, 110));
+        for (int k = 0; k < 40; k++) {
+            const double y = camber_random_between(&seed, 20, 110);
+            camber_made_scene_point(&d.lines, camber_random_between(&seed, 20, 110), y);
+        }
         camber_made_scene_end(&d.lines, (size_t)i % 3);
     }
     for (int i = 0; i < 2; i++) {
@@ -486,9 +487,10 @@ static void test_loads(void **state) {
     drawing d = begin_drawing();
     uint64_t seed = 3;
     for (int i = 0; i < 20000; i++) {
-        for (int k = 0; k < 5; k++)
-            camber_made_scene_point(&d.lines, camber_random_between(&seed, 66, 94),
-                                    camber_random_between(&seed, 66, 94));
+        for (int k = 0; k < 5; k++) {
+            const double y = camber_random_between(&seed, 66, 94);
+            camber_made_scene_point(&d.lines, camber_random_between(&seed, 66, 94), y);
+        }
         camber_made_scene_end(&d.lines, 1 + (size_t)i % 2);
     }
     for (int i = 0; i < 1000000; i++)

@@ -265,10 +265,14 @@ static void add_end(trial *t, int kind, double width_px, path *p) {
         return;
     }
     go(p, arm, 0);
-    if (kind == SHARP_END)
-        go(p, width_px * between(&t->dice, 0.02, 0.5), side * between(&t->dice, 1.6, 2.8));
-    for (int i = 0; kind == PIECES_END && i < 3; i++)
-        go(p, between(&t->dice, 0.02, 0.9), between(&t->dice, -0.6, 0.6));
+    if (kind == SHARP_END) {
+        const double turn = side * between(&t->dice, 1.6, 2.8); /* compilers call arguments in orders of their own */
+        go(p, width_px * between(&t->dice, 0.02, 0.5), turn);
+    }
+    for (int i = 0; kind == PIECES_END && i < 3; i++) {
+        const double turn = between(&t->dice, -0.6, 0.6);
+        go(p, between(&t->dice, 0.02, 0.9), turn);
+    }
     for (int i = 0; kind == CURL && i < 8; i++)
         go(p, width_px * 0.12, side * 0.6);
 }
@@ -430,8 +434,10 @@ static void test_direction_does_not_matter(void **state) {
         const camber_oracle_style style = style_of(widths_px[i % (WIDTHS - 2)], i / 11 % 3, i / 33 % 3);
         path p, q;
         begin(&p, &t.dice);
-        for (int k = 0; k < 4; k++)
-            go(&p, between(&t.dice, 0.3, 20), between(&t.dice, -1.5, 1.5));
+        for (int k = 0; k < 4; k++) {
+            const double turn = between(&t.dice, -1.5, 1.5);
+            go(&p, between(&t.dice, 0.3, 20), turn);
+        }
         reverse(&p, &q);
         add_twins(&t, tallies, &p, &q, &style, "");
     }

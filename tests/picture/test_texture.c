@@ -29,9 +29,10 @@ static void begin_drawing(const fixture *s, camber_renderer *renderer, drawing *
     camber_made_scene lines = {0};
     uint64_t seed = 11;
     for (size_t i = 0; i < 30; i++) {
-        for (int k = 0; k < 5; k++)
-            camber_made_scene_point(&lines, camber_random_between(&seed, -9, WIDTH + 9),
-                                    camber_random_between(&seed, -9, HEIGHT + 9));
+        for (int k = 0; k < 5; k++) {
+            const double y = camber_random_between(&seed, -9, HEIGHT + 9);
+            camber_made_scene_point(&lines, camber_random_between(&seed, -9, WIDTH + 9), y);
+        }
         camber_made_scene_end(&lines, i % ROWS);
     }
     *d = (drawing){.frame = {.width = WIDTH, .height = HEIGHT, .pass_count = 2}};

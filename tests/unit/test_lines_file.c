@@ -208,8 +208,10 @@ static void test_random_bytes(void **state) {
     memcpy(original, file.bytes, file.size);
     for (int round = 0; round < 20000; round++) {
         memcpy(file.bytes, original, file.size);
-        for (size_t i = 0; i < 1 + camber_random_below(&seed, 3); i++)
-            file.bytes[camber_random_below(&seed, HEAD_SIZE + 16)] = (unsigned char)camber_random_bits(&seed);
+        for (size_t i = 0; i < 1 + camber_random_below(&seed, 3); i++) {
+            const unsigned char byte = (unsigned char)camber_random_bits(&seed);
+            file.bytes[camber_random_below(&seed, HEAD_SIZE + 16)] = byte;
+        }
         camber_lines lines;
         if (camber_lines_parse(context, file.bytes, file.size, "x", &lines) != CAMBER_OK)
             continue;

@@ -22,15 +22,13 @@ enum { LARGEST_UNPACKED_BYTES = 64 << 20 };
 typedef struct request {
     camber_listener *listener;
     struct MHD_Connection *connection;
-    camber_client *client;
-    char path[CAMBER_PATH_BYTES], method[8];
-    uintptr_t path_end; /* where the path as it came has its end */
+    camber_client *client; /* has the path, too */
+    char method[8];
     camber_route_request route;
     camber_ask ask;
     bool begun, asked, refused;
     int status; /* that was answered. 0: none yet */
     size_t sent_bytes;
-    double start_s;
 } request;
 
 typedef struct reply {
@@ -245,7 +243,7 @@ static bool has_left(const camber_ask *ask) {
 /* The connection sleeps from before it is asked, since the answer may be there at once. */
 static enum MHD_Result ask(request *r) {
     r->asked = true;
-    r->ask = (camber_ask){.request = r->route, .done = wake, .is_gone = r->client ? has_left : NULL, .user = r};
+    r->ask = (camber_ask){.request = r->route, .done = wake, .is_gone = has_left, .user = r};
     MHD_suspend_connection(r->connection);
     if (!camber_draw_queue_ask(r->listener->server->drawing, &r->ask)) {
         r->refused = true;
@@ -350,8 +348,7 @@ static enum MHD_Result answer_events(request *r) {
     const reply a = {.status = 200, .media_type = "text/event-stream", .cache_control = "no-store", .is_stream = true};
     add_headers(r, &a, response);
     r->status = a.status;
-    if (r->client)
-        camber_client_enter(r->client, CAMBER_CLIENT_LISTENS);
+    camber_client_enter(r->client, CAMBER_CLIENT_LISTENS);
     const enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)a.status, response);
     MHD_destroy_response(response);
     return queued;
@@ -378,22 +375,50 @@ static enum MHD_Result answer(request *r) {
 
 /* ---- Callbacks ---- */
 
-/* A path that is longer than any route is no route. */
+static camber_client *client_of(struct MHD_Connection *connection) {
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    return info ? info->socket_context : NULL;
+}
+
+/* A target in absolute form names a server before its path. Whatever that name is, we are the server. */
+static const char *find_path(const char *uri) {
+    const size_t scheme = strncasecmp(uri, "http://", 7) == 0 ? 7 : strncasecmp(uri, "https://", 8) == 0 ? 8 : 0;
+    const size_t name = scheme ? strcspn(uri + scheme, "/?") : 0;
+    if (!name)
+        return uri;
+    const char *path = uri + scheme + name;
+    return *path == '/' ? path : "/";
+}
+
+/* The path goes into the client's memory. Nothing is allocated here: libmicrohttpd drops requests that it refuses
+ * without a word. */
 void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *connection) {
-    camber_listener *listener = user;
-    request *r = calloc(1, sizeof *r);
+    camber_client *client = client_of(connection);
+    (void)user;
+    if (!client)
+        return NULL;
+    const char *path = find_path(uri);
+    const size_t length = strcspn(path, "?");
+    memset(client->path, 0, sizeof client->path);
+    if (length < sizeof client->path)
+        memcpy(client->path, path, length);
+    client->path_end = (uintptr_t)uri + strlen(uri);
+    client->start_s = camber_server_now_s();
+    return NULL;
+}
+
+/* The head of a request is here as a whole. NULL: no memory. */
+static request *take_request(camber_listener *listener, struct MHD_Connection *connection) {
+    camber_client *client = client_of(connection);
+    request *r = client ? calloc(1, sizeof *r) : NULL;
     if (!r)
         return NULL;
     r->listener = listener;
     r->connection = connection;
-    r->start_s = camber_server_now_s();
-    const size_t length = strcspn(uri, "?");
-    r->path_end = (uintptr_t)uri + strlen(uri);
-    if (length < sizeof r->path)
-        memcpy(r->path, uri, length);
+    r->client = client;
+    camber_request_leave(listener, client);
+    client->request = r;
     listener->server->in_flight++;
-    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    r->client = info ? info->socket_context : NULL;
     return r;
 }
 
@@ -401,7 +426,7 @@ void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *c
  * it: what we were given is its beginning alone. */
 static bool is_whole(const request *r, const char *version) {
     enum { FARTHEST = 1 << 16 };
-    const uintptr_t gap = (uintptr_t)version - r->path_end;
+    const uintptr_t gap = (uintptr_t)version - r->client->path_end;
     return gap <= 1 || gap > FARTHEST;
 }
 
@@ -413,14 +438,16 @@ static bool has_body(const request *r) {
 enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connection, const char *url,
                                       const char *method, const char *version, const char *upload, size_t *upload_size,
                                       void **state) {
-    const camber_listener *listener = user;
-    request *r = *state;
-    (void)connection;
+    camber_listener *listener = user;
+    request *r = *state ? *state : take_request(listener, connection);
     (void)url;
     (void)upload;
     *upload_size = 0;
-    if (!r || r->status)
-        return r ? MHD_YES : MHD_NO;
+    if (!r)
+        return MHD_NO;
+    *state = r;
+    if (r->status)
+        return MHD_YES;
     if (r->asked)
         return answer_drawn(r);
     /* An answer at the first call ends the connection: right where a body follows, which nobody reads. */
@@ -428,11 +455,10 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
         r->begun = true;
         return MHD_YES;
     }
-    if (r->client)
-        camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
+    camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
     const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
-    int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->path, &r->route) : 404;
+    int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->client->path, &r->route) : 404;
     /* Where there are no pictures there are none that are too large. */
     if (status == 400 && (listener->is_for_metrics || look(listener->server, false, NULL).is_archive))
         status = 404;
@@ -464,10 +490,10 @@ static void log_request(const request *r) {
     snprintf(text, sizeof text, "{\"time\":\"%s.%03ldZ\",\"method\":\"", date, now.tv_nsec / 1000000);
     append_json(text, sizeof text, r->method);
     snprintf(text + strlen(text), sizeof text - strlen(text), "\",\"path\":\"");
-    append_json(text, sizeof text - 200, r->path);
+    append_json(text, sizeof text - 200, r->client->path);
     snprintf(text + strlen(text), sizeof text - strlen(text),
              "\",\"route\":\"%s\",\"status\":%d,\"bytes\":%zu,\"ms\":%.3f}", camber_route_get_name(r->route.route),
-             r->status, r->sent_bytes, 1e3 * (camber_server_now_s() - r->start_s));
+             r->status, r->sent_bytes, 1e3 * (camber_server_now_s() - r->client->start_s));
     server->desc.log_request(server->desc.user, text);
 }
 
@@ -484,11 +510,17 @@ void camber_request_end(void *user, struct MHD_Connection *connection, void **st
     server->metrics.sent_bytes += r->sent_bytes;
     if (server->desc.log_request && server->desc.logs_requests)
         log_request(r);
-    if (r->client)
-        camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
+    camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
     if (r->asked && !r->refused && r->status == 0) /* the answer came, and nobody takes it */
         camber_body_release(r->ask.body);
+    r->client->request = NULL;
     free(r);
     *state = NULL;
     server->in_flight--;
+}
+
+void camber_request_leave(camber_listener *listener, camber_client *client) {
+    void *left = client ? client->request : NULL;
+    if (left)
+        camber_request_end(listener, NULL, &left, MHD_REQUEST_TERMINATED_WITH_ERROR);
 }

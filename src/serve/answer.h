@@ -12,7 +12,7 @@
 #include <microhttpd.h>
 #include <pthread.h>
 
-enum { CAMBER_PATH_BYTES = 200, CAMBER_DATE_SIZE = 40 };
+enum { CAMBER_DATE_SIZE = 40 };
 
 /* The chart or archive that is shown now, as requests see it. */
 typedef struct camber_view_of_shown {
@@ -47,7 +47,7 @@ struct camber_server {
     camber_metrics metrics;
     double start_s;
     atomic_bool stopping;
-    _Atomic int64_t in_flight; /* requests that are not answered yet */
+    _Atomic int64_t in_flight; /* requests that are here, and not answered yet */
     camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
     camber_body **page_bodies; /* two a file: plain, compressed or NULL */
     pthread_mutex_t mutex;     /* of view */
@@ -67,5 +67,7 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
                                       void **state);
 void camber_request_end(void *user, struct MHD_Connection *connection, void **state,
                         enum MHD_RequestTerminationCode code);
+/* The connection is about to be closed: ends what libmicrohttpd has not told the end of. client may be NULL. */
+void camber_request_leave(camber_listener *listener, camber_client *client);
 
 #endif

@@ -13,8 +13,14 @@ typedef enum camber_client_phase {
     CAMBER_CLIENT_LISTENS,   /* it takes events, without an end */
 } camber_client_phase;
 
+enum { CAMBER_PATH_BYTES = 200 };
+
 typedef struct camber_client {
     int socket;
+    char path[CAMBER_PATH_BYTES]; /* of the request that comes, as it came. "": it is longer than any route */
+    uintptr_t path_end;           /* where the path as it came has its end */
+    double start_s;               /* when its first line was here */
+    void *request;                /* that is being answered. NULL: none */
     atomic_int phase;
     _Atomic int64_t since_ms;
     struct camber_client *next, *before;

@@ -41,11 +41,12 @@ static const double MOST_SECONDS = 30; /* that a phase of a connection takes */
 
 static void notice_connection(void *user, struct MHD_Connection *connection, void **context,
                               enum MHD_ConnectionNotificationCode code) {
-    const camber_listener *listener = user;
+    camber_listener *listener = user;
     if (code == MHD_CONNECTION_NOTIFY_STARTED) {
         const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
         *context = info ? camber_clients_add(listener->server->clients, info->connect_fd) : NULL;
     } else {
+        camber_request_leave(listener, *context);
         camber_clients_remove(listener->server->clients, *context);
         *context = NULL;
     }

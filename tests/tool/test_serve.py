@@ -230,7 +230,7 @@ def test_hostile():
              b"/page/%2e%2e%2f", b"//etc/passwd", inside + b"%00", inside + b"/..", b"/%00", b"/\xff\xfe",
              b"/99999999999999999999/0/0.png", b"/1/4294967296/0.png", b"/1/-1/0.png", b"/0/0/0.png%20", b"/0x0/0/0.png",
              b"/static/1e308,0,0/1x1.png", b"/static/0,0,0/99999x99999.png", b"<script>alert(1)</script>", b"/<b>",
-             b"http://127.0.0.1/0/0/0.png", b"*", b"0/0/0.png"]
+             b"http:///0/0/0.png", b"*", b"0/0/0.png"]
     for path in paths:
         back = server.send(b"GET " + path + b" HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
         expect(400 <= (status_of(back) or 0) < 500, f"{path}: {back[:200]}")

@@ -355,8 +355,8 @@ static int listen_there(camber_session *session, camber_server **server, char ur
         return camber_report_fail(session->report, CAMBER_EXIT_IO, "%s: %s; choose another port or address (--listen)",
                                   failed, strerror(cause));
     if (cause)
-        return camber_report_fail(session->report, CAMBER_EXIT_INTERNAL, "serve: %s; give it more memory",
-                                  strerror(cause));
+        return camber_report_fail(session->report, cause == EMFILE ? CAMBER_EXIT_IO : CAMBER_EXIT_INTERNAL,
+                                  "serve: %s; %s", strerror(cause), camber_report_cure(cause, "give it more memory"));
     return CAMBER_EXIT_DONE;
 }
 

@@ -11,6 +11,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,16 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_CLIENTS = 64, NAME_SIZE = 41, MOST_ZOOM = 20, SIDE = CAMBER_METATILE_FILE_SIDE };
+enum {
+    MOST_CLIENTS = CAMBER_RENDERD_MOST_CLIENTS,
+    NAME_SIZE = 41,
+    MOST_ZOOM = 20,
+    SIDE = CAMBER_METATILE_FILE_SIDE,
+    LONGEST_SEND_MS = 30000, /* that a client may take for an answer; when the server ends, it has less */
+    LONGEST_LAST_SEND_MS = 1000,
+    LEAST_WAIT_MS = 1000, /* a client that has sent nothing for so long makes room for another */
+    LOOK_MS = 100,
+};
 
 typedef enum protocol_command {
     COMMAND_IGNORE = 0,
@@ -44,12 +54,14 @@ static const size_t sizes[] = {0, 20, 64, sizeof(protocol_message)};
 typedef struct renderd_client {
     camber_renderd *renderd;
     pthread_t thread;
-    int socket;       /* -1: the place is free */
-    atomic_bool ends; /* the thread is to be joined */
+    int socket;               /* -1: the place is free */
+    atomic_bool ends;         /* the thread is to be joined */
+    _Atomic int64_t waits_ms; /* since when it waits for a request. 0: it answers one */
 } renderd_client;
 
 struct camber_renderd {
     camber_renderd_desc desc;
+    size_t most_clients;
     int socket;
     pthread_t thread;
     bool started;
@@ -57,6 +69,12 @@ struct camber_renderd {
     pthread_mutex_t mutex; /* of clients' sockets */
     renderd_client clients[MOST_CLIENTS];
 };
+
+static int64_t now_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
 
 /* ---- A metatile ---- */
 
@@ -193,15 +211,45 @@ static bool receive_message(int from, protocol_message *message) {
     return true;
 }
 
+/* false: the client has gone, or takes no answer. */
+static bool send_message(const renderd_client *client, const protocol_message *message) {
+    const char *at = (const char *)message;
+    size_t left = sizes[message->version];
+    struct pollfd there = {.fd = client->socket, .events = POLLOUT};
+    int64_t begin_ms = now_ms();
+    bool stops = false;
+    while (left > 0) {
+        const ssize_t sent = send(client->socket, at, left, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (sent > 0) {
+            at += sent;
+            left -= (size_t)sent;
+            continue;
+        }
+        if (sent == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR))
+            return false;
+        if (!stops && client->renderd->stopping) {
+            stops = true;
+            begin_ms = now_ms();
+        }
+        if (now_ms() - begin_ms > (stops ? LONGEST_LAST_SEND_MS : LONGEST_SEND_MS))
+            return false;
+        (void)poll(&there, 1, LOOK_MS);
+    }
+    return true;
+}
+
 static void *serve_client(void *user) {
     renderd_client *client = user;
     protocol_message message;
-    while (receive_message(client->socket, &message)) {
+    for (;;) {
+        client->waits_ms = now_ms();
+        if (!receive_message(client->socket, &message))
+            break;
+        client->waits_ms = 0;
         const bool drawn = draw(client->renderd, &message);
         const bool silent = message.command == COMMAND_DIRTY;
         message.command = drawn ? COMMAND_DONE : COMMAND_NOT_DONE;
-        const size_t size = sizes[message.version];
-        if (!silent && send(client->socket, &message, size, MSG_NOSIGNAL) != (ssize_t)size)
+        if (!silent && !send_message(client, &message))
             break;
     }
     (void)shutdown(client->socket, SHUT_RDWR); /* it is closed when the place is needed, or at the end */
@@ -220,19 +268,32 @@ static void close_client(camber_renderd *renderd, renderd_client *client) {
     pthread_mutex_unlock(&renderd->mutex);
 }
 
-/* One more than there is room for is closed at once. */
-static void take_client(camber_renderd *renderd, int socket) {
-    renderd_client *place = NULL;
-    for (size_t i = 0; i < MOST_CLIENTS; i++) {
+/* A place that is free, or that of the client that has been silent for longest. NULL: all of them are at work. */
+static renderd_client *find_room(camber_renderd *renderd) {
+    renderd_client *place = NULL, *silent = NULL;
+    for (size_t i = 0; i < renderd->most_clients; i++) {
         renderd_client *client = renderd->clients + i;
         if (client->socket >= 0 && client->ends)
             close_client(renderd, client);
         if (client->socket < 0)
             place = client;
+        else if (client->waits_ms && (!silent || client->waits_ms < silent->waits_ms))
+            silent = client;
     }
+    if (place || !silent || now_ms() - silent->waits_ms < LEAST_WAIT_MS)
+        return place;
+    (void)shutdown(silent->socket, SHUT_RDWR);
+    close_client(renderd, silent);
+    return silent;
+}
+
+/* One more than there is room for is closed at once. */
+static void take_client(camber_renderd *renderd, int socket) {
+    renderd_client *place = find_room(renderd);
     if (place) {
         pthread_mutex_lock(&renderd->mutex);
         place->socket = socket;
+        place->waits_ms = now_ms();
         if (pthread_create(&place->thread, NULL, serve_client, place) != 0)
             place->socket = -1;
         pthread_mutex_unlock(&renderd->mutex);
@@ -243,13 +304,16 @@ static void take_client(camber_renderd *renderd, int socket) {
 
 static void *accept_clients(void *user) {
     camber_renderd *renderd = user;
+    const struct timespec pause = {.tv_nsec = LOOK_MS * 1000000L};
     while (!renderd->stopping) {
         const int client = accept(renderd->socket, NULL, NULL);
         if (client >= 0 && !renderd->stopping)
             take_client(renderd, client);
         else if (client >= 0)
             close(client);
-        else if (errno != EINTR && errno != ECONNABORTED && errno != EMFILE && errno != ENFILE)
+        else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
+            nanosleep(&pause, NULL); /* until something is closed */
+        else if (errno != EINTR && errno != ECONNABORTED)
             break;
     }
     return NULL;
@@ -297,6 +361,7 @@ int camber_renderd_create(const camber_renderd_desc *desc, camber_renderd **rend
     if (!made)
         return ENOMEM;
     made->desc = *desc;
+    made->most_clients = desc->most_clients && desc->most_clients < MOST_CLIENTS ? desc->most_clients : MOST_CLIENTS;
     made->socket = -1;
     for (size_t i = 0; i < MOST_CLIENTS; i++)
         made->clients[i] = (renderd_client){.renderd = made, .socket = -1};
@@ -325,10 +390,11 @@ void camber_renderd_destroy(camber_renderd *renderd) {
     if (renderd->socket >= 0)
         close(renderd->socket);
     for (size_t i = 0; i < MOST_CLIENTS; i++)
-        if (renderd->clients[i].socket >= 0) {
+        if (renderd->clients[i].socket >= 0)
             (void)shutdown(renderd->clients[i].socket, SHUT_RD); /* its answer is sent still */
+    for (size_t i = 0; i < MOST_CLIENTS; i++)
+        if (renderd->clients[i].socket >= 0)
             close_client(renderd, renderd->clients + i);
-        }
     pthread_mutex_destroy(&renderd->mutex);
     free(renderd);
 }

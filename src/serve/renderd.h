@@ -5,8 +5,11 @@
 
 #include "serve/draw_queue.h"
 
+enum { CAMBER_RENDERD_MOST_CLIENTS = 64 };
+
 typedef struct camber_renderd_desc {
     const char *socket, *folder; /* paths; the folder is there */
+    unsigned most_clients;       /* at once. Beyond that the one that has been silent for longest goes. 0: the most */
     camber_draw_queue *queue;
     /* Whether the input has been read; until then requests are told that they are not done. */
     bool (*is_ready)(void *user);

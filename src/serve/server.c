@@ -13,6 +13,7 @@
 #include "serve/tilejson.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -27,7 +28,10 @@ enum {
     DEFAULT_SIDE = 1,
     RENDERD_SIDE = CAMBER_METATILE_FILE_SIDE, /* all tiles of a file are wanted at once: one drawing has them */
     MOST_CONNECTIONS = 12000,
-    SPARE_DESCRIPTORS = 128, /* for files and drivers */
+    MOST_METRICS_CONNECTIONS = 64,
+    SPARE_DESCRIPTORS = 128, /* for files and drivers; of few descriptors the half */
+    LEAST_CONNECTIONS = 8,
+    EVENT_DESCRIPTORS = 4, /* of a thread that waits for sockets */
     CONNECTION_BYTES = 16 << 10,
     MOST_QUEUED = 128,
     MOST_PICTURES = 24, /* of a tile each; of a metatile fewer */
@@ -52,21 +56,45 @@ static void notice_connection(void *user, struct MHD_Connection *connection, voi
     }
 }
 
-/* As many as the process may have; the rest waits in the system's queue. */
-static unsigned count_connections(void) {
+/* Connections that each socket may have at once; the rest waits in the system's queue. */
+typedef struct shares {
+    unsigned page, metrics, renderd;
+} shares;
+
+static rlim_t raise_limit(rlim_t wanted) {
     struct rlimit limit;
     if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
         return 256;
-    const rlim_t wanted = MOST_CONNECTIONS + SPARE_DESCRIPTORS;
-    if (limit.rlim_cur < wanted && limit.rlim_cur < limit.rlim_max) {
-        const rlim_t before = limit.rlim_cur;
-        limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
-        if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
-            limit.rlim_cur = before;
-    }
-    if (limit.rlim_cur >= wanted)
-        return MOST_CONNECTIONS;
-    return limit.rlim_cur > 2 * SPARE_DESCRIPTORS ? (unsigned)limit.rlim_cur - SPARE_DESCRIPTORS : SPARE_DESCRIPTORS;
+    const rlim_t before = limit.rlim_cur;
+    if (before >= wanted || before >= limit.rlim_max)
+        return before;
+    limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
+    return setrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : before;
+}
+
+/* The next descriptor has the lowest number that is free. */
+static rlim_t count_descriptors(void) {
+    const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (next >= 0)
+        close(next);
+    return next >= 0 ? (rlim_t)next : SPARE_DESCRIPTORS;
+}
+
+/* Files and drivers keep some descriptors, whatever the limit is: PoCL ends the process where it gets none. false:
+ * there are too few. */
+static bool share_descriptors(const camber_server_desc *desc, shares *made) {
+    const rlim_t fixed = count_descriptors() + (rlim_t)EVENT_DESCRIPTORS * (desc->threads + 1);
+    const rlim_t metrics = desc->metrics ? MOST_METRICS_CONNECTIONS : 0;
+    const rlim_t renderd = desc->renderd ? CAMBER_RENDERD_MOST_CLIENTS : 0;
+    const rlim_t most = raise_limit(fixed + SPARE_DESCRIPTORS + metrics + renderd + MOST_CONNECTIONS);
+    const rlim_t free_ones = most > fixed ? most - fixed : 0;
+    rlim_t left = free_ones - (free_ones / 2 < SPARE_DESCRIPTORS ? free_ones / 2 : SPARE_DESCRIPTORS);
+    const rlim_t quarter = left / 4;
+    *made = (shares){.metrics = (unsigned)(quarter < metrics ? quarter : metrics),
+                     .renderd = (unsigned)(quarter < renderd ? quarter : renderd)};
+    left -= made->metrics + made->renderd;
+    made->page = (unsigned)(left < MOST_CONNECTIONS ? left : MOST_CONNECTIONS);
+    return made->page >= LEAST_CONNECTIONS && made->page >= desc->threads && quarter > 0;
 }
 
 /* The page loads what this server has, and tiles and tiles.json by the URL that they name. */
@@ -187,14 +215,18 @@ static int start_all(camber_server *server, const char **failed) {
                                             .log_user = desc->user};
     if (!(server->drawing = camber_draw_queue_create(&drawing)))
         return ENOMEM;
+    shares most;
+    if (!share_descriptors(desc, &most))
+        return EMFILE;
     *failed = desc->metrics;
-    cause = desc->metrics ? start(&server->metrics_page, desc->metrics, 1, 64) : 0;
+    cause = desc->metrics ? start(&server->metrics_page, desc->metrics, 1, most.metrics) : 0;
     if (cause)
         return cause;
     *failed = desc->listen;
-    cause = start(&server->page, desc->listen, desc->threads, count_connections());
+    cause = start(&server->page, desc->listen, desc->threads, most.page);
     const camber_renderd_desc renderd = {.socket = desc->renderd,
                                          .folder = desc->cache_dir,
+                                         .most_clients = most.renderd,
                                          .queue = server->drawing,
                                          .is_ready = is_drawing,
                                          .failed = tell_failure,

@@ -5,7 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_DIGITS = 8, MOST_ZOOM = 24, MOST_PITCH_DEG = 85, MOST_FRACTION_DIGITS = 15 };
+enum { MOST_DIGITS = 8, MOST_PITCH_DEG = 85, MOST_FRACTION_DIGITS = 15 };
+
+/* Where Web Mercator ends, which pictures have their middles within. */
+static const double MOST_LATITUDE = 85.051129;
 
 static const struct {
     const char *ending, *other, *media_type;
@@ -120,7 +123,7 @@ static const char SUBTREES[] = "subtrees/";
 
 static bool take_place(cursor *c, const char *between, camber_route_request *r) {
     uint32_t zoom;
-    if (!take_count(c, &zoom) || zoom > MOST_ZOOM || !take(c, between) || !take_count(c, &r->column) ||
+    if (!take_count(c, &zoom) || zoom > CAMBER_ROUTE_MOST_ZOOM || !take(c, between) || !take_count(c, &r->column) ||
         !take(c, between) || !take_count(c, &r->row) || r->column >> zoom || r->row >> zoom)
         return false;
     r->zoom = (int)zoom;
@@ -143,8 +146,9 @@ static bool take_of_tileset(cursor *c, const camber_route_limits *limits, camber
 }
 
 static bool take_static(cursor *c, camber_route_request *r) {
-    if (!take_number(c, -180, 180, &r->longitude) || !take(c, ",") || !take_number(c, -90, 90, &r->latitude) ||
-        !take(c, ",") || !take_number(c, 0, MOST_ZOOM, &r->map_zoom))
+    if (!take_number(c, -180, 180, &r->longitude) || !take(c, ",") ||
+        !take_number(c, -MOST_LATITUDE, MOST_LATITUDE, &r->latitude) || !take(c, ",") ||
+        !take_number(c, 0, CAMBER_ROUTE_MOST_ZOOM, &r->map_zoom))
         return false;
     if (take(c, "@") && (!take_number(c, -360, 360, &r->bearing_deg) ||
                          (take(c, ",") && !take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg))))

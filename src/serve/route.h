@@ -33,6 +33,8 @@ typedef enum camber_route {
     CAMBER_ROUTES,
 } camber_route;
 
+enum { CAMBER_ROUTE_MOST_ZOOM = 24 };
+
 /* Kinds of tiles by the endings of paths. The first two can be drawn, an archive may have any. */
 typedef enum camber_route_type {
     CAMBER_ROUTE_PNG = 0,

@@ -31,6 +31,11 @@ static void find_center(const camber_shown *shown, double center[3]) {
     center[2] = fmax(shown->min_zoom, fmin(zoom, fmin(shown->max_zoom, DEEPEST_CENTER)));
 }
 
+/* An archive says what it likes of its zooms. */
+static int limit_zoom(int zoom) {
+    return zoom < 0 ? 0 : zoom > CAMBER_ROUTE_MOST_ZOOM ? CAMBER_ROUTE_MOST_ZOOM : zoom;
+}
+
 static json_t *describe_tiles(const camber_tilejson_desc *desc, const char *ending) {
     const size_t size = strlen(desc->url) + 64;
     char *text = malloc(size);
@@ -80,12 +85,13 @@ camber_body *camber_tilejson_create(const camber_tilejson_desc *desc) {
         ending = camber_route_get_ending(type);
     if (shown->has_bounds && !shown->has_center)
         find_center(shown, center);
+    center[2] = limit_zoom((int)fmax(-1, fmin(center[2], CAMBER_ROUTE_MOST_ZOOM)));
     json_t *object = json_object();
     take_metadata(object, shown->metadata);
     bool made = set(object, "tilejson", json_string("3.0.0")) && set(object, "scheme", json_string("xyz")) &&
                 set(object, "tiles", describe_tiles(desc, ending)) &&
-                set(object, "minzoom", json_integer(shown->min_zoom)) &&
-                set(object, "maxzoom", json_integer(shown->max_zoom)) &&
+                set(object, "minzoom", json_integer(limit_zoom(shown->min_zoom))) &&
+                set(object, "maxzoom", json_integer(limit_zoom(shown->max_zoom))) &&
                 set(object, "tileSize", json_integer(find_tile_size(shown))) &&
                 set(object, "camber",
                     json_pack("{s:s?, s:b, s:i, s:b}", "theme", desc->theme, "drawn", !shown->reader, "ratio_max",

@@ -71,8 +71,10 @@ static void reads_a_picture(void **state) {
     assert_int_equal(request.width, 512);
     assert_int_equal(request.height, 256);
     assert_int_equal(request.ratio, 4);
-    assert_int_equal(parse("/static/180,-90,24@360/2048x2048.webp", &request), 200);
+    assert_int_equal(parse("/static/180,-85,24@360/2048x2048.webp", &request), 200);
     assert_true(request.bearing_deg == 360 && request.pitch_deg == 0);
+    assert_int_equal(parse("/static/0,85.051129,2/9x9.png", &request), 200);
+    assert_int_equal(parse("/static/0,85.06,2/9x9.png", &request), 404); /* Web Mercator ends before */
 }
 
 static void reads_a_name(void **state) {

@@ -221,11 +221,26 @@ static camber_status tell_stranger(const camber_folder_visitor *visitor, const c
     return visitor->take_stranger(visitor->user, path);
 }
 
+/* The archive's own path may be a link. A folder within it may not. */
+static DIR *open_folder(const char *path, bool top) {
+    struct stat about;
+    const int opened = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC | (top ? 0 : O_NOFOLLOW));
+    DIR *made = opened >= 0 ? fdopendir(opened) : NULL;
+    if (made)
+        return made;
+    const int cause =
+        opened < 0 && errno == ENOTDIR && lstat(path, &about) == 0 && S_ISLNK(about.st_mode) ? ELOOP : errno;
+    if (opened >= 0)
+        close(opened);
+    errno = cause;
+    return NULL;
+}
+
 /* Lists what is named by a number in a folder, in ascending order. What is not goes to the visitor. */
 static camber_status list(const camber_folder_visitor *visitor, const char *folder, bool files, bool top,
                           names *found) {
     camber_context *context = visitor->context;
-    DIR *opened = opendir(folder);
+    DIR *opened = open_folder(folder, top);
     camber_status status = opened ? CAMBER_OK : camber_file_fail(context, folder, errno);
     const struct dirent *entry;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {

@@ -10,11 +10,8 @@
 
 #include "camber_tiles.h"
 
-#include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 struct camber_tiles_reader {
     camber_context *context;
@@ -107,16 +104,15 @@ const camber_tiles_info *camber_tiles_reader_get_info(const camber_tiles_reader 
 /* ---- Tiles ---- */
 
 static camber_status read_file(camber_tiles_reader *reader, const camber_tiles_place *place, size_t *size_bytes) {
-    char path[PATH_MAX];
+    char name[64];
     *size_bytes = 0;
     camber_free(reader->context, reader->file_bytes);
     reader->file_bytes = NULL;
-    if (snprintf(path, sizeof path, "%s/%d/%u/%u.%s", reader->archive->path, place->zoom, place->column, place->row,
-                 camber_tile_type_get_name(reader->archive->type)) >= (int)sizeof path)
-        return camber_file_fail(reader->context, reader->archive->path, ENAMETOOLONG);
-    if (access(path, F_OK) != 0)
-        return CAMBER_OK;
-    return camber_read_file(reader->context, path, CAMBER_NAMED_BY_CALLER, &reader->file_bytes, size_bytes);
+    snprintf(name, sizeof name, "%d/%u/%u.%s", place->zoom, place->column, place->row,
+             camber_tile_type_get_name(reader->archive->type));
+    const camber_status status =
+        camber_read_file_below(reader->context, reader->archive->path, name, &reader->file_bytes, size_bytes);
+    return status == CAMBER_ERROR_NOT_FOUND ? CAMBER_OK : status; /* no tile is there */
 }
 
 camber_status camber_tiles_reader_read(camber_tiles_reader *reader, const camber_tiles_place *place,

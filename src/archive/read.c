@@ -126,13 +126,12 @@ static camber_status take_metadata(camber_archive *archive) {
 /* ---- Opening ---- */
 
 static camber_status read_folder(camber_archive *archive) {
-    char path[PATH_MAX], *bytes = NULL;
+    char *bytes = NULL;
     size_t size_bytes = 0;
-    if (snprintf(path, sizeof path, "%s/metadata.json", archive->path) >= (int)sizeof path || access(path, F_OK) != 0)
-        return CAMBER_OK;
-    const camber_status status = camber_read_file(archive->context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size_bytes);
+    const camber_status status =
+        camber_read_file_below(archive->context, archive->path, "metadata.json", &bytes, &size_bytes);
     if (status != CAMBER_OK)
-        return status;
+        return status == CAMBER_ERROR_NOT_FOUND ? CAMBER_OK : status;
     archive->metadata = json_loadb(bytes, size_bytes, 0, NULL);
     camber_free(archive->context, bytes);
     return CAMBER_OK;
@@ -239,8 +238,10 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
     const archive_walk *walk = user;
     char *bytes = NULL;
     size_t size_bytes;
-    camber_status status =
-        camber_read_file(walk->archive->context, file->path, CAMBER_NAMED_BY_CALLER, &bytes, &size_bytes);
+    camber_status status = camber_read_file_below(walk->archive->context, walk->archive->path,
+                                                  file->path + strlen(walk->archive->path) + 1, &bytes, &size_bytes);
+    if (status == CAMBER_ERROR_NOT_FOUND)
+        return camber_file_fail(walk->archive->context, file->path, ENOENT);
     if (status != CAMBER_OK)
         return status;
     camber_archive_tile tile = {.zoom = (int)file->zoom,

@@ -217,7 +217,7 @@ static void check_root(tileset *t, const char *found, size_t size_bytes, bool sa
 static camber_status compare_file(void *user, const char *name, const void *bytes, size_t size_bytes) {
     tileset *t = user;
     const bool is_root = t->count == 0 && strcmp(name, "tileset.json") == 0;
-    char path[PATH_MAX], *found = NULL;
+    char *found = NULL;
     size_t found_bytes = 0;
     if (t->is_left)
         return CAMBER_OK;
@@ -227,16 +227,14 @@ static camber_status compare_file(void *user, const char *name, const void *byte
         const char *own = strchr(name, '/') + 1;
         t->names[t->count++] = camber_hash(CAMBER_HASH_START, own, strlen(own));
     }
-    if (snprintf(path, sizeof path, "%s/%s", t->v->archive->path, name) >= (int)sizeof path)
-        return camber_file_fail(t->v->context, t->v->archive->path, ENAMETOOLONG);
-    if (access(path, F_OK) != 0) {
+    const camber_status status = camber_read_file_below(t->v->context, t->v->archive->path, name, &found, &found_bytes);
+    if (status == CAMBER_ERROR_NOT_FOUND) {
         t->is_left = is_root;
         camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, !is_root, "%s is missing%s", name,
                            is_root ? ": viewers of 3D Tiles find no tiles"
                                    : ", and with it the tiles that it tells of");
         return CAMBER_OK;
     }
-    const camber_status status = camber_read_file(t->v->context, path, CAMBER_NAMED_BY_CALLER, &found, &found_bytes);
     if (status != CAMBER_OK)
         return status;
     const bool same = found_bytes == size_bytes && memcmp(found, bytes, size_bytes) == 0;

@@ -119,6 +119,10 @@ camber_status camber_file_fail(camber_context *context, const char *path, int ca
  * and CAMBER_ERROR_MEMORY. */
 camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
                                size_t *size_bytes);
+/* Reads a file of a folder by its name within it, and follows no link on the way from the folder to it. Returns
+ * CAMBER_ERROR_NOT_FOUND without a message. */
+camber_status camber_read_file_below(camber_context *context, const char *folder, const char *name, char **bytes,
+                                     size_t *size_bytes);
 
 /* ---- Hashes ---- */
 

@@ -14,6 +14,10 @@ camber_status camber_file_fail(camber_context *context, const char *path, int ca
     if (cause == EMFILE || cause == ENFILE)
         return camber_fail(context, CAMBER_ERROR_IO, "%s: cannot be read: too many open files; allow more (ulimit -n)",
                            path);
+    if (cause == ELOOP)
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: is a link, or in one, which is not followed there; put the file itself there (cp -rL)",
+                           path);
     const camber_status status = cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO;
     return camber_fail(context, status, "%s: cannot be read: %s; check the path and its permissions", path,
                        strerror(cause));
@@ -127,17 +131,14 @@ static camber_status read_bytes(camber_context *context, int file, const char *p
     return got < 0 ? camber_file_fail(context, path, errno) : CAMBER_OK;
 }
 
-/* A file that grows while it is read is read up to the size that it had when it was opened. */
-camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
-                               size_t *size_bytes) {
-    int file = -1;
-    uint64_t size = 0;
+/* Reads an open file, and closes it. One that grows while it is read is read up to the size that it had when it was
+ * opened. */
+static camber_status read_all(camber_context *context, const char *path, int file, uint64_t size, char **bytes,
+                              size_t *size_bytes) {
     size_t done = 0;
-    camber_status status = camber_file_open(context, path, naming, &file, &size);
-    if (status != CAMBER_OK)
-        return status;
     char *block = size < SIZE_MAX ? camber_alloc(context, (size_t)size + 1, 1) : NULL;
-    status = block ? read_bytes(context, file, path, block, (size_t)size, &done) : CAMBER_ERROR_MEMORY;
+    const camber_status status =
+        block ? read_bytes(context, file, path, block, (size_t)size, &done) : CAMBER_ERROR_MEMORY;
     close(file);
     if (status != CAMBER_OK) {
         camber_free(context, block);
@@ -147,6 +148,31 @@ camber_status camber_read_file(camber_context *context, const char *path, camber
     *bytes = block;
     *size_bytes = done;
     return CAMBER_OK;
+}
+
+camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
+                               size_t *size_bytes) {
+    int file = -1;
+    uint64_t size = 0;
+    const camber_status status = camber_file_open(context, path, naming, &file, &size);
+    return status == CAMBER_OK ? read_all(context, path, file, size, bytes, size_bytes) : status;
+}
+
+camber_status camber_read_file_below(camber_context *context, const char *folder, const char *name, char **bytes,
+                                     size_t *size_bytes) {
+    char path[PATH_MAX];
+    struct stat about;
+    snprintf(path, sizeof path, "%s/%s", folder, name); /* for messages */
+    const int file = camber_open_file_below(folder, name, &about);
+    if (file < 0 && (errno == ENOENT || errno == ENOTDIR))
+        return CAMBER_ERROR_NOT_FOUND;
+    if (file < 0)
+        return camber_file_fail(context, path, errno);
+    const camber_status status = check_access(context, path, &about);
+    if (status == CAMBER_OK)
+        return read_all(context, path, file, (uint64_t)about.st_size, bytes, size_bytes);
+    close(file);
+    return status;
 }
 
 uint64_t camber_hash(uint64_t hash, const void *bytes, size_t size_bytes) {

@@ -10,7 +10,6 @@
 #include "serve/gzip.h"
 #include "serve/page.h"
 
-#include <limits.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -212,16 +211,15 @@ static enum MHD_Result answer_stored(request *r, const camber_view_of_shown *vie
 static enum MHD_Result answer_tileset(request *r) {
     const camber_view_of_shown view = look(r->listener->server, false, NULL);
     const bool is_root = r->route.route == CAMBER_ROUTE_TILESET;
-    char path[PATH_MAX];
+    char name[64] = "tileset.json";
     if (!view.ready)
         return send_error(r, 503);
     if (!view.tileset)
         return send_error(r, 404);
-    const int length = is_root ? snprintf(path, sizeof path, "%s/tileset.json", view.tileset)
-                               : snprintf(path, sizeof path, "%s/subtrees/%d.%u.%u.subtree", view.tileset,
-                                          r->route.zoom, r->route.column, r->route.row);
+    if (!is_root)
+        snprintf(name, sizeof name, "subtrees/%d.%u.%u.subtree", r->route.zoom, r->route.column, r->route.row);
     reply a = {.status = 200,
-               .body = length < (int)sizeof path ? camber_body_read(path) : NULL,
+               .body = camber_body_read(view.tileset, name),
                .media_type = is_root ? "application/json" : "application/octet-stream",
                .cache_control = "public, max-age=300"};
     memcpy(a.last_modified, view.last_modified, sizeof a.last_modified);

@@ -20,6 +20,12 @@ struct camber_budget {
     _Atomic uint64_t held_bytes, most_bytes;
 };
 
+/* Changes what a budget allows, which any thread may do. 0: the calls that run fail as soon as they need memory.
+ * Inline, because the tool ends a reading so, and libcamber hides its own. */
+static inline void camber_budget_allow(camber_budget *budget, uint64_t most_bytes) {
+    atomic_store(&budget->most_bytes, most_bytes);
+}
+
 /* The share of a budget that the current set of features has used. */
 typedef struct camber_spent {
     uint64_t tiles, steps, file_bytes, unfolded_bytes;

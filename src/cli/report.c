@@ -101,7 +101,10 @@ int camber_report_fail(camber_report *report, int exit_status, const char *forma
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    print_line(report, "camber: ", text);
+    if (report->keeps)
+        snprintf(report->error, sizeof report->error, "%s", text);
+    else
+        print_line(report, "camber: ", text);
     return exit_status;
 }
 

@@ -21,6 +21,7 @@ typedef struct camber_report {
     double bar_ms;      /* when it was drawn */
     const char *spool;  /* the copy of standard input, which messages name as that; NULL: none */
     bool sealed;        /* the first failure is known; what it causes is not news */
+    bool keeps;         /* failures are kept in error, and not printed */
     char error[4096];   /* the library's last error: the message of the status that a call returns */
 } camber_report;
 

@@ -31,17 +31,26 @@ static void show_progress(void *user, const char *stage, double fraction) {
     camber_report_progress(session->report, stage, fraction);
 }
 
+/* 0: the budget finds out. */
+static uint64_t find_most_bytes(const camber_session *session) {
+    const uint64_t asked = session->options->memory_bytes;
+    if (!session->whole)
+        return asked && asked < LEAST_BUDGET_BYTES ? LEAST_BUDGET_BYTES : asked;
+    const uint64_t most = camber_budget_get_most_bytes(session->whole),
+                   taken = camber_budget_get_held_bytes(session->whole) + session->beside_bytes;
+    return most > taken ? most - taken : 1;
+}
+
 static camber_status prepare(camber_session *session) {
     const camber_options *options = session->options;
-    const uint64_t asked = options->memory_bytes;
-    const camber_budget_desc budget = {.memory_bytes =
-                                           asked && asked < LEAST_BUDGET_BYTES ? LEAST_BUDGET_BYTES : asked};
     if (session->context)
         return CAMBER_OK;
+    const camber_budget_desc budget = {.memory_bytes = find_most_bytes(session)};
     const camber_status status = camber_budget_create(&budget, &session->budget);
     if (status != CAMBER_OK)
         return status;
-    camber_watch_start(&session->watch, session->guard, session->report, session->budget);
+    camber_watch_start(&session->watch, session->guard, session->report,
+                       session->whole ? session->whole : session->budget);
     const camber_context_desc desc = {.log = camber_report_log,
                                       .log_user = session->report,
                                       .progress = show_progress,

@@ -30,7 +30,11 @@ typedef struct camber_session {
     camber_report *report;
     camber_guard *guard;
     camber_budget *budget;
-    camber_watch watch;
+    /* A budget of which this session may hold what is left after those beside it, which hold beside_bytes. NULL: the
+     * options say what it may. */
+    camber_budget *whole;
+    uint64_t beside_bytes;
+    camber_watch watch; /* its give_up may be set before the session is used */
     camber_context *context;
     camber_surface *surface;
     camber_device *device;

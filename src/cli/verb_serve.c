@@ -1,8 +1,9 @@
 /* Runs `camber serve`: listens, reads the input, and then waits for signals while the server's threads draw.
  *
  * SIGHUP reads input and style again into a set of their own, which takes the place of the one before when it is whole.
- * What cannot be read leaves everything as it was. SIGTERM ends what is begun, and the run; so does a device that is
- * lost. */
+ * What cannot be read leaves everything as it was: it is read on a thread of its own, which is left to itself where its
+ * reader does not end, and both sets share the memory that the run may have. SIGTERM ends what is begun, and the run;
+ * so does a device that is lost. */
 #define _XOPEN_SOURCE 700
 
 #include "cli/input.h"
@@ -23,6 +24,9 @@ int camber_verb_serve(camber_session *session) {
 #include "serve/server.h"
 
 #include <errno.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +34,11 @@ int camber_verb_serve(camber_session *session) {
 
 /* So many pictures one after the other that the device fails to draw say that it is lost. */
 enum { DEEPEST_ZOOM = 22, LOOK_MS = 200, BEAT_MS = 10000, LOST_PICTURES = 3 };
+/* A reading that is given up ends when it next needs memory. One whose library does not get there is left to itself. */
+enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
+
+typedef struct reading reading;
+typedef struct rereading rereading;
 
 /* Signals ask for these, and changes of a style that is edited. */
 typedef struct wishes {
@@ -43,10 +52,13 @@ typedef struct wishes {
     double beat_ms;      /* when those who listen were looked for */
     int failed_pictures; /* one after the other. The thread that draws counts them */
     bool lost;           /* the device is: a wish to stop */
+    bool given_up;       /* the reading that goes on takes too much time or memory */
+    reading *shown;      /* NULL: none yet */
+    rereading *left;     /* one that was given up and had not ended then. NULL: none */
 } wishes;
 
 /* One reading of the input. The first one is on the verb's session, and later ones have sessions of their own. */
-typedef struct reading {
+struct reading {
     camber_session *session, own;
     camber_report report;
     camber_input input;
@@ -56,7 +68,15 @@ typedef struct reading {
     camber_shown shown;
     char name[256];
     wishes *wishes;
-} reading;
+};
+
+/* A reading on a thread of its own. The wishes' mutex guards what both threads use. */
+struct rereading {
+    reading *it;
+    pthread_t thread;
+    int status;
+    bool done, is_left; /* is_left: the thread closes the reading */
+};
 
 /* ---- Signals ---- */
 
@@ -93,18 +113,22 @@ static bool was_saved(wishes *w) {
     return saved;
 }
 
-/* Waits a moment, or for a signal. The mutex is held. */
-static void wait_a_moment(wishes *w) {
+/* The mutex is held. */
+static void wait_for_ms(wishes *w, long ms) {
     struct timespec end;
-    if (!w->edited) {
-        pthread_cond_wait(&w->changed, &w->mutex);
-        return;
-    }
     clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_nsec += LOOK_MS * 1000000L;
+    end.tv_nsec += ms * 1000000L;
     end.tv_sec += end.tv_nsec / 1000000000L;
     end.tv_nsec %= 1000000000L;
     (void)pthread_cond_timedwait(&w->changed, &w->mutex, &end);
+}
+
+/* Waits a moment, or for a signal. The mutex is held. */
+static void wait_a_moment(wishes *w) {
+    if (w->edited)
+        wait_for_ms(w, LOOK_MS);
+    else
+        pthread_cond_wait(&w->changed, &w->mutex);
 }
 
 /* Waits for a signal or a change. Returns whether to read again; false: to stop. */
@@ -211,7 +235,9 @@ static int read_map(reading *it) {
 static int read_archive(reading *it) {
     const camber_options *options = it->session->options;
     camber_route_type type;
+    camber_watch_begin(&it->session->watch, options->inputs[0]);
     const camber_status status = camber_tiles_reader_create(it->session->context, options->inputs[0], &it->reader);
+    camber_watch_end(&it->session->watch);
     if (status != CAMBER_OK)
         return camber_report_status(it->session->report, status);
     const camber_tiles_info *info = camber_tiles_reader_get_info(it->reader);
@@ -245,26 +271,144 @@ static int read_archive(reading *it) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Reads what the options name. error gets the library's message where it fails. */
-static int read_input(camber_session *verb, wishes *w, bool first, reading **made, char *error, size_t error_size) {
-    reading *it = calloc(1, sizeof *it);
-    if (!it)
-        return camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
-    it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose};
-    it->own = (camber_session){.options = verb->options, .report = &it->report, .guard = verb->guard};
-    it->session = first ? verb : &it->own;
-    it->wishes = w;
+/* Reads what the options name. */
+static int read_input(reading *it) {
     int status = camber_session_need(it->session, CAMBER_NEEDS_CONTEXT);
     if (status == CAMBER_EXIT_DONE)
-        status = is_archive(verb->options) ? read_archive(it) : read_map(it);
-    if (status != CAMBER_EXIT_DONE) {
-        snprintf(error, error_size, "%.*s", (int)error_size - 1, it->session->report->error);
+        status = is_archive(it->session->options) ? read_archive(it) : read_map(it);
+    if (status == CAMBER_EXIT_DONE) {
+        find_name(it);
+        find_time(it);
+    }
+    return status;
+}
+
+/* ---- Reading again ---- */
+
+/* Small blocks that were freed stay with the process otherwise, and count as its memory. */
+static void give_memory_back(void) {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+/* The guard is locked. */
+static void give_up(void *user) {
+    wishes *w = user;
+    pthread_mutex_lock(&w->mutex);
+    w->given_up = true;
+    pthread_cond_signal(&w->changed);
+    pthread_mutex_unlock(&w->mutex);
+}
+
+/* Shares the verb's memory with what is shown. */
+static void begin_again(reading *it, const camber_session *verb) {
+    const reading *shown = it->wishes->shown;
+    it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose, .keeps = true};
+    it->own = (camber_session){.options = verb->options,
+                               .report = &it->report,
+                               .guard = verb->guard,
+                               .whole = verb->budget,
+                               .watch = {.give_up = give_up, .give_up_user = it->wishes}};
+    if (shown && shown->session == &shown->own)
+        it->own.beside_bytes = camber_budget_get_held_bytes(shown->own.budget);
+    it->session = &it->own;
+}
+
+static void *read_beside(void *user) {
+    rereading *r = user;
+    wishes *w = r->it->wishes;
+    const int status = read_input(r->it);
+    pthread_mutex_lock(&w->mutex);
+    const bool is_left = r->is_left;
+    r->status = status;
+    r->done = !is_left;
+    pthread_cond_signal(&w->changed);
+    pthread_mutex_unlock(&w->mutex);
+    if (is_left) {
+        close_reading(r->it);
+        pthread_mutex_lock(&w->mutex);
+        r->done = true;
+        pthread_mutex_unlock(&w->mutex);
+    }
+    return NULL;
+}
+
+/* Waits until it is read, or given up and ended. false: it goes on. */
+static bool wait_for_reading(wishes *w, rereading *r) {
+    pthread_mutex_lock(&w->mutex);
+    while (!r->done && !w->given_up && !w->stop)
+        pthread_cond_wait(&w->changed, &w->mutex);
+    if (!r->done)
+        camber_budget_allow(r->it->own.budget, 0);
+    const double end_ms = camber_clock_ms() + (w->stop ? LAST_WAIT_AT_END_MS : LAST_WAIT_MS);
+    while (!r->done && camber_clock_ms() < end_ms)
+        wait_for_ms(w, LOOK_MS);
+    r->is_left = !r->done;
+    pthread_mutex_unlock(&w->mutex);
+    return !r->is_left;
+}
+
+/* false: a reading that was left goes on still. */
+static bool join_left(wishes *w) {
+    pthread_mutex_lock(&w->mutex);
+    const bool done = !w->left || w->left->done;
+    pthread_mutex_unlock(&w->mutex);
+    if (!done || !w->left)
+        return done;
+    pthread_join(w->left->thread, NULL);
+    free(w->left);
+    w->left = NULL;
+    return true;
+}
+
+/* What to say of a reading that failed. */
+static void explain(const reading *it, bool given_up, int status, char *error, size_t error_size) {
+    const char *why = given_up ? it->own.watch.line : it->report.error;
+    const bool memory = !given_up && status == CAMBER_EXIT_INTERNAL;
+    snprintf(error, error_size, "%s%.*s%s", memory ? "reading again, beside what is served: " : "",
+             (int)error_size - 100, why, memory ? " (--memory)" : "");
+}
+
+/* Reads on a thread of its own. error gets what is wrong where it fails. */
+static int read_again(const camber_session *verb, reading *it, char *error, size_t error_size) {
+    wishes *w = it->wishes;
+    begin_again(it, verb);
+    if (!join_left(w)) {
+        snprintf(error, error_size,
+                 "the reader of a former input has not ended yet; start the server again to read now");
         close_reading(it);
+        return CAMBER_EXIT_DATA;
+    }
+    w->given_up = false;
+    rereading *r = calloc(1, sizeof *r);
+    int status = r ? camber_session_need(it->session, CAMBER_NEEDS_CONTEXT) : CAMBER_EXIT_INTERNAL;
+    if (r)
+        *r = (rereading){.it = it};
+    if (status != CAMBER_EXIT_DONE || pthread_create(&r->thread, NULL, read_beside, r) != 0) {
+        snprintf(error, error_size, "reading again: no memory, or no thread; allow more");
+        free(r);
+        close_reading(it);
+        return CAMBER_EXIT_INTERNAL;
+    }
+    if (!wait_for_reading(w, r)) {
+        explain(it, w->given_up, CAMBER_EXIT_DATA, error, error_size);
+        w->left = r;
+        return CAMBER_EXIT_DATA;
+    }
+    pthread_join(r->thread, NULL);
+    status = r->status;
+    free(r);
+    camber_watch_stop(&it->own.watch);
+    if (w->given_up && status == CAMBER_EXIT_DONE)
+        status = CAMBER_EXIT_DATA;
+    if (status != CAMBER_EXIT_DONE) {
+        explain(it, w->given_up, status, error, error_size);
+        close_reading(it);
+        give_memory_back();
         return status;
     }
-    find_name(it);
-    find_time(it);
-    *made = it;
+    camber_budget_allow(it->own.budget, camber_budget_get_most_bytes(verb->budget));
     return CAMBER_EXIT_DONE;
 }
 
@@ -283,12 +427,20 @@ static uint64_t hash_input(const camber_chart *chart) {
 
 /* Pictures need a renderer, which opens beside the first reading. */
 static int show(camber_session *verb, camber_server *server, wishes *w, bool first) {
-    reading *it = NULL;
+    reading *it = calloc(1, sizeof *it);
     char error[1024] = "";
-    int status = read_input(verb, w, first, &it, error, sizeof error);
-    if (!it) {
-        camber_server_tell(server, *error ? error : "it cannot be read; the server's log says why");
+    if (!it)
+        return camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
+    it->wishes = w;
+    it->session = verb;
+    int status = first ? read_input(it) : read_again(verb, it, error, sizeof error);
+    if (first && status != CAMBER_EXIT_DONE) {
+        close_reading(it);
         return status;
+    }
+    if (status != CAMBER_EXIT_DONE) {
+        camber_server_tell(server, error);
+        return w->stop ? status : camber_report_fail(verb->report, status, "%s", error);
     }
     if (!it->reader)
         status = camber_session_need(verb, CAMBER_NEEDS_RENDERER);
@@ -298,11 +450,13 @@ static int show(camber_session *verb, camber_server *server, wishes *w, bool fir
         it->shown.chart.input = hash_input(&it->shown.chart);
     if (status == CAMBER_EXIT_DONE && !camber_server_show(server, &it->shown))
         status = camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
-    if (status != CAMBER_EXIT_DONE)
+    if (status != CAMBER_EXIT_DONE) {
         close_reading(it);
-    else
-        camber_server_tell(server, NULL);
-    return status;
+        return status;
+    }
+    w->shown = it;
+    camber_server_tell(server, NULL);
+    return CAMBER_EXIT_DONE;
 }
 
 /* ---- Serving ---- */
@@ -408,7 +562,7 @@ static int serve(camber_session *session, camber_server *server, wishes *w) {
     while (wait_for_wish(w, server)) {
         if (show(session, server, w, false) == CAMBER_EXIT_DONE)
             camber_report_say(session->report, "reloaded %s", session->options->inputs[0]);
-        else
+        else if (!w->stop)
             camber_report_say(session->report, "still serving the previous map");
     }
     if (w->lost)
@@ -430,6 +584,10 @@ int camber_verb_serve(camber_session *session) {
     if (status == CAMBER_EXIT_DONE)
         status = serve(session, server, &w);
     camber_server_destroy(server);
+    if (!join_left(&w)) { /* its library cannot be stopped in another way */
+        camber_guard_lock(session->guard);
+        camber_guard_end(session->guard, status);
+    }
     set_heed(session, NULL);
     pthread_cond_destroy(&w.changed);
     pthread_mutex_destroy(&w.mutex);

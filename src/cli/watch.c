@@ -1,6 +1,6 @@
-/* Ends a run that takes too much memory, or whose reader works too long without a result. Libraries such as GDAL cannot
- * be stopped from within a call, so the guard's thread looks now and then and ends the process. Our own memory is
- * counted by the budget; this looks at the memory of the whole process. */
+/* Ends a run, or a reading that a run can do without, which takes too much memory, or whose reader works too long
+ * without a result. Libraries such as GDAL cannot be stopped from within a call, so the guard's thread looks now and
+ * then and ends the process. Our own memory is counted by the budget; this looks at the memory of the whole process. */
 #define _GNU_SOURCE /* pthread_getcpuclockid */
 
 #include "cli/watch.h"
@@ -40,32 +40,44 @@ static uint64_t resident_bytes(void) {
     return resident * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-static void look_at_memory(const camber_watch *watch) {
+/* Ends the process, or what is watched. */
+static void end(camber_watch *watch, int exit_status) {
+    if (!watch->give_up)
+        camber_guard_end(watch->guard, camber_report_fail(watch->report, exit_status, "%s", watch->line));
+    else
+        watch->give_up(watch->give_up_user);
+}
+
+/* What can be done without has been given up when memory ends, unless a library holds on to its own. */
+static void look_at_memory(camber_watch *watch) {
     const uint64_t held = resident_bytes();
     if (held <= LIBRARIES_BYTES)
         return;
     const uint64_t most = camber_budget_get_most_bytes(watch->budget);
-    if (held - LIBRARIES_BYTES <= most)
+    const bool given_up = watch->give_up && watch->line[0];
+    if ((held - LIBRARIES_BYTES) / (given_up ? 2 : 1) <= most)
         return;
-    camber_guard_end(watch->guard,
-                     camber_report_fail(watch->report, CAMBER_EXIT_INTERNAL,
-                                        "memory: %.1f MB are held with what libraries take, and %.1f MB are allowed "
-                                        "besides those; give it less data, or allow more (--memory)",
-                                        (double)held / 1e6, (double)most / 1e6));
+    snprintf(watch->line, sizeof watch->line,
+             "memory: %.1f MB are held with what libraries take, and %.1f MB are allowed besides those; give it less "
+             "data, or allow more (--memory)",
+             (double)held / 1e6, (double)most / 1e6);
+    if (given_up)
+        watch->give_up = NULL;
+    end(watch, CAMBER_EXIT_INTERNAL);
 }
 
-static void look_at_reading(const camber_watch *watch) {
-    if (!watch->path || clock_s(watch->clock) - watch->beat_s <= watch->allowed_s)
+static void look_at_reading(camber_watch *watch) {
+    if (!watch->path || watch->line[0] || clock_s(watch->clock) - watch->beat_s <= watch->allowed_s)
         return;
-    camber_guard_end(watch->guard,
-                     camber_report_fail(watch->report, CAMBER_EXIT_DATA,
-                                        "%s: its reader has worked for %.0f s and has no more of it; get the file from "
-                                        "a source that you trust, or convert it (ogr2ogr)",
-                                        watch->path, watch->allowed_s));
+    snprintf(watch->line, sizeof watch->line,
+             "%.200s: its reader has worked for %.0f s and has no more of it; get the file from a source that you "
+             "trust, or convert it (ogr2ogr)",
+             watch->path, watch->allowed_s);
+    end(watch, CAMBER_EXIT_DATA);
 }
 
 static void look(void *watch) {
-    const camber_watch *self = watch;
+    camber_watch *self = watch;
     look_at_memory(self);
     look_at_reading(self);
 }
@@ -74,7 +86,12 @@ static void look(void *watch) {
 
 void camber_watch_start(camber_watch *watch, camber_guard *guard, camber_report *report, camber_budget *budget) {
     camber_guard_lock(guard);
-    *watch = (camber_watch){.guard = guard, .report = report, .budget = budget};
+    *watch = (camber_watch){.guard = guard,
+                            .report = report,
+                            .budget = budget,
+                            .give_up = watch->give_up,
+                            .give_up_user = watch->give_up_user,
+                            .before = guard->look ? guard->look_user : NULL};
     guard->look = look;
     guard->look_user = watch;
     camber_guard_unlock(guard);
@@ -84,8 +101,14 @@ void camber_watch_stop(camber_watch *watch) {
     if (!watch->guard)
         return;
     lock(watch);
-    if (watch->guard->look_user == watch) /* a later one may look already */
-        watch->guard->look = NULL;
+    camber_watch *top = watch->guard->look ? watch->guard->look_user : NULL;
+    if (top == watch) {
+        watch->guard->look = watch->before ? look : NULL;
+        watch->guard->look_user = watch->before;
+    }
+    for (; top; top = top->before) /* a later one may look already */
+        if (top->before == watch)
+            top->before = watch->before;
     unlock(watch);
 }
 

@@ -6,16 +6,24 @@
 #include "cli/report.h"
 
 /* A zeroed watch does nothing. Once started it watches the memory of the process. Between begin and end it also watches
- * the processor time that the reading thread takes from one beat to the next. */
+ * the processor time that the reading thread takes from one beat to the next. A watch that is started while another
+ * looks takes its place until it is stopped. */
 typedef struct camber_watch {
     camber_guard *guard;
     camber_report *report;
     camber_budget *budget;
-    const char *path; /* the file that is being read. NULL: none */
-    clockid_t clock;  /* of the thread that reads */
+    /* Called in place of ending the process, once, with the guard locked: what is watched can be done without. line has
+     * what is wrong. NULL: the process ends. */
+    void (*give_up)(void *user);
+    void *give_up_user;
+    char line[512];
+    struct camber_watch *before; /* the one that looked */
+    const char *path;            /* the file that is being read. NULL: none */
+    clockid_t clock;             /* of the thread that reads */
     double allowed_s, beat_s;
 } camber_watch;
 
+/* give_up and its user are set before. */
 void camber_watch_start(camber_watch *watch, camber_guard *guard, camber_report *report, camber_budget *budget);
 /* Call it before the budget is destroyed. */
 void camber_watch_stop(camber_watch *watch);

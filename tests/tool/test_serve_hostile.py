@@ -19,7 +19,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import zlib
 
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
@@ -202,47 +201,60 @@ def test_renderd_clients():
 # ---- Reading again ----
 
 
-def hang_reader(path):
-    """A PBF that takes a reader minutes: a way of many places, and thousands of relations that name it."""
-    def varint(number):
-        made = b""
-        while number > 127:
-            made += bytes([number & 127 | 128])
-            number >>= 7
-        return made + bytes([number])
+def varint(number):
+    made = b""
+    while number > 127:
+        made += bytes([number & 127 | 128])
+        number >>= 7
+    return made + bytes([number])
 
-    def field(number, body):
-        return varint(number << 3 | 2) + varint(len(body)) + body
 
-    def zigzag(number):
-        return varint(number << 1 if number >= 0 else -number * 2 - 1)
+def zigzag(number):
+    return varint(number << 1 if number >= 0 else -number * 2 - 1)
 
-    def blob(kind, body):
-        made = field(3, zlib.compress(body)) + b"\x10" + varint(len(body))
-        head = field(1, kind) + b"\x18" + varint(len(made))
-        return struct.pack(">I", len(head)) + head + made
 
-    def block(strings, group):
-        table = b"".join(field(1, text) for text in [b"", *strings])
-        return blob(b"OSMData", field(1, table) + field(2, group))
+def field(number, body):
+    return varint(number << 3 | 2) + varint(len(body)) + body
 
-    count, relations = 1000000, 10000
+
+def blob(kind, body):
+    made = field(1, body)
+    head = field(1, kind) + b"\x18" + varint(len(made))
+    return struct.pack(">I", len(head)) + head + made
+
+
+def block(group, *strings):
+    return blob(b"OSMData", field(1, b"".join(field(1, text) for text in (b"", *strings))) + field(2, group))
+
+
+def write_pbf(path, count, groups, *strings):
+    """So many nodes in a row, and then groups of ways and relations."""
     with open(path, "wb") as file:
         file.write(blob(b"OSMHeader", field(4, b"OsmSchema-V0.6") + field(4, b"DenseNodes")))
         for first in range(0, count, 8000):
-            ids = zigzag(first + 1) + zigzag(1) * 7999
-            lats = zigzag(550000000 + first) + zigzag(1) * 7999
-            lons = zigzag(90000000 + first) + zigzag(1) * 7999
-            file.write(block([], field(2, field(1, ids) + field(8, lats) + field(9, lons))))
-        refs = zigzag(1) + zigzag(1) * (count - 1) + zigzag(1 - count)
-        file.write(block([], field(3, b"\x08" + varint(1) + field(8, refs))))
-        keys = [b"type", b"multipolygon", b"natural", b"water", b"outer"]
-        for first in range(0, relations, 5000):
-            made = b""
-            for i in range(first, first + 5000):
-                relation = b"\x08" + varint(i + 1) + field(2, b"\x01\x03") + field(3, b"\x02\x04")
-                made += field(4, relation + field(8, b"\x05") + field(9, zigzag(1)) + field(10, b"\x01"))
-            file.write(block(keys, made))
+            ids, latitudes = zigzag(first + 1) + zigzag(1) * 7999, zigzag(552000000) + (zigzag(20) + zigzag(-21)) * 3999 + b"\0"
+            longitudes = zigzag(91000000 + first) + zigzag(1) * 7999
+            file.write(block(field(2, field(1, ids) + field(8, latitudes) + field(9, longitudes))))
+        for group in groups:
+            file.write(block(group, *strings))
+
+
+def write_hanging(path):
+    """A way of many places, and thousands of relations that name it, take a reader minutes."""
+    count = 320000
+    groups = [field(3, b"\x08\x01" + field(8, zigzag(1) + zigzag(1) * (count - 1) + zigzag(1 - count)))]
+    for first in range(0, 20000, 5000):
+        groups.append(b"".join(field(4, b"\x08" + varint(i + 1) + field(2, b"\x01\x03") + field(3, b"\x02\x04") +
+                                     field(8, b"\x05") + field(9, zigzag(1)) + field(10, b"\x01"))
+                               for i in range(first, first + 5000)))
+    write_pbf(path, count, groups, b"type", b"multipolygon", b"natural", b"water", b"outer")
+
+
+def write_heavy(path, count):
+    """Roads of so many points."""
+    groups = [field(3, b"\x08" + varint(first + 1) + field(2, b"\x01") + field(3, b"\x02") +
+                    field(8, zigzag(first + 1) + zigzag(1) * 7999)) for first in range(0, count, 8000)]
+    write_pbf(path, count, groups, b"highway", b"primary")
 
 
 def read_again(server, wanted, seconds=PATIENCE_S):
@@ -261,7 +273,7 @@ def read_again(server, wanted, seconds=PATIENCE_S):
 def test_reload_hangs():
     """An input whose reader does not get on: what was read before stays."""
     write_map("map.json")
-    hang_reader("hang.pbf")
+    write_hanging("hang.pbf")
     os.symlink("map.json", "map")
     server = Server("map")
     wanted = server.get(TILE)[2]
@@ -286,14 +298,17 @@ def test_reload_hangs():
 
 def test_reload_memory():
     """Two readings that do not fit into --memory together: the second fails alone, again and again."""
-    write_map("map.json", count=260000)
-    server = Server("map.json", "--memory", "128M")
+    write_map("map.json")
+    write_heavy("heavy.pbf", 2400000)
+    os.symlink("heavy.pbf", "map")
+    server = Server("map", "--memory", "128M")
     wanted = server.get(TILE)[2]
     for _ in range(3):
         said = read_again(server, "--memory")
         expect(len(said) == 1 and "allow" in said[0], said)
         expect(server.get(TILE)[::2] == (200, wanted), "what was served is gone")
-    write_map("map.json")
+    os.unlink("map")
+    os.symlink("map.json", "map")
     server.process.send_signal(signal.SIGHUP)
     wait_until(lambda: server.get(TILE)[2] != wanted, f"nothing is read any more: {server.errors}")
     server.stop()

@@ -186,7 +186,7 @@ static void take_view(camber_input *input) {
         view->bearing_deg = own.bearing_deg;
     if (isnan(options->pitch_deg) && (options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH))
         view->pitch_deg = own.pitch_deg;
-    if (options->has_bbox)
+    if (options->has_bbox || options->verb == CAMBER_VERB_SERVE)
         return;
     view->kind = CAMBER_VIEW_CENTER;
     if (isnan(options->zoom))

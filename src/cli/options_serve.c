@@ -29,7 +29,7 @@ static bool is_origin(const char *text) {
 
 int camber_options_check_serve(camber_options *options, char *message, size_t message_size) {
     const camber_option_reader it = {options, message, message_size, NULL}, *p = &it;
-    if (!options->input_count)
+    if (!options->input_count && !options->style && !options->edit)
         return camber_options_refuse(
             p, "serve: no input; give a file with lines, such as city.osm.pbf, or an archive of tiles");
     for (size_t i = 0; i < options->input_count; i++)
@@ -55,7 +55,8 @@ int camber_options_check_serve(camber_options *options, char *message, size_t me
         return camber_options_refuse(p, "--renderd alone: give --cache-dir FOLDER, mod_tile's TileDir, too");
     if (options->edit)
         options->style = options->edit;
-    options->view.width = options->view.height = 1024;
+    /* A style's own sources are read once, at a zoom at which all that they have is so wide, or their highest. */
+    options->view.width = options->view.height = options->input_count ? 1024 : 30000;
     options->view.kind = CAMBER_VIEW_FIT;
     options->view.zoom = options->view.bearing_deg = options->view.pitch_deg = 0.0;
     return CAMBER_EXIT_DONE;

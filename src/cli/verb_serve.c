@@ -163,7 +163,7 @@ static void close_reading(void *owner) {
 
 /* Whether a path is an archive of tiles. One of vector tiles is drawn, like any map: read_archive finds that out. */
 static bool is_archive(const camber_options *options) {
-    const char *path = options->inputs[0];
+    const char *path = options->input_count ? options->inputs[0] : "";
     struct stat about;
     const char *dot = strrchr(path, '.');
     const bool named = dot && (strcmp(dot, ".pmtiles") == 0 || strcmp(dot, ".mbtiles") == 0);
@@ -172,10 +172,15 @@ static bool is_archive(const camber_options *options) {
     return options->input_count == 1 && !drawn && (named || folder);
 }
 
+/* The file that is shown; a style, where its own sources are. */
+static const char *source_of(const camber_options *options) {
+    return options->input_count ? options->inputs[0] : options->style;
+}
+
 /* The file's name up to its first dot. */
 static void find_name(reading *it) {
     const camber_options *options = it->session->options;
-    const char *path = options->inputs[0], *slash = strrchr(path, '/');
+    const char *path = source_of(options), *slash = strrchr(path, '/');
     const char *name = slash && slash[1] ? slash + 1 : path;
     const size_t length = *name == '.' ? strlen(name) : strcspn(name, "./");
     const char *own = json_string_value(json_object_get(it->about, "name"));
@@ -561,7 +566,7 @@ static int serve(camber_session *session, camber_server *server, wishes *w) {
     tell_ready(session, server);
     while (wait_for_wish(w, server)) {
         if (show(session, server, w, false) == CAMBER_EXIT_DONE)
-            camber_report_say(session->report, "reloaded %s", session->options->inputs[0]);
+            camber_report_say(session->report, "reloaded %s", source_of(session->options));
         else if (!w->stop)
             camber_report_say(session->report, "still serving the previous map");
     }

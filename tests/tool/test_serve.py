@@ -625,6 +625,37 @@ def test_edit():
     server.stop()
 
 
+def test_own_sources():
+    """A style that names its own sources needs no input; they are read again with it."""
+    write_map("map.json")
+    tiles = "mbtiles://" + os.path.join(TESTS, "data", "santa_cruz", "osm.mbtiles")
+    path = f"/{ZOOM}/{COLUMN}/{ROW}.png"
+    for asked, source, layer in (("/14/2639/6375.png", {"type": "vector", "url": tiles}, "roads"),
+                                 (path, {"type": "geojson", "data": "map.json", "attribution": "(c) Them"}, "")):
+        line = {"id": "lines", "type": "line", "source": "own", "paint": {"line-color": "#ff0000", "line-width": 3}}
+        style = {"version": 8, "sources": {"own": source}, "layers": [{**line, "source-layer": layer} if layer else line]}
+        with open("style.json", "w", encoding="utf-8") as file:
+            json.dump(style, file)
+        server = Server("--style", "style.json")
+        rows = decode(server.get(asked)[2])
+        expect(len({row[i:i + 4] for row in rows for i in range(0, len(row), 4)}) > 9, f"{asked}: nothing is drawn")
+        about = json.loads(server.get("/tiles.json")[2])
+        expect(about["name"] == "style" and len(about["bounds"]) == 4, about)
+        if not layer:
+            break
+        server.stop()
+    expect(about["attribution"] == "(c) Them", about)
+    tag = server.get(path)[1]["etag"]
+    write_map("map.json", seed=2)
+    server.process.send_signal(signal.SIGHUP)
+    wait_until(lambda: server.get(path)[1]["etag"] != tag, lambda: f"sources are not read again: {server.errors}")
+    server.stop()
+    expect(any("reloaded style.json" in line for line in server.errors), server.errors)
+    server = Server("--edit", "style.json")
+    expect(server.get(path)[0] == 200, "--edit without INPUT")
+    server.stop()
+
+
 # ---- Tiles ----
 
 

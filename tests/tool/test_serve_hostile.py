@@ -23,17 +23,9 @@ import time
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
 
-from served import COLUMN, ROW, TOOL, ZOOM, Server, expect, is_sanitized, write_map  # noqa: E402
+from served import COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, is_sanitized, wait_until, write_map  # noqa: E402
 
 TILE = f"/{ZOOM}/{COLUMN}/{ROW}.png"
-PATIENCE_S = 60
-
-
-def wait_until(holds, what):
-    end = time.monotonic() + PATIENCE_S
-    while not holds():
-        expect(time.monotonic() < end, what() if callable(what) else what)
-        time.sleep(0.02)
 
 
 def processor_s(process):

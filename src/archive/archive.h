@@ -124,6 +124,7 @@ struct camber_archive {
     camber_archive_format format;
     camber_tile_type type;
     bool gzipped;
+    bool sniffed;         /* the archive does not say the type, which is that of its first tile */
     camber_tile_set *set; /* NULL: a folder */
     int min_zoom, max_zoom;
     bool has_bounds;
@@ -137,6 +138,9 @@ struct camber_archive {
 
 /* Opens an archive by its path. Returns what camber_tile_set_open does. */
 camber_status camber_archive_open(camber_context *context, const char *path, camber_archive **archive);
+/* Finds the type of the tiles by the first of them, where the archive does not say it. What is none that is known stays
+ * OTHER. */
+void camber_archive_sniff(camber_archive *archive);
 void camber_archive_close(camber_archive *archive);
 
 typedef struct camber_archive_tile {

@@ -105,6 +105,12 @@ static void count_shards(merging *m) {
 }
 
 static camber_status check_parts(merging *m) {
+    for (size_t i = 0; i < m->desc->part_count; i++)
+        if (m->parts[i]->type == CAMBER_TILE_OTHER && m->parts[i]->format == CAMBER_ARCHIVE_MBTILES)
+            return camber_fail(m->context, CAMBER_ERROR_INPUT,
+                               "%s: its metadata have no format, and its first tile looks like none that is known; "
+                               "set it (png, jpg, webp, pbf)",
+                               m->parts[i]->path);
     for (size_t i = 1; i < m->desc->part_count; i++)
         compare_parts(m, m->parts[0], m->parts[i]);
     if (m->parts[0]->shards)
@@ -179,7 +185,8 @@ static camber_status write(merging *m, camber_archive_format format) {
 static camber_status open_parts(merging *m) {
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < m->desc->part_count && status == CAMBER_OK; i++)
-        status = camber_archive_open(m->context, m->desc->parts[i], &m->parts[i]);
+        if ((status = camber_archive_open(m->context, m->desc->parts[i], &m->parts[i])) == CAMBER_OK)
+            camber_archive_sniff(m->parts[i]);
     return status;
 }
 

@@ -6,6 +6,7 @@
 
 #include "archive/archive.h"
 #include "archive/folder.h"
+#include "archive/tile_check.h"
 #include "source/pmtiles.h"
 
 #include <errno.h>
@@ -271,6 +272,29 @@ camber_status camber_archive_walk(camber_archive *archive,
     case CAMBER_ARCHIVE_FOLDER: break;
     }
     return camber_folder_visit(archive->path, &files);
+}
+
+/* One is enough: the walk ends as if it had failed. */
+static camber_status sniff_tile(void *user, const camber_archive_tile *tile) {
+    camber_archive *archive = user;
+    camber_bytes bytes = {.context = archive->context};
+    const char *why = NULL;
+    if (tile->size_bytes <= CAMBER_ARCHIVE_LARGEST_TILE_BYTES &&
+        camber_archive_read(archive, tile, &bytes, &why) == CAMBER_OK && !why) {
+        archive->type = camber_tile_sniff(bytes.data, bytes.size_bytes);
+        archive->gzipped = archive->type == CAMBER_TILE_MVT && bytes.data[0] == 0x1f;
+    }
+    camber_bytes_free(&bytes);
+    return CAMBER_ERROR_LIMIT;
+}
+
+void camber_archive_sniff(camber_archive *archive) {
+    if (archive->type != CAMBER_TILE_OTHER)
+        return;
+    (void)camber_archive_walk(archive, sniff_tile, archive);
+    archive->sniffed = archive->type != CAMBER_TILE_OTHER;
+    if (archive->format != CAMBER_ARCHIVE_PMTILES) /* there they are packed where they are not */
+        archive->gzipped = archive->type == CAMBER_TILE_MVT;
 }
 
 camber_status camber_archive_read(camber_archive *archive, const camber_archive_tile *tile, camber_bytes *bytes,

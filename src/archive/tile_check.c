@@ -122,3 +122,21 @@ const char *camber_tile_check(camber_tile_type type, const unsigned char *bytes,
     }
     return NULL;
 }
+
+camber_tile_type camber_tile_sniff(const unsigned char *bytes, size_t size_bytes) {
+    enum { LAYERS = 0x1a }; /* the key of a vector tile's layers */
+    if (size_bytes < 12)
+        return CAMBER_TILE_OTHER;
+    if (memcmp(bytes, "\x89PNG", 4) == 0)
+        return CAMBER_TILE_PNG;
+    if (memcmp(bytes, "RIFF", 4) == 0 && memcmp(bytes + 8, "WEBP", 4) == 0)
+        return CAMBER_TILE_WEBP;
+    if (bytes[0] == 0xff && bytes[1] == 0xd8)
+        return CAMBER_TILE_JPEG;
+    if (memcmp(bytes + 4, "ftypavi", 7) == 0)
+        return CAMBER_TILE_AVIF;
+    if (memcmp(bytes, "glTF", 4) == 0)
+        return CAMBER_TILE_GLB;
+    const bool packed = (bytes[0] == 0x1f && bytes[1] == 0x8b) || bytes[0] == 0x78;
+    return packed || (bytes[0] == LAYERS && !check_vector(bytes, size_bytes)) ? CAMBER_TILE_MVT : CAMBER_TILE_OTHER;
+}

@@ -200,6 +200,12 @@ static void check_metadata(camber_verify *v) {
 
 static camber_status verify(camber_verify *v) {
     camber_status status = CAMBER_ERROR_INPUT;
+    camber_archive_sniff(v->archive);
+    if (v->archive->sniffed && v->archive->format != CAMBER_ARCHIVE_FOLDER)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s, and its tiles look like %s",
+                           v->archive->format == CAMBER_ARCHIVE_PMTILES ? "the header has no type of tiles"
+                                                                        : "the metadata have no format",
+                           camber_tile_type_get_name(v->archive->type));
     check_bounds(v);
     check_metadata(v);
     switch (v->archive->format) {

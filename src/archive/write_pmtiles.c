@@ -45,14 +45,13 @@ static unsigned char *put_varint(unsigned char *at, uint64_t value) {
     return at;
 }
 
-/* Appends the bytes, compressed with gzip; the header of zlib's gzip has no time. */
-static camber_status append_packed(const camber_archive_plan *plan, const void *bytes, size_t size, camber_bytes *to) {
-    z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes, .avail_in = (uInt)size};
+/* The header of zlib's gzip has no time: the same bytes give the same. */
+camber_status camber_archive_gzip(const char *name, const void *bytes, size_t size_bytes, camber_bytes *to) {
+    z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes, .avail_in = (uInt)size_bytes};
     const size_t before = to->size_bytes;
     if (deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: a directory: out of memory; give it more",
-                           plan->desc->path);
-    if (!camber_bytes_resize(to, before + deflateBound(&stream, (uLong)size))) {
+        return camber_fail(to->context, CAMBER_ERROR_MEMORY, "%s: compressing: out of memory; give it more", name);
+    if (!camber_bytes_resize(to, before + deflateBound(&stream, (uLong)size_bytes))) {
         deflateEnd(&stream);
         return CAMBER_ERROR_MEMORY;
     }
@@ -79,7 +78,7 @@ static camber_status append_directory(const camber_archive_plan *plan, packed *p
         const bool follows = i && entries[i].offset == entries[i - 1].offset + entries[i - 1].size;
         at = put_varint(at, follows ? 0 : entries[i].offset + 1);
     }
-    return append_packed(plan, p->plain.data, (size_t)(at - p->plain.data), to);
+    return camber_archive_gzip(plan->desc->path, p->plain.data, (size_t)(at - p->plain.data), to);
 }
 
 static camber_status write_leaves(const camber_archive_plan *plan, packed *p, size_t leaf_size) {
@@ -308,7 +307,7 @@ static camber_status pack_metadata(const camber_archive_plan *plan, packed *p) {
     if (!text)
         return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
                            plan->desc->path);
-    const camber_status status = append_packed(plan, text, strlen(text), &p->metadata);
+    const camber_status status = camber_archive_gzip(plan->desc->path, text, strlen(text), &p->metadata);
     free(text);
     return status;
 }

@@ -375,7 +375,8 @@ typedef struct taking {
     taken_entry *entries;
     size_t count, capacity;
     uint32_t store;
-    camber_bytes window; /* bytes of the file's tiles from window_offset on */
+    camber_bytes plain, packed; /* a tile that has another compression than the archive */
+    camber_bytes window;        /* bytes of the file's tiles from window_offset on */
     uint64_t window_offset, tiles_bytes;
 } taking;
 
@@ -394,14 +395,39 @@ static camber_status take_run(taking *t, const taken_entry *entry, uint32_t cont
     return CAMBER_OK;
 }
 
+/* MBTiles and folders have vector tiles with gzip. Tools write plain ones as well, and some with zlib's header. */
+static camber_status pack(taking *t, const camber_archive_tile *tile, camber_bytes *bytes) {
+    const unsigned char *b = tile->bytes;
+    const size_t size_bytes = (size_t)tile->size_bytes;
+    const char *why = NULL;
+    *bytes = (camber_bytes){.data = (unsigned char *)(uintptr_t)b, .size_bytes = size_bytes};
+    if (!t->writer->desc.gzipped || (size_bytes > 1 && b[0] == 0x1f && b[1] == 0x8b))
+        return CAMBER_OK;
+    camber_bytes from = *bytes;
+    if (size_bytes > 1 && b[0] == 0x78 && (b[0] * 256 + b[1]) % 31 == 0) {
+        camber_tile_set naming = {.context = t->writer->context, .name = t->archive->path};
+        const camber_status status =
+            camber_tile_set_gunzip(&naming, &from, CAMBER_ARCHIVE_LARGEST_TILE_BYTES, &t->plain, &why);
+        if (status != CAMBER_OK || why)
+            return status != CAMBER_OK ? status : fail_tile(t, tile, why);
+        from = t->plain;
+    }
+    t->packed.size_bytes = 0;
+    const camber_status status = camber_archive_gzip(t->writer->path, from.data, from.size_bytes, &t->packed);
+    *bytes = t->packed;
+    return status;
+}
+
 static camber_status take_bytes(taking *t, const camber_archive_tile *tile) {
     uint32_t content;
+    camber_bytes bytes;
     if (tile->outside)
         return fail_tile(t, tile, "lies outside its zoom");
     if (tile->size_bytes == 0 || tile->size_bytes > CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
         return fail_tile(t, tile, "is empty or larger than 64 MB");
-    const camber_status status =
-        camber_contents_put(&t->writer->contents, tile->bytes, (size_t)tile->size_bytes, &content);
+    camber_status status = pack(t, tile, &bytes);
+    if (status == CAMBER_OK)
+        status = camber_contents_put(&t->writer->contents, bytes.data, bytes.size_bytes, &content);
     const taken_entry entry = {.number = tile->number, .run_length = 1};
     return status == CAMBER_OK ? take_run(t, &entry, content) : status;
 }
@@ -476,7 +502,11 @@ static camber_status take_entries(taking *t) {
 }
 
 camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_archive *archive) {
-    taking t = {.writer = writer, .archive = archive, .window.context = writer->context};
+    taking t = {.writer = writer,
+                .archive = archive,
+                .window.context = writer->context,
+                .plain.context = writer->context,
+                .packed.context = writer->context};
     if (!camber_grow(writer->context, &writer->archives, &writer->archive_capacity, writer->archive_count + 1,
                      sizeof *writer->archives))
         return CAMBER_ERROR_MEMORY;
@@ -492,6 +522,8 @@ camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_a
         status = take_entries(&t);
     camber_free(writer->context, t.entries);
     camber_bytes_free(&t.window);
+    camber_bytes_free(&t.plain);
+    camber_bytes_free(&t.packed);
     return status;
 }
 

@@ -30,6 +30,9 @@ camber_status camber_archive_write_pmtiles(const camber_archive_plan *plan);
 camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan);
 camber_status camber_archive_write_folder(const camber_archive_plan *plan);
 
+/* Appends bytes to others, compressed with gzip. name is for messages. */
+camber_status camber_archive_gzip(const char *name, const void *bytes, size_t size_bytes, camber_bytes *to);
+
 /* Puts bounds, centre, zooms and format as texts into metadata, as MBTiles has them. */
 void camber_archive_put_texts(const camber_archive_plan *plan, json_t *metadata);
 

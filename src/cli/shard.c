@@ -9,16 +9,17 @@ enum { MOST_SHARDS = 65535 };
 
 /* Variables that number a process. */
 typedef struct engine {
-    const char *number, *first, *step, *count; /* NULL: first is 0, step is 1, and the count is not told */
+    const char *number, *first, *last, *step, *count; /* NULL: first is 0, step is 1, and the others are not told */
 } engine;
 
 static const engine engines[] = {
-    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_STEP", "SLURM_ARRAY_TASK_COUNT"},
-    {"OMPI_COMM_WORLD_RANK", NULL, NULL, "OMPI_COMM_WORLD_SIZE"},
-    {"PMI_RANK", NULL, NULL, "PMI_SIZE"},
-    {"SLURM_PROCID", NULL, NULL, "SLURM_NTASKS"},
-    {"JOB_COMPLETION_INDEX", NULL, NULL, NULL},
-    {"AWS_BATCH_JOB_ARRAY_INDEX", NULL, NULL, "AWS_BATCH_JOB_ARRAY_SIZE"},
+    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_MAX", "SLURM_ARRAY_TASK_STEP",
+     "SLURM_ARRAY_TASK_COUNT"},
+    {"OMPI_COMM_WORLD_RANK", NULL, NULL, NULL, "OMPI_COMM_WORLD_SIZE"},
+    {"PMI_RANK", NULL, NULL, NULL, "PMI_SIZE"},
+    {"SLURM_PROCID", NULL, NULL, NULL, "SLURM_NTASKS"},
+    {"JOB_COMPLETION_INDEX", NULL, NULL, NULL, NULL},
+    {"AWS_BATCH_JOB_ARRAY_INDEX", NULL, NULL, NULL, "AWS_BATCH_JOB_ARRAY_SIZE"},
 };
 
 /* A whole number up to MOST_SHARDS, and nothing behind it but end. */
@@ -50,14 +51,25 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
                  "OMPI_COMM_WORLD_RANK, PMI_RANK, JOB_COMPLETION_INDEX, AWS_BATCH_JOB_ARRAY_INDEX); give --shard K/N");
         return CAMBER_EXIT_USAGE;
     }
-    uint32_t number, first, step, count;
+    uint32_t number, first, last, step, count;
     if (!parse(getenv(found->number), 0, &number, NULL) || !read_variable(found->first, 0, &first) ||
-        !read_variable(found->step, 1, &step) || !read_variable(found->count, 0, &count) || number < first) {
+        !read_variable(found->last, 0, &last) || !read_variable(found->step, 1, &step) ||
+        !read_variable(found->count, 0, &count) || number < first) {
         snprintf(message, message_size, "--shard auto: %s is \"%s\", with which no part can be told; give --shard K/N",
                  found->number, getenv(found->number));
         return CAMBER_EXIT_USAGE;
     }
-    number = (number - first) / (step ? step : 1);
+    step = step ? step : 1;
+    /* Some parts alone, as of a list with gaps that is to draw what failed before: which they are nobody can tell. */
+    const bool gaps = last && count && (last < first || (last - first) / step + 1 != count);
+    if (gaps || (options->shards && count && count != options->shards)) {
+        snprintf(message, message_size,
+                 "--shard auto: %s counts %u tasks%s, which are not all parts%s; give an array of all of them, or name "
+                 "this task's part: --shard K/N",
+                 found->number, count, gaps ? " with gaps between them" : "", options->shards ? " of --shards" : "");
+        return CAMBER_EXIT_USAGE;
+    }
+    number = (number - first) / step;
     count = options->shards ? options->shards : count;
     if (count == 0)
         snprintf(message, message_size, "--shard auto: %s says which part, and nothing how many; give --shards N",

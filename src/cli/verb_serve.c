@@ -249,8 +249,8 @@ static int read_archive(reading *it) {
     if (!camber_route_find_type(info->type, &type))
         return camber_report_fail(
             it->session->report, CAMBER_EXIT_DATA,
-            "%s: its tiles are of no type that is served; it is one of png, webp, jpg, avif, pbf, "
-            "mlt, glb",
+            "%s: its tiles are of no type that is served: it says none, and its first tile looks like none, of png, "
+            "webp, jpg, avif, pbf, mlt, glb; convert it",
             options->inputs[0]);
     if (type == CAMBER_ROUTE_MVT && strcmp(info->format, "folder") != 0) {
         camber_tiles_reader_destroy(it->reader);
@@ -413,6 +413,7 @@ static int read_again(const camber_session *verb, reading *it, char *error, size
         give_memory_back();
         return status;
     }
+    it->report.keeps = false; /* pictures that fail are told */
     camber_budget_allow(it->own.budget, camber_budget_get_most_bytes(verb->budget));
     return CAMBER_EXIT_DONE;
 }

@@ -215,6 +215,7 @@ def broken_pmtiles():
     two = tile + tile
     bad = tile[:-20] + b"x" + tile[-19:]
     yield None, archive(good, tile)
+    yield None, archive(good, tile, addressed=0, entries=0, contents=0)  # 0: nobody has counted
     yield "section of leaf directories begins at 0", patched(archive(good, tile), 40, 0)
     yield "section of tiles begins at 0", archive(good, tile, tiles=0)
     yield "a directory: its compression", archive(good, tile, root=0)
@@ -340,6 +341,52 @@ def test_folder_rules():
     change("no metadata.json", lambda: os.unlink("rule/metadata.json"))
     change("is a PNG that is cut off", lambda: write("rule/1/0/0.png", tile[:-4]))
     change("highest zoom", lambda: shutil.rmtree("rule/4"))
+
+
+def write_mbtiles(path, metadata, tile_of):
+    """An MBTiles of zoom 1 as simple tools write it."""
+    if os.path.exists(path):
+        os.unlink(path)
+    handle = sqlite3.connect(path)
+    handle.execute("CREATE TABLE metadata (name TEXT, value TEXT)")
+    handle.execute("CREATE TABLE tiles (zoom_level INTEGER, tile_column INTEGER, tile_row INTEGER, tile_data BLOB)")
+    handle.execute("CREATE UNIQUE INDEX place ON tiles (zoom_level, tile_column, tile_row)")
+    handle.executemany("INSERT INTO metadata VALUES (?, ?)", metadata.items())
+    for i in range(4):
+        handle.execute("INSERT INTO tiles VALUES (1, ?, ?, ?)", (i % 2, i // 2, tile_of(i)))
+    handle.commit()
+    handle.close()
+
+
+def test_compression():
+    """Vector tiles of MBTiles that are plain, or have zlib's header, get the compression that the header says."""
+    layers = '{"vector_layers": [{"id": "roads", "fields": {}}]}'
+    about = {"name": "t", "format": "pbf", "minzoom": "1", "maxzoom": "1", "bounds": "-180,-85,180,85", "center": "0,0,1",
+             "json": layers}
+    tile = b"\x1a\x0c\x78\x02\x0a\x05roads\x28\x80\x20"
+    for name, tile_of in (("plain", lambda i: tile), ("zlib", lambda i: zlib.compress(tile)),
+                          ("mixed", lambda i: (tile, zlib.compress(tile), gzip.compress(tile), tile)[i])):
+        write_mbtiles("made.mbtiles", about, tile_of)
+        for out in ("out.pmtiles", "out.mbtiles"):
+            tiles("merge", "made.mbtiles", "-f", "-o", out)
+            tiles("verify", out)
+        handle = sqlite3.connect("out.mbtiles")
+        found = [gzip.decompress(row[0]) for row in handle.execute("SELECT tile_data FROM tiles")]
+        handle.close()
+        expect(found == [tile] * 4, f"{name}: {found}")
+
+
+def test_untold_type():
+    """Where nobody says the type it is that of the first tile."""
+    tile, noise = png(0), b"nothing that is known"
+    write_mbtiles("made.mbtiles", {}, lambda i: tile)
+    tiles("merge", "made.mbtiles", "-f", "-o", "out.pmtiles")
+    expect("type png" in tiles("show", "out.pmtiles").stdout, "PNGs are not found")
+    tiles("verify", "out.pmtiles")
+    expect("have no format, and its tiles look like png" in tiles("verify", "made.mbtiles", status=1).stderr +
+           tiles("verify", "made.mbtiles", status=1).stdout, "verify does not say what is missing")
+    write_mbtiles("made.mbtiles", {}, lambda i: noise)
+    tiles("merge", "made.mbtiles", "-f", "-o", "out.pmtiles", status=65)
 
 
 # ---- Merging ----
@@ -570,8 +617,8 @@ def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)  # under nohup or a shell's & it is ignored, and by children
     with tempfile.TemporaryDirectory(prefix="camber-archives-") as folder:
         os.chdir(folder)
-        tests = [test_readers, test_pmtiles_rules, test_mbtiles_rules, test_folder_rules, test_merge, test_killed,
-                 test_resume, test_second_names, test_locked, test_full]
+        tests = [test_readers, test_pmtiles_rules, test_mbtiles_rules, test_folder_rules, test_compression, test_untold_type,
+                 test_merge, test_killed, test_resume, test_second_names, test_locked, test_full]
         named = [test for test in [*tests, test_million] if test.__name__[5:] in sys.argv[4:]]
         for test in named or tests:
             start = time.monotonic()

@@ -7,6 +7,7 @@ TOOL is camber. NAME...: these tests alone. The lines are made up by a seed, aro
 Python's standard library alone. Exit status 1: the first failure, on standard error.
 """
 
+import glob
 import json
 import math
 import os
@@ -350,6 +351,16 @@ def test_auto():
     tiles(*common, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
     tiles(*common, "--shards", 2, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
     tiles(*common, status=2, env={**ENVIRONMENT, "PMI_RANK": "x", "PMI_SIZE": "2"})
+    # Some of the parts: whether 3 is the third or the fourth nobody can tell.
+    array = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_ARRAY_TASK_MIN": "3", "SLURM_ARRAY_TASK_MAX": "7",
+             "SLURM_ARRAY_TASK_COUNT": "2", "SLURM_ARRAY_TASK_STEP": "1"}
+    for more in (("--shards", 8), ("--shards", 2), ()):
+        done = tiles(*common, *more, status=2, env={**ENVIRONMENT, **array})
+        expect("--shard K/N" in done.stderr and not glob.glob("auto.*"), f"{more}: {done.stderr}")
+    tiles(*common, "--shards", 8, status=2, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_MAX": "4"})
+    tiles(*common, "--shards", 8, status=2, env={**ENVIRONMENT, "OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"})
+    tiles(*common, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_STEP": "4"})
+    expect(glob.glob("auto.*") == ["auto.1-of-2.pmtiles"], glob.glob("auto.*"))
 
 
 def size_of(path):

@@ -133,6 +133,7 @@ struct camber_archive {
     int whole_center_zoom; /* that of the archive which this is a part of, or its own */
     json_t *metadata;      /* an object, without what stands above and below */
     char *fingerprint;     /* NULL: not told */
+    char checksum[17];     /* of its tiles, as camber_checksum_write has it. "": not told */
     uint32_t shard, shards;
 };
 

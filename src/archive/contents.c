@@ -15,10 +15,11 @@ enum { TAIL_BYTES = 1 << 20, FIRST_TABLE = 1024 };
 
 /* ---- Hash ---- */
 
-static uint64_t load_word(const unsigned char *bytes) {
-    uint64_t word;
-    memcpy(&word, bytes, sizeof word);
-    return word;
+/* The same on every machine, since archives have sums of hashes. */
+static uint64_t load_word(const unsigned char *b) {
+    const uint64_t low = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    const uint64_t high = (uint32_t)b[4] | (uint32_t)b[5] << 8 | (uint32_t)b[6] << 16 | (uint32_t)b[7] << 24;
+    return low | high << 32;
 }
 
 /* Four lanes, so that their multiplications overlap. */
@@ -32,10 +33,10 @@ uint64_t camber_content_hash(const void *bytes, size_t size_bytes) {
     uint64_t hash = camber_mix(camber_mix(lanes[0], lanes[1]), camber_mix(lanes[2], lanes[3]));
     for (; left >= 8; left -= 8, at += 8)
         hash = camber_mix(hash, load_word(at));
-    uint64_t rest = 0;
+    unsigned char rest[8] = {0};
     if (left)
-        memcpy(&rest, at, left);
-    return camber_mix(camber_mix(hash, rest), size_bytes);
+        memcpy(rest, at, left);
+    return camber_mix(camber_mix(hash, load_word(rest)), size_bytes);
 }
 
 /* ---- Stores ---- */

@@ -94,9 +94,12 @@ static void unfold(json_t *about, const char *name, bool into_itself) {
 static camber_status take_origin(camber_archive *archive) {
     const json_t *origin = json_object_get(archive->metadata, "camber");
     const char *fingerprint = text_of(origin, "fingerprint"), *shard = text_of(origin, "shard");
+    const char *checksum = text_of(origin, "checksum");
     const json_t *zoom = json_object_get(origin, "center_zoom");
     unsigned part, parts;
     archive->whole_center_zoom = archive->center.zoom;
+    if (checksum && strlen(checksum) == sizeof archive->checksum - 1)
+        memcpy(archive->checksum, checksum, sizeof archive->checksum);
     if (fingerprint && !(archive->fingerprint = camber_copy_string(archive->context, fingerprint)))
         return CAMBER_ERROR_MEMORY;
     if (shard && sscanf(shard, "%9u/%9u", &part, &parts) == 2 && part >= 1 && part <= parts) {

@@ -1,5 +1,6 @@
 /* Verifies archives: findings, and what the formats have in common: zooms, bounds, metadata and the bytes of tiles. */
 #include "archive/verify.h"
+#include "archive/contents.h"
 #include "archive/tile_check.h"
 #include "source/pmtiles.h"
 
@@ -155,6 +156,9 @@ camber_status camber_verify_bytes(camber_verify *v, const char *name, const camb
     const camber_bytes *plain = bytes;
     const char *why = NULL;
     uint32_t width, height;
+    if (v->archive->checksum[0] &&
+        !camber_checksum_add(&v->checksum, camber_content_hash(bytes->data, bytes->size_bytes)))
+        return CAMBER_ERROR_MEMORY;
     const bool packed = bytes->size_bytes > 1 && bytes->data[0] == 0x1f && bytes->data[1] == 0x8b;
     if (bytes->size_bytes == 0) {
         camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s is empty", name);
@@ -198,6 +202,16 @@ static void check_metadata(camber_verify *v) {
     }
 }
 
+static void check_sum(camber_verify *v) {
+    char text[17];
+    camber_checksum_write(&v->checksum, text);
+    if (v->archive->checksum[0] && strcmp(text, v->archive->checksum) != 0)
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true,
+                           "the checksum of its tiles is %s, and was %s when they were written: some are damaged, or "
+                           "another program has changed them",
+                           text, v->archive->checksum);
+}
+
 static camber_status verify(camber_verify *v) {
     camber_status status = CAMBER_ERROR_INPUT;
     camber_archive_sniff(v->archive);
@@ -213,8 +227,10 @@ static camber_status verify(camber_verify *v) {
     case CAMBER_ARCHIVE_MBTILES: status = camber_verify_mbtiles(v); break;
     case CAMBER_ARCHIVE_FOLDER: status = camber_verify_folder(v); break;
     }
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK) {
         check_zooms(v);
+        check_sum(v);
+    }
     return status;
 }
 
@@ -258,8 +274,11 @@ static camber_status run(camber_verify *v, const char *path) {
 
 camber_status camber_tiles_verify(camber_context *context, const char *path, camber_tiles_findings **findings) {
     found *made = camber_alloc_zero(context, 1, sizeof *made);
-    camber_verify v = {
-        .context = context, .tally.context = context, .bytes.context = context, .unpacked.context = context};
+    camber_verify v = {.context = context,
+                       .tally.context = context,
+                       .bytes.context = context,
+                       .unpacked.context = context,
+                       .checksum.context = context};
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
@@ -267,6 +286,7 @@ camber_status camber_tiles_verify(camber_context *context, const char *path, cam
     const camber_status status = run(&v, path);
     made->findings = (camber_tiles_findings){v.findings, v.count, v.left_out};
     camber_tally_free(&v.tally);
+    camber_free(context, v.checksum.hashes);
     camber_bytes_free(&v.bytes);
     camber_bytes_free(&v.unpacked);
     camber_archive_close(v.archive);

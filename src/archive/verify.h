@@ -2,6 +2,7 @@
 #ifndef CAMBER_ARCHIVE_VERIFY_H
 #define CAMBER_ARCHIVE_VERIFY_H
 
+#include "archive/checksum.h"
 #include "archive/tally.h"
 
 #include "camber_tiles.h"
@@ -32,6 +33,7 @@ typedef struct camber_verify {
     uint32_t width, height; /* of the pictures; 0: none yet */
     camber_bytes bytes, unpacked;
     camber_verify_box boxes[CAMBER_LARGEST_TILE_ZOOM + 1]; /* tiles that the bounds meet */
+    camber_checksum checksum;
     uint64_t flipped, outside; /* tiles out of bounds, and how many of them would be within if rows were turned */
 } camber_verify;
 

@@ -8,6 +8,7 @@
 #define _FILE_OFFSET_BITS 64
 
 #include "archive/writer.h"
+#include "archive/checksum.h"
 #include "archive/folder.h"
 #include "archive/output_file.h"
 #include "archive/units.h"
@@ -376,6 +377,7 @@ typedef struct taking {
     size_t count, capacity;
     uint32_t store;
     camber_bytes plain, packed; /* a tile that has another compression than the archive */
+    camber_checksum checksum;   /* of a part */
     camber_bytes window;        /* bytes of the file's tiles from window_offset on */
     uint64_t window_offset, tiles_bytes;
 } taking;
@@ -425,6 +427,9 @@ static camber_status take_bytes(taking *t, const camber_archive_tile *tile) {
         return fail_tile(t, tile, "lies outside its zoom");
     if (tile->size_bytes == 0 || tile->size_bytes > CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
         return fail_tile(t, tile, "is empty or larger than 64 MB");
+    if (t->archive->shards &&
+        !camber_checksum_add(&t->checksum, camber_content_hash(tile->bytes, (size_t)tile->size_bytes)))
+        return CAMBER_ERROR_MEMORY;
     camber_status status = pack(t, tile, &bytes);
     if (status == CAMBER_OK)
         status = camber_contents_put(&t->writer->contents, bytes.data, bytes.size_bytes, &content);
@@ -477,6 +482,8 @@ static camber_status take_content(taking *t, const taken_entry *entry, uint32_t 
         return status;
     const unsigned char *bytes = t->window.data + (entry->offset - t->window_offset);
     const uint64_t hash = camber_content_hash(bytes, entry->size_bytes);
+    if (t->archive->shards && !camber_checksum_add(&t->checksum, hash))
+        return CAMBER_ERROR_MEMORY;
     status = camber_contents_find(contents, bytes, entry->size_bytes, hash, content);
     if (status != CAMBER_OK || *content != CAMBER_NO_CONTENT)
         return status;
@@ -501,12 +508,27 @@ static camber_status take_entries(taking *t) {
     return status;
 }
 
+/* Of a part that camber wrote, and that nobody else has reason to change. */
+static camber_status check_part(taking *t) {
+    const camber_archive *archive = t->archive;
+    char text[17];
+    camber_checksum_write(&t->checksum, text);
+    if (!archive->shards || !archive->checksum[0] || strcmp(archive->checksum, text) == 0)
+        return CAMBER_OK;
+    return camber_fail(
+        t->writer->context, CAMBER_ERROR_INPUT,
+        "%s: damaged: the checksum of its tiles is %s, and was %s when they were written; copy it again, "
+        "or draw this part again",
+        archive->path, text, archive->checksum);
+}
+
 camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_archive *archive) {
     taking t = {.writer = writer,
                 .archive = archive,
                 .window.context = writer->context,
                 .plain.context = writer->context,
-                .packed.context = writer->context};
+                .packed.context = writer->context,
+                .checksum.context = writer->context};
     if (!camber_grow(writer->context, &writer->archives, &writer->archive_capacity, writer->archive_count + 1,
                      sizeof *writer->archives))
         return CAMBER_ERROR_MEMORY;
@@ -520,6 +542,9 @@ camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_a
     camber_status status = camber_archive_walk(archive, take_tile, &t);
     if (status == CAMBER_OK && archive->format == CAMBER_ARCHIVE_PMTILES)
         status = take_entries(&t);
+    if (status == CAMBER_OK)
+        status = check_part(&t);
+    camber_free(writer->context, t.checksum.hashes);
     camber_free(writer->context, t.entries);
     camber_bytes_free(&t.window);
     camber_bytes_free(&t.plain);
@@ -572,10 +597,22 @@ static void describe(camber_archive_plan *plan, const camber_archive_writer *wri
         plan->tile_count += plan->runs[i].length;
 }
 
+static camber_status sum_up(const camber_archive_plan *plan, char text[17]) {
+    camber_checksum checksum = {.context = plan->context};
+    bool added = true;
+    for (size_t i = 0; i < plan->run_count && added; i++)
+        added = camber_checksum_add(&checksum, plan->contents->items[plan->runs[i].content].hash);
+    camber_checksum_write(&checksum, text);
+    return added ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
 /* Says what the tiles are made of. The zoom of the centre is the part's own in a part, and the whole's stays here. */
 static camber_status put_origin(camber_archive_plan *plan, const camber_archive_writer *writer) {
     const camber_archive_desc *desc = &writer->desc;
-    json_t *origin = json_object();
+    char checksum[17];
+    if (sum_up(plan, checksum) != CAMBER_OK)
+        return CAMBER_ERROR_MEMORY;
+    json_t *origin = json_pack("{s:s}", "checksum", checksum);
     if (writer->fingerprint)
         json_object_set_new(origin, "fingerprint", json_string(writer->fingerprint));
     if (desc->shards) {
@@ -591,8 +628,7 @@ static camber_status put_origin(camber_archive_plan *plan, const camber_archive_
         return camber_fail(writer->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
                            writer->path);
     }
-    if (json_object_size(origin))
-        json_object_set(plan->metadata, "camber", origin);
+    json_object_set(plan->metadata, "camber", origin);
     if (!json_object_get(plan->metadata, "format"))
         json_object_set_new(plan->metadata, "format", json_string(camber_tile_type_get_name(desc->type)));
     json_decref(origin);

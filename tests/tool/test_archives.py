@@ -392,6 +392,20 @@ def test_untold_type():
 # ---- Merging ----
 
 
+def check_flips(parts):
+    """A bit of a tile that is another: each is still a tile of its type, and no part of the archive any more."""
+    kept, source = read(parts[1]), random.Random(5)
+    begin, size = struct.unpack_from("<QQ", kept, 56)
+    for _ in range(8):
+        data, at = bytearray(kept), begin + source.randrange(size)
+        data[at] ^= 1 << source.randrange(8)
+        write(parts[1], data)
+        tiles("verify", parts[1], status=1)
+        line = tiles("merge", *parts, "-o", "merged.pmtiles", status=65).stderr
+        expect(parts[1] in line and "checksum" in line and not os.path.exists("merged.pmtiles"), line)
+    write(parts[1], kept)
+
+
 def test_merge():
     count = 20000
     for ending in (".pmtiles", ".mbtiles", "/"):
@@ -403,6 +417,7 @@ def test_merge():
         tiles("verify", parts[-1])
         shown = json.loads(tiles("show", parts[-1], "--json").stdout)
         expect((shown["shard"], shown["shards"]) == (k, 4), f"{parts[-1]}: {shown}")
+    check_flips(parts)
     mixed = parts[::-1]
     tiles("merge", *mixed, "-o", "merged.pmtiles")
     expect(read("merged.pmtiles") == read("whole.pmtiles"), "merged parts are not what a single run writes")

@@ -184,8 +184,8 @@ class Core:
     @staticmethod
     def _refuse_fork(process):
         if process not in (None, os.getpid()):
-            raise RuntimeError("camber was used before this process was forked, and drivers do not live through that; "
-                               "use multiprocessing's method spawn or forkserver")
+            raise DeviceError("camber was used before this process was forked, and drivers do not live through that; "
+                              "use multiprocessing's method spawn or forkserver")
 
     def __enter__(self):
         self._refuse_fork(self._keeper.process)
@@ -293,12 +293,28 @@ def devices():
             found.append(_describe(info[0]))
 
 
+def check_memory(size):
+    """Refuses what takes more than the library would allow itself: three quarters of what is free."""
+    if size < 64 << 20:
+        return
+    budget = ffi.new("camber_budget **")
+    if lib.camber_budget_create(ffi.new("camber_budget_desc *"), budget) != lib.CAMBER_OK:
+        raise OutOfMemoryError("a budget: out of memory")
+    most = lib.camber_budget_get_most_bytes(budget[0])
+    lib.camber_budget_destroy(budget[0])
+    if size > most:
+        raise OutOfMemoryError("a picture that takes %.1f MB while it is drawn, and %.1f MB are allowed; draw it in parts"
+                               % (size / 1e6, most / 1e6))
+
+
 _defaults = threading.local()
 
 
 def default(context=None):
     """The context that was given, or this thread's own."""
     if context is not None:
+        if not isinstance(context, Context):
+            raise TypeError("context is %r; give a camber.Context" % (context,))
         return context
     if not hasattr(_defaults, "context"):
         _defaults.context = Context()

@@ -5,7 +5,7 @@ import operator
 
 import numpy
 
-from ._core import ArgumentError, default, lib, ffi, pick
+from ._core import ArgumentError, check_memory, default, lib, ffi, pick
 from ._lines import as_lines, as_whole
 
 JOINS = {"round": lib.CAMBER_JOIN_ROUND, "miter": lib.CAMBER_JOIN_MITER, "bevel": lib.CAMBER_JOIN_BEVEL}
@@ -174,6 +174,7 @@ def as_output(out, width, height):
     """The array that a picture goes to: rows may lie apart, and the bytes of a row may not."""
     if out is None:  # where kernels can write themselves
         step, size = lib.CAMBER_PIXELS_ALIGNMENT, height * width * 4
+        check_memory(2 * size)  # drawing takes about as much again
         block = numpy.empty(size + step, numpy.uint8)
         first = -block.ctypes.data % step
         return block[first:first + size].reshape(height, width, 4)

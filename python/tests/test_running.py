@@ -166,6 +166,24 @@ def test_a_log_handler_that_draws_is_told(city, tmp_path):
     assert camber.draw(POINTS, OFFSETS, size=(64, 64), context=context).any()
 
 
+def test_a_context_is_a_context():
+    for wrong in (5, "cpu", object()):
+        with pytest.raises(TypeError, match="camber.Context"):
+            camber.draw(POINTS, size=(9, 9), context=wrong)
+        with pytest.raises(TypeError, match="camber.Context"):
+            camber.Map("map.json", context=wrong)
+
+
+def test_a_picture_has_a_budget():
+    with open("/proc/meminfo", encoding="ascii") as file:
+        free = next(int(line.split()[1]) << 10 for line in file if line.startswith("MemAvailable"))
+    side = 65535
+    if free > 16 * side * side:
+        pytest.skip("this machine has room for it")
+    with pytest.raises(camber.OutOfMemoryError, match="draw it in parts"):
+        camber.draw(POINTS, size=(side, side))
+
+
 def test_a_forked_process_is_told():
     camber.draw(POINTS, size=(9, 9))
     read, write = os.pipe()
@@ -173,7 +191,7 @@ def test_a_forked_process_is_told():
     if child == 0:
         try:
             camber.draw(POINTS, size=(9, 9))
-        except RuntimeError as error:
+        except camber.Error as error:
             os.write(write, str(error).encode())
         finally:
             os._exit(0)

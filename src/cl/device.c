@@ -11,8 +11,11 @@
 #include <CL/cl_gl.h>
 #include <ctype.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
 
@@ -151,9 +154,23 @@ static size_t ask_platforms(found_device found[DEVICES_MAX], failed_call *failed
  * devices without a name. Every use of OpenCL begins with find_devices, so locking here is enough. */
 static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
 
+/* The process that has set drivers up. 0: none yet. */
+static _Atomic(pid_t) process_of_drivers;
+
+camber_status camber_check_process(camber_context *context) {
+    const pid_t process = atomic_load(&process_of_drivers);
+    if (process == 0 || process == getpid())
+        return CAMBER_OK;
+    return camber_fail(
+        context, CAMBER_ERROR_DEVICE,
+        "device: this process was forked after camber had set up OpenCL, which does not survive that; fork "
+        "before camber's first call, or start a new process (exec)");
+}
+
 /* Returns how many devices were found. *failed takes the last call that failed, if any did. */
 static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed) {
     pthread_mutex_lock(&asking);
+    atomic_store(&process_of_drivers, getpid());
     const size_t count = ask_platforms(found, failed);
     pthread_mutex_unlock(&asking);
     return count;
@@ -162,7 +179,9 @@ static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed)
 static camber_status list_devices(camber_context *context) {
     found_device found[DEVICES_MAX];
     failed_call failed;
-    const camber_status status = camber_budget_check_drivers(context);
+    camber_status status = camber_check_process(context);
+    if (status == CAMBER_OK)
+        status = camber_budget_check_drivers(context);
     if (status != CAMBER_OK)
         return status;
     const size_t count = find_devices(found, &failed);
@@ -335,7 +354,9 @@ camber_status camber_device_create(camber_context *context, const camber_device_
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
-    camber_status status = camber_budget_check_drivers(context);
+    camber_status status = camber_check_process(context);
+    if (status == CAMBER_OK)
+        status = camber_budget_check_drivers(context);
     if (status == CAMBER_OK)
         status = choose_device(made, full.match, full.number);
     if (status == CAMBER_OK)

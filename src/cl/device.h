@@ -6,6 +6,10 @@
 
 #include <CL/cl.h>
 
+/* Returns CAMBER_ERROR_DEVICE in a child that was forked after drivers were set up: their threads are the parent's, and
+ * a call would wait for them for ever. */
+camber_status camber_check_process(camber_context *context);
+
 struct camber_device {
     camber_context *context;
     cl_platform_id platform;

@@ -292,7 +292,9 @@ static camber_status make_current(camber_device *device, recipe *from, camber_pr
 /* Gives a program that the device keeps, and makes it first where it is missing. */
 static camber_status ensure_program(camber_device *device, recipe *from, camber_program **kept,
                                     camber_program **program) {
-    const camber_status status = *kept ? CAMBER_OK : make_current(device, from, kept);
+    camber_status status = camber_check_process(device->context);
+    if (status == CAMBER_OK && !*kept)
+        status = make_current(device, from, kept);
     if (status == CAMBER_OK)
         *program = *kept;
     return status;

@@ -15,6 +15,9 @@ camber_status camber_renderer_resolve(camber_renderer *renderer, const camber_fr
     for (size_t i = 0; i < frame->pass_count; i++)
         assert(frame->passes[i].kind == CAMBER_PASS_FILL ||
                (frame->passes[i].mesh && frame->passes[i].mesh->owner == renderer));
+    const camber_status status = camber_check_process(renderer->share.device->context);
+    if (status != CAMBER_OK)
+        return status;
     return camber_draw_list_build(&renderer->list, frame);
 }
 
@@ -136,7 +139,8 @@ camber_status camber_renderer_end(camber_renderer *renderer, camber_rows_fn *row
                                   camber_frame_stats *stats) {
     assert(renderer->flight_count > 0);
     camber_flight *flight = renderer->flights + renderer->first_flight;
-    camber_status status = flight->is_drawn ? CAMBER_OK : camber_renderer_resolve(renderer, &flight->frame);
+    camber_status status = flight->is_drawn ? camber_check_process(renderer->share.device->context)
+                                            : camber_renderer_resolve(renderer, &flight->frame);
     if (status == CAMBER_OK)
         status = end(renderer, flight, rows, user);
     /* Only where it was not resolved there is a fence left. */

@@ -38,12 +38,13 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
     const bool in_cl =
         full.rasterizer == CAMBER_RASTERIZER_OPENCL || (full.rasterizer == CAMBER_RASTERIZER_AUTO && !in_hardware);
     assert(surface || in_cl);
-    camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
+    camber_status status = camber_check_process(device->context);
+    camber_renderer *made = status == CAMBER_OK ? camber_alloc_zero(device->context, 1, sizeof *made) : NULL;
     if (!made)
-        return CAMBER_ERROR_MEMORY;
+        return status == CAMBER_OK ? CAMBER_ERROR_MEMORY : status;
     made->share = (camber_share){.device = device, .surface = surface};
     made->list.context = made->list.side_table.context = made->list.images.context = device->context;
-    camber_status status = in_cl ? camber_raster_create(device, &made->raster) : CAMBER_OK;
+    status = in_cl ? camber_raster_create(device, &made->raster) : CAMBER_OK;
     if (status == CAMBER_OK && surface)
         status = open_gl(made, full.sharing);
     if (status != CAMBER_OK) {

@@ -10,9 +10,10 @@
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh) {
-    camber_mesh *made = camber_alloc_zero(device->context, 1, sizeof *made);
+    const camber_status status = camber_check_process(device->context);
+    camber_mesh *made = status == CAMBER_OK ? camber_alloc_zero(device->context, 1, sizeof *made) : NULL;
     if (!made)
-        return CAMBER_ERROR_MEMORY;
+        return status == CAMBER_OK ? CAMBER_ERROR_MEMORY : status;
     made->device = device;
     made->ops = ops ? ops : &camber_buffer_plain;
     made->ops_user = ops ? ops_user : device;
@@ -87,7 +88,7 @@ void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t s
  * that this waits until one asks. */
 camber_status camber_mesh_count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
-    camber_status status = CAMBER_OK;
+    camber_status status = camber_check_process(mesh->device->context);
     size_t segments = 0;
     for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++) {
         status = camber_part_ensure_made(mesh, mesh->parts + i);

@@ -340,6 +340,9 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
     camber_program *program = NULL;
+    camber_status status = camber_check_process(context);
+    if (status != CAMBER_OK)
+        return status;
     mesh->empty = mesh->joins_counted = true;
     mesh->done = mesh->round_limits = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = mesh->wide = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {
@@ -356,7 +359,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     mesh->remade_parts = 0;
     for (size_t i = 0; i < mesh->part_capacity; i++)
         mesh->parts[i].made = false;
-    camber_status status = camber_rows_create(context, from->row_count, desc, &rows);
+    status = camber_rows_create(context, from->row_count, desc, &rows);
     if (status == CAMBER_OK)
         status = camber_mesh_set_offsets(mesh, desc);
     if (status == CAMBER_OK)

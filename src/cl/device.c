@@ -4,6 +4,7 @@
  * context, a queue, and the sizes that its kernels are built for. Every platform is asked for every device; of those
  * that match a GPU wins over a CPU, and a CPU over anything else. Programs are built later, when they are first used
  * (program.c). */
+#include "cl/pocl.h"
 #include "cl/program.h"
 
 #include "kernels/layout.h"
@@ -182,6 +183,8 @@ static camber_status list_devices(camber_context *context) {
     camber_status status = camber_check_process(context);
     if (status == CAMBER_OK)
         status = camber_budget_check_drivers(context);
+    if (status == CAMBER_OK && atomic_load(&process_of_drivers) == 0)
+        status = camber_pocl_check_threads(context);
     if (status != CAMBER_OK)
         return status;
     const size_t count = find_devices(found, &failed);
@@ -357,6 +360,8 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     camber_status status = camber_check_process(context);
     if (status == CAMBER_OK)
         status = camber_budget_check_drivers(context);
+    if (status == CAMBER_OK && atomic_load(&process_of_drivers) == 0)
+        status = camber_pocl_check_threads(context);
     if (status == CAMBER_OK)
         status = choose_device(made, full.match, full.number);
     if (status == CAMBER_OK)

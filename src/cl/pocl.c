@@ -21,9 +21,19 @@
  *
  * The stripped binary has an empty file by another name, since PoCL wants one, and a folder of its own. In the folder
  * of a program that was compiled from source PoCL would find the code. */
+#define _GNU_SOURCE /* ST_NOEXEC */
+
 #include "cl/pocl.h"
 
+#include <limits.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 static const char MAGIC[] = "poclbin", CODE[] = "/program.bc", NO_CODE[] = "/no-code.bc";
 
@@ -74,4 +84,113 @@ bool camber_pocl_strip(unsigned char *binary, size_t *size_bytes) {
     binary[FOLDER_AT] = 'c'; /* no capital letter: no program from source has this folder */
     *size_bytes -= (size_t)code_bytes;
     return true;
+}
+
+/* ---- What PoCL needs ---- */
+
+static void *wait_for_end(void *end) {
+    while (sem_wait(end) != 0)
+        continue;
+    return NULL;
+}
+
+/* As many threads as there are processors are there at once, where a limit is so low that they may not be. */
+camber_status camber_pocl_check_threads(camber_context *context) {
+    enum { MOST_THREADS = 256, LOW_LIMIT = 4096 };
+    struct rlimit limit;
+    pthread_t threads[MOST_THREADS];
+    sem_t end;
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    const unsigned wanted = processors < 1 ? 1 : processors > MOST_THREADS ? MOST_THREADS : (unsigned)processors;
+    unsigned made = 0;
+    if (getrlimit(RLIMIT_NPROC, &limit) != 0 || limit.rlim_cur >= LOW_LIMIT || sem_init(&end, 0, 0) != 0)
+        return CAMBER_OK;
+    while (made < wanted && pthread_create(&threads[made], NULL, wait_for_end, &end) == 0)
+        made++;
+    for (unsigned i = 0; i < made; i++)
+        sem_post(&end);
+    for (unsigned i = 0; i < made; i++)
+        pthread_join(threads[i], NULL);
+    sem_destroy(&end);
+    if (made == wanted)
+        return CAMBER_OK;
+    return camber_fail(
+        context, CAMBER_ERROR_DEVICE,
+        "device: OpenCL's drivers need %u threads, and the limit of processes (%llu) allows fewer; raise "
+        "it (ulimit -u)",
+        wanted, (unsigned long long)limit.rlim_cur);
+}
+
+/* The folder where PoCL keeps kernels. false: it has none, or too long a name. */
+static bool find_folder(char folder[PATH_MAX]) {
+    const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    const int length = own && *own       ? snprintf(folder, PATH_MAX, "%s", own)
+                       : cache && *cache ? snprintf(folder, PATH_MAX, "%s/pocl/kcache", cache)
+                       : home && *home   ? snprintf(folder, PATH_MAX, "%s/.cache/pocl/kcache", home)
+                                         : snprintf(folder, PATH_MAX, "/tmp/pocl/kcache");
+    return length < PATH_MAX;
+}
+
+/* Of the folder, or of the closest one above it that is there. */
+static bool find_file_system(const char *folder, struct statvfs *about) {
+    char above[PATH_MAX];
+    snprintf(above, sizeof above, "%s", folder);
+    while (statvfs(above, about) != 0) {
+        char *slash = strrchr(above, '/');
+        if (!slash || slash == above)
+            return false;
+        *slash = 0;
+    }
+    return true;
+}
+
+static bool has_linker(void) {
+    const char *path = getenv("PATH");
+    for (const char *at = path ? path : "/usr/bin:/bin"; *at;) {
+        char name[PATH_MAX];
+        const size_t length = strcspn(at, ":");
+        if (length + 4 < sizeof name) {
+            snprintf(name, sizeof name, "%.*s/ld", (int)length, at);
+            if (access(name, X_OK) == 0)
+                return true;
+        }
+        at += length + (at[length] == ':');
+    }
+    return false;
+}
+
+/* Whether the kernels of a binary lie in the folder already. */
+static bool is_unpacked(const char *folder, const unsigned char *binary, size_t size_bytes) {
+    char name[PATH_MAX];
+    if (!binary || size_bytes < LEAST_BYTES || memcmp(binary, MAGIC, sizeof MAGIC) != 0)
+        return false;
+    const char *own = (const char *)binary + FOLDER_AT;
+    return snprintf(name, sizeof name, "%s/%.2s/%.*s", folder, own, FOLDER_BYTES - 3, own + 2) < (int)sizeof name &&
+           access(name, F_OK) == 0;
+}
+
+camber_status camber_pocl_check_program(const camber_device *device, const unsigned char *binary, size_t size_bytes) {
+    enum { KERNELS_BYTES = 1 << 20, FIRST_WITH_LINKER = 5 }; /* later ones may have one built in */
+    char folder[PATH_MAX];
+    struct statvfs about;
+    camber_context *context = device->context;
+    if (!binary && strtol(device->info.driver, NULL, 10) < FIRST_WITH_LINKER && !has_linker())
+        return camber_fail(
+            context, CAMBER_ERROR_DEVICE,
+            "device: OpenCL (PoCL) compiles kernels, and finds no linker: no folder of PATH has ld; install "
+            "binutils, or let PATH name its folder");
+    if (!find_folder(folder) || !find_file_system(folder, &about))
+        return CAMBER_OK;
+    if (about.f_flag & ST_NOEXEC)
+        return camber_fail(context, CAMBER_ERROR_DEVICE,
+                           "device: OpenCL (PoCL) runs kernels from %s, whose file system is mounted noexec; let "
+                           "POCL_CACHE_DIR name a folder from which programs may run",
+                           folder);
+    if ((uint64_t)about.f_bavail * about.f_frsize < KERNELS_BYTES && !is_unpacked(folder, binary, size_bytes))
+        return camber_fail(
+            context, CAMBER_ERROR_DEVICE,
+            "device: OpenCL (PoCL) keeps kernels in %s, whose file system is full; free some space, or let "
+            "POCL_CACHE_DIR name another folder",
+            folder);
+    return CAMBER_OK;
 }

@@ -79,6 +79,8 @@ static bool load_binary(camber_device *device, camber_program *program, const ch
     const size_t binary_size = size - sizeof hash;
     if (hash != hash_binary(program->key, binary, binary_size))
         return false;
+    if (camber_is_pocl(&device->info) && camber_pocl_check_program(device, binary, binary_size) != CAMBER_OK)
+        return false; /* as building it will, and say why */
     program->cl = clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
     if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
         clBuildProgram(program->cl, 1, &device->id, options, NULL, NULL) == CL_SUCCESS)
@@ -127,6 +129,11 @@ static camber_status fail_build(camber_device *device, cl_program program) {
 
 static camber_status build_from_source(camber_device *device, camber_program *program, const recipe *from) {
     cl_int code;
+    if (camber_is_pocl(&device->info)) {
+        const camber_status status = camber_pocl_check_program(device, NULL, 0);
+        if (status != CAMBER_OK)
+            return status;
+    }
     program->cl = clCreateProgramWithSource(device->cl, 1, (const char *[]){from->source}, &from->source_size, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateProgramWithSource", code);

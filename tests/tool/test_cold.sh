@@ -7,7 +7,7 @@ set -u
 tool=$(realpath "$1")
 city=$(realpath "$2")
 tmp=$(mktemp -d) || exit 1
-trap 'rm -rf "$tmp"' EXIT
+trap 'umount "$tmp/mounted" 2>/dev/null; rm -rf "$tmp"' EXIT
 chmod 755 "$tmp"
 export CAMBER_KERNELS= XDG_CACHE_HOME=$tmp/cache POCL_CACHE_DIR=$tmp/pocl
 unset CAMBER_COMPILATIONS LD_PRELOAD POCL_WORK_GROUP_SPECIALIZATION # users do not know of it
@@ -130,6 +130,35 @@ for file in "$CAMBER_KERNELS"/kernels-*.bin; do
 done
 CAMBER_KERNELS=$tmp/nothing "$tool" info --warm >"$tmp/warm.out" 2>"$tmp/warm.log" || status=$?
 [ "$status" = 74 ] || fail "info --warm that keeps nothing: status $status: $(cat "$tmp/warm.log")"
+
+# ---- Where PoCL would end the process ----
+
+refused() { # WORDS COMMAND...: a line that has the words, status 69, and nothing left
+    local words=$1 status=0
+    shift
+    mkdir -p "$tmp/out" && chmod 777 "$tmp/out"
+    timeout 300 "$@" render "$city" -o "$tmp/out/x.png" --size 64x64 --draw cl >"$tmp/refused.log" 2>&1 </dev/null || status=$?
+    [ "$status" = 69 ] && [ "$(wc -l <"$tmp/refused.log")" = 1 ] && grep -q "^camber: .*$words" "$tmp/refused.log" ||
+        fail "$words: status $status: $(cat "$tmp/refused.log")"
+    [ -z "$(ls -A "$tmp/out")" ] || fail "$words: left behind: $(ls -A "$tmp/out")"
+}
+
+export CAMBER_KERNELS= POCL_CACHE_DIR=$tmp/mounted
+mkdir -p "$tmp/mounted" "$tmp/no-programs"
+for options in noexec size=64k; do
+    empty
+    mount -t tmpfs -o "$options" none "$tmp/mounted" 2>/dev/null || { echo "no file system of its own: left out"; break; }
+    [ "$options" = noexec ] || head -c 64k /dev/zero >"$tmp/mounted/x"
+    refused "POCL_CACHE_DIR" "$tool"
+    umount "$tmp/mounted"
+done
+POCL_CACHE_DIR=$tmp/pocl empty
+case $("$tool" info 2>/dev/null) in
+*"driver "[1-4].*) refused "binutils" env POCL_CACHE_DIR="$tmp/pocl" PATH="$tmp/no-programs" "$tool" ;;
+esac
+if [ "$(id -u)" = 0 ] && [ "$(nproc)" -gt 1 ] && setpriv --reuid=61234 --clear-groups "$tool" --version >"$tmp/out.log" 2>&1; then
+    refused "ulimit -u" setpriv --reuid=61234 --clear-groups bash -c 'ulimit -u 1; exec "$@"' bash "$tool"
+fi
 
 echo "$failures failures"
 [ "$failures" = 0 ]

@@ -22,8 +22,8 @@
  * A surface's GL context is made current on the calling thread by each call that needs it, and stays so
  * until camber_surface_release.
  *
- * Processes. Drivers do not survive fork(): in a child of a process that has looked for devices, whatever needs a device,
- * also a new one, fails with CAMBER_ERROR_DEVICE. Fork before camber's first call, or call exec in the child.
+ * Processes. Drivers do not survive fork(): in a child of a process that has looked for devices, whatever needs a
+ * device, also a new one, fails with CAMBER_ERROR_DEVICE. Fork before camber's first call, or call exec in the child.
  *
  * Units. Pixels are device pixels, x to the right, y down; pixel centres lie at .5.
  */

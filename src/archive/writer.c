@@ -508,7 +508,7 @@ static camber_status take_entries(taking *t) {
     return status;
 }
 
-/* Of a part that camber wrote, and that nobody else has reason to change. */
+/* Checks the checksum of a shard: nobody but camber has reason to write one. */
 static camber_status check_part(taking *t) {
     const camber_archive *archive = t->archive;
     char text[17];

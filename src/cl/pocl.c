@@ -86,7 +86,7 @@ bool camber_pocl_strip(unsigned char *binary, size_t *size_bytes) {
     return true;
 }
 
-/* ---- What PoCL needs ---- */
+/* ---- Needs of PoCL ---- */
 
 static void *wait_for_end(void *end) {
     while (sem_wait(end) != 0)
@@ -131,7 +131,7 @@ static bool find_folder(char folder[PATH_MAX]) {
     return length < PATH_MAX;
 }
 
-/* Of the folder, or of the closest one above it that is there. */
+/* Describes the file system of the folder, or of the closest one above it that exists. */
 static bool find_file_system(const char *folder, struct statvfs *about) {
     char above[PATH_MAX];
     snprintf(above, sizeof above, "%s", folder);

@@ -367,7 +367,7 @@ static bool join_left(wishes *w) {
     return true;
 }
 
-/* What to say of a reading that failed. */
+/* Writes a line that says why a reading failed. */
 static void explain(const reading *it, bool given_up, int status, char *error, size_t error_size) {
     const char *why = given_up ? it->own.watch.line : it->report.error;
     const bool memory = !given_up && status == CAMBER_EXIT_INTERNAL;

@@ -48,7 +48,7 @@ static void end(camber_watch *watch, int exit_status) {
         watch->give_up(watch->give_up_user);
 }
 
-/* What can be done without has been given up when memory ends, unless a library holds on to its own. */
+/* A reading that was given up may hold on to memory within a library; at twice the limit the process ends. */
 static void look_at_memory(camber_watch *watch) {
     const uint64_t held = resident_bytes();
     if (held <= LIBRARIES_BYTES)

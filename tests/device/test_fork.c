@@ -64,7 +64,7 @@ static void close_drawing(drawing *d) {
     camber_context_destroy(d->context);
 }
 
-/* What the n-th call gives in a child, where everything else is the parent's. */
+/* Makes the n-th call in a child, where everything else is the parent's. */
 static camber_status call(drawing *d, int n) {
     drawing other = {.error = ""};
     camber_renderer *renderer = NULL;

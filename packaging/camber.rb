@@ -18,6 +18,7 @@ class Camber < Formula
   depends_on "meshoptimizer"
   depends_on "libpng"
   depends_on :linux
+  depends_on "lz4"
   depends_on "mesa"
   depends_on "mesa-glu" # areas of mesh tiles
   depends_on "opencl-icd-loader"
@@ -25,11 +26,14 @@ class Camber < Formula
   depends_on "protobuf-c"
   depends_on "sqlite"
   depends_on "webp"
+  depends_on "xz"
   depends_on "zlib"
+  depends_on "zstd"
 
   def install
     system "cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCAMBER_TESTS=OFF", "-DCAMBER_WARM=OFF",
-           "-DCAMBER_LIBDEFLATE=ON", "-DCAMBER_WEBP=ON", "-DCAMBER_SERVE=ON", *std_cmake_args
+           "-DCAMBER_LIBDEFLATE=ON", "-DCAMBER_WEBP=ON", "-DCAMBER_SERVE=ON",
+           "-DCAMBER_LZ4=ON", "-DCAMBER_ZSTD=ON", "-DCAMBER_LZMA=ON", *std_cmake_args
     system "cmake", "--build", "build"
     system "cmake", "--install", "build"
   end

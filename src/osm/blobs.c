@@ -1,26 +1,21 @@
-/* Reads the outer layers of a PBF file: blobs, each with its header, packed by DEFLATE or not at all.
+/* Reads the outer layers of a PBF file: blobs, each with its header, packed (codec.h) or not.
  *
  * Input: a path. Output: the list of blobs, then the blocks in them, one at a time and from any thread. The format is
  * that of wiki.openstreetmap.org/wiki/PBF_Format. Its own bounds on headers and blobs are kept, so a file asks for
- * little memory. A blob that unpacks to more than a hundred times its size is refused, as GDAL does. */
+ * little memory. Blobs of types that the format does not have are passed over, as it wants. */
 #include "osm/blobs.h"
 
 #include "base/open_file.h"
+#include "osm/codec.h"
 
 #include <errno.h>
 #include <stdio.h>
 
-#ifdef CAMBER_LIBDEFLATE
-#include <libdeflate.h>
-#else
-#include <zlib.h>
-#endif
-
-enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20, MOST_UNPACKED_RATIO = 100 };
+enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20 };
 
 /* Fields of a blob's header, of a blob, of the file's header and of a block. */
 enum { HEADER_TYPE = 1, HEADER_SIZE = 3 };
-enum { BLOB_RAW = 1, BLOB_RAW_SIZE = 2, BLOB_ZLIB = 3, BLOB_LAST_PACKING = 7 };
+enum { BLOB_RAW_SIZE = 2 }; /* its other fields: camber_osm_codec */
 enum { FILE_BOX = 1, FILE_REQUIRED_FEATURE = 4 };
 enum { BLOCK_STRINGS = 1, BLOCK_GROUP = 2, BLOCK_GRANULARITY = 17, BLOCK_LATITUDE = 19, BLOCK_LONGITUDE = 20 };
 
@@ -46,8 +41,14 @@ static uint32_t header_size(const uint8_t bytes[4]) {
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
+static bool is_text(camber_wire name, const char *text) {
+    const size_t length = strlen(text);
+    return (size_t)(name.end - name.at) == length && memcmp(name.at, text, length) == 0;
+}
+
 typedef enum blob_type {
-    BLOB_OTHER = 0,
+    BLOB_NONE = 0,
+    BLOB_OTHER,
     BLOB_HEADER,
     BLOB_DATA,
 } blob_type;
@@ -55,22 +56,19 @@ typedef enum blob_type {
 /* Reads a blob's header. false: it is none. */
 static bool read_header(camber_wire wire, blob_type *type, uint64_t *size) {
     uint64_t key;
-    *type = BLOB_OTHER;
+    *type = BLOB_NONE;
     *size = UINT64_MAX;
     while (camber_wire_next(&wire, &key)) {
         if (key == CAMBER_WIRE_KEY(HEADER_TYPE, CAMBER_WIRE_BYTES)) {
             const camber_wire name = camber_wire_bytes(&wire);
-            const size_t length = (size_t)(name.end - name.at);
-            *type = length == 7 && memcmp(name.at, "OSMData", 7) == 0     ? BLOB_DATA
-                    : length == 9 && memcmp(name.at, "OSMHeader", 9) == 0 ? BLOB_HEADER
-                                                                          : BLOB_OTHER;
+            *type = is_text(name, "OSMData") ? BLOB_DATA : is_text(name, "OSMHeader") ? BLOB_HEADER : BLOB_OTHER;
         } else if (key == CAMBER_WIRE_KEY(HEADER_SIZE, CAMBER_WIRE_VARINT)) {
             *size = camber_wire_varint(&wire);
         } else {
             camber_wire_skip(&wire, key);
         }
     }
-    return !wire.bad && *type != BLOB_OTHER;
+    return !wire.bad && *type != BLOB_NONE;
 }
 
 bool camber_osm_knows(const char *path) {
@@ -91,57 +89,27 @@ bool camber_osm_knows(const char *path) {
 
 /* ---- Unpacking ---- */
 
-static bool inflate_bytes(const camber_wire *from, uint8_t *to, size_t size) {
-#ifdef CAMBER_LIBDEFLATE
-    struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();
-    if (!inflater)
-        return false;
-    const bool done = libdeflate_zlib_decompress(inflater, from->at, (size_t)(from->end - from->at), to, size, NULL) ==
-                      LIBDEFLATE_SUCCESS;
-    libdeflate_free_decompressor(inflater);
-    return done;
-#else
-    z_stream stream = {.next_in = (Bytef *)(uintptr_t)from->at,
-                       .avail_in = (uInt)(from->end - from->at),
-                       .next_out = to,
-                       .avail_out = (uInt)size};
-    if (inflateInit(&stream) != Z_OK)
-        return false;
-    const bool done = inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.avail_out == 0;
-    inflateEnd(&stream);
-    return done;
-#endif
-}
-
 /* Finds a block in a blob, and unpacks it where it is packed. */
 static bool unpack(camber_osm_pass *pass, camber_wire blob, camber_osm_block *plain, camber_wire *block,
                    camber_osm_failure *failure) {
-    camber_wire packed = {0};
+    camber_osm_codec codec = CAMBER_OSM_CODEC_NONE;
+    camber_wire bytes = {0};
     uint64_t key, size = 0;
-    *block = (camber_wire){0};
     while (camber_wire_next(&blob, &key)) {
-        if (key == CAMBER_WIRE_KEY(BLOB_RAW, CAMBER_WIRE_BYTES))
-            *block = camber_wire_bytes(&blob);
-        else if (key == CAMBER_WIRE_KEY(BLOB_RAW_SIZE, CAMBER_WIRE_VARINT))
+        if (key == CAMBER_WIRE_KEY(BLOB_RAW_SIZE, CAMBER_WIRE_VARINT)) {
             size = camber_wire_varint(&blob);
-        else if (key == CAMBER_WIRE_KEY(BLOB_ZLIB, CAMBER_WIRE_BYTES))
-            packed = camber_wire_bytes(&blob);
-        else if (key > CAMBER_WIRE_KEY(BLOB_ZLIB, 7) && key <= CAMBER_WIRE_KEY(BLOB_LAST_PACKING, CAMBER_WIRE_BYTES))
-            return camber_osm_decline(failure);
-        else
+        } else if ((key & 7) == CAMBER_WIRE_BYTES && key >> 3 <= CAMBER_OSM_CODEC_ZSTD) {
+            codec = (camber_osm_codec)(key >> 3);
+            bytes = camber_wire_bytes(&blob);
+        } else {
             camber_wire_skip(&blob, key);
+        }
     }
-    if (blob.bad || (!block->at && !packed.at))
+    if (blob.bad)
         return camber_osm_fail(failure, "a blob that does not parse");
-    if (block->at)
-        return true;
-    if (size > MOST_BLOB_BYTES || size / MOST_UNPACKED_RATIO > (uint64_t)(packed.end - packed.at))
-        return camber_osm_fail(failure, "a blob that would unpack to far more than it is");
-    if (!camber_osm_reserve(pass, plain, (size_t)size + 1, failure))
-        return false;
-    if (!inflate_bytes(&packed, plain->bytes, (size_t)size))
-        return camber_osm_fail(failure, "a blob that does not unpack");
-    *block = (camber_wire){plain->bytes, plain->bytes + size, false};
+    if (codec != CAMBER_OSM_CODEC_RAW)
+        return camber_osm_codec_unpack(codec, pass, &bytes, size, plain, block, failure);
+    *block = bytes;
     return true;
 }
 
@@ -226,7 +194,6 @@ static void read_box(camber_wire wire, camber_osm_box *box) {
 
 /* Whether this reader has all that the file's header requires. */
 static bool read_file_header(camber_wire wire, camber_osm_box *box, camber_osm_failure *failure) {
-    static const char *const known[] = {"OsmSchema-V0.6", "DenseNodes"};
     uint64_t key;
     while (camber_wire_next(&wire, &key)) {
         if (key == CAMBER_WIRE_KEY(FILE_BOX, CAMBER_WIRE_BYTES)) {
@@ -238,11 +205,10 @@ static bool read_file_header(camber_wire wire, camber_osm_box *box, camber_osm_f
             continue;
         }
         const camber_wire name = camber_wire_bytes(&wire);
-        bool found = wire.bad;
-        for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-            found = found || ((size_t)(name.end - name.at) == strlen(known[i]) &&
-                              memcmp(name.at, known[i], strlen(known[i])) == 0);
-        if (!found)
+        if (is_text(name, "HistoricalInformation"))
+            return camber_osm_refuse(failure, "a history file, which has each node and way as often as it was changed; "
+                                              "make a map of it by osmium time-filter");
+        if (!wire.bad && !is_text(name, "OsmSchema-V0.6") && !is_text(name, "DenseNodes"))
             return camber_osm_decline(failure);
     }
     return !wire.bad || camber_osm_fail(failure, "a header that does not parse");
@@ -252,6 +218,7 @@ typedef struct listing {
     camber_osm_file *file;
     camber_osm_unpacked unpacked;
     uint64_t at;
+    size_t passed_over;
 } listing;
 
 /* Reads the blob's header at the position, and steps behind the blob. false: the file ends here, or *failure. */
@@ -277,6 +244,10 @@ static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *
     if (blob.offset + blob_bytes > file->size_bytes)
         return camber_osm_fail(failure, "it ends within a blob");
     list->at = blob.offset + blob_bytes;
+    if (type == BLOB_OTHER) {
+        list->passed_over++;
+        return true;
+    }
     if (type == BLOB_HEADER) {
         camber_wire block;
         return unpack_at(file, &blob, pass, &list->unpacked, &block, failure) &&
@@ -322,6 +293,9 @@ camber_status camber_osm_file_open(camber_context *context, const char *path, ca
                                        .free_slot = free_nothing};
     status = camber_osm_pass_run(&desc, declined);
     camber_osm_unpacked_free(context, &list.unpacked);
+    if (status == CAMBER_OK && list.passed_over)
+        camber_log(context, CAMBER_LOG_INFO, "%s: passed over %zu blobs of types that the format does not have", path,
+                   list.passed_over);
     if (status != CAMBER_OK || *declined)
         camber_osm_file_close(&made);
     else

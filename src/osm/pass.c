@@ -6,6 +6,7 @@
  * makes room in a worker's block. */
 #include "osm/pass.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 
 /* Slots a thread: enough that a large part holds nobody up. */
@@ -37,6 +38,16 @@ bool camber_osm_fail(camber_osm_failure *failure, const char *text) {
     return false;
 }
 
+bool camber_osm_refuse(camber_osm_failure *failure, const char *format, ...) {
+    va_list list;
+    failure->status = CAMBER_ERROR_INPUT;
+    failure->told = true;
+    va_start(list, format);
+    vsnprintf(failure->text, sizeof failure->text, format, list);
+    va_end(list);
+    return false;
+}
+
 bool camber_osm_decline(camber_osm_failure *failure) {
     failure->declined = true;
     failure->status = CAMBER_ERROR_INPUT;
@@ -58,6 +69,19 @@ bool camber_osm_reserve(camber_osm_pass *pass, camber_osm_block *block, size_t s
     block->bytes = made;
     block->capacity = wanted;
     return true;
+}
+
+void *camber_osm_allocate(camber_osm_pass *pass, size_t size_bytes) {
+    pthread_mutex_lock(&pass->context_lock);
+    void *made = camber_resize_quietly(pass->desc->context, NULL, size_bytes);
+    pthread_mutex_unlock(&pass->context_lock);
+    return made;
+}
+
+void camber_osm_release(camber_osm_pass *pass, void *block) {
+    pthread_mutex_lock(&pass->context_lock);
+    camber_free(pass->desc->context, block);
+    pthread_mutex_unlock(&pass->context_lock);
 }
 
 /* ---- Taking parts ---- */
@@ -106,6 +130,8 @@ static camber_status report(const camber_osm_pass *pass, const camber_osm_failur
         return camber_fail(pass->desc->context, CAMBER_ERROR_MEMORY,
                            "%s: memory: a part of it takes more than what is allowed; allow more memory",
                            pass->desc->name);
+    if (failure->told)
+        return camber_fail(pass->desc->context, failure->status, "%s: %s", pass->desc->name, failure->text);
     return camber_fail(pass->desc->context, failure->status, "%s: cut off or damaged: %s; get the file again",
                        pass->desc->name, failure->text);
 }

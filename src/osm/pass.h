@@ -10,7 +10,8 @@
 typedef struct camber_osm_failure {
     camber_status status;
     bool declined; /* nothing is wrong with it, but it is not for this reader */
-    char text[160];
+    bool told;     /* text has the cure, too; else the file is damaged */
+    char text[240];
 } camber_osm_failure;
 
 /* A block that grows. */
@@ -41,8 +42,13 @@ camber_status camber_osm_pass_run(const camber_osm_pass_desc *desc, bool *declin
 /* Makes room for so many bytes while other threads work; what was in the block stays. */
 bool camber_osm_reserve(camber_osm_pass *pass, camber_osm_block *block, size_t size_bytes, camber_osm_failure *failure);
 
-/* Sets *failure, and returns false. */
+/* Memory of the context while other threads work; NULL: there is none. */
+void *camber_osm_allocate(camber_osm_pass *pass, size_t size_bytes);
+void camber_osm_release(camber_osm_pass *pass, void *block);
+
+/* Sets *failure, and returns false. fail: the file is damaged; refuse: it is whole, and the text ends with the cure. */
 bool camber_osm_fail(camber_osm_failure *failure, const char *text);
+bool camber_osm_refuse(camber_osm_failure *failure, const char *format, ...) CAMBER_PRINTF(2, 3);
 bool camber_osm_decline(camber_osm_failure *failure);
 
 #endif

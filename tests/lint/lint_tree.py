@@ -498,6 +498,8 @@ LIBRARIES = {
     "EGL": ("libegl-dev", "pkgconfig(egl)", "mesa"), "GLES3": ("libgles-dev", "pkgconfig(glesv2)", "mesa"),
     "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
     "libisal": ("libisal-dev", "pkgconfig(libisal)", "isa-l"),
+    "liblz4": ("liblz4-dev", "pkgconfig(liblz4)", "lz4"), "libzstd": ("libzstd-dev", "pkgconfig(libzstd)", "zstd"),
+    "liblzma": ("liblzma-dev", "pkgconfig(liblzma)", "xz"),
     "libwebp": ("libwebp-dev", "pkgconfig(libwebp)", "webp"),
     "libmicrohttpd": ("libmicrohttpd-dev", "pkgconfig(libmicrohttpd)", "libmicrohttpd"),
     "meshoptimizer": ("libmeshoptimizer-dev", "cmake(meshoptimizer)", "meshoptimizer"),
@@ -537,7 +539,7 @@ def check_packages(tree):
     version = re.search(r"^project\(camber VERSION (\S+)", cmake, re.M).group(1)
     used = set(re.findall(r"\bfind_package\((\w+)", cmake))
     used |= set(re.findall(r"\bpkg_check_modules\(\w+ .*IMPORTED_TARGET ([a-z][\w-]*)", cmake))
-    used |= set(re.findall(r"^camber_encoder_library\(\w+ (\S+)", cmake, re.M))
+    used |= set(re.findall(r"^ *camber_optional_library\(\w+ CAMBER_\w+ (\S+)", cmake, re.M))
     used |= set(re.findall(r"\bfind_program\(\w+ ([\w-]+) REQUIRED", cmake))
     for file in tree.files:
         if file.path.startswith("src/"):

@@ -27,6 +27,7 @@ typedef struct camber_osm_node_set {
     uint32_t *ranks; /* leaf_count: nodes of the leaves before, once the ids are complete */
     size_t node_count;
     _Atomic uint64_t *places; /* node_count: longitude and latitude in 10^-7 degrees; CAMBER_OSM_NOWHERE */
+    size_t found_count;       /* of them that the file has */
     uint64_t last_leaf_id;    /* of the leaf that was added to last; UINT64_MAX: none */
     size_t last_leaf;
 } camber_osm_node_set;

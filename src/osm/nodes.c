@@ -1,18 +1,21 @@
 /* Reads the places of nodes.
  *
  * Input: blobs, and the set of nodes that lines need. Output: their places, in the whole numbers of 10^-7 degrees that
- * GDAL's reader has too. Threads write places as they find them: each node has one, and one that comes twice is left
- * to GDAL, whose rule for it depends on the order. */
+ * GDAL's reader has too. Places may stand on ways instead (osmium add-locations-to-ways); a node that several ways name
+ * has one of each. Threads write places as they find them, so what is kept of several must not depend on who comes
+ * first. */
 #include "osm/nodes.h"
 
 #include <math.h>
 
 enum { NODE_ID = 1, NODE_LATITUDE = 8, NODE_LONGITUDE = 9 };
 enum { DENSE_IDS = 1, DENSE_LATITUDES = 8, DENSE_LONGITUDES = 9 };
+enum { WAY_NODES = 8, WAY_LATITUDES = 9, WAY_LONGITUDES = 10 };
 enum { USUAL_GRANULARITY = 100 };
 
 typedef struct block {
     camber_osm_unpacked unpacked;
+    size_t found_count; /* nodes that got a place */
 } block;
 
 static void free_block(camber_context *context, void *slot) {
@@ -24,7 +27,9 @@ typedef struct decoder {
     camber_osm_entities entities;
     camber_osm_finger finger;
     camber_osm_failure *failure;
-    bool usual; /* coordinates are in 10^-7 degrees as they are */
+    size_t found_count;
+    bool usual;   /* coordinates are in 10^-7 degrees as they are */
+    bool several; /* a node may have several places */
 } decoder;
 
 /* Degrees as GDAL computes them, and rounds them then. false: they are none on Earth. */
@@ -36,22 +41,45 @@ static bool to_place(int64_t coordinate, int64_t offset, int32_t granularity, do
     return true;
 }
 
-static bool add_node(decoder *self, int64_t id, int64_t longitude, int64_t latitude) {
+/* Coordinates of the block as a place. false: they are none on Earth. */
+static bool find_place(const decoder *self, int64_t longitude, int64_t latitude, uint64_t *place) {
     enum { DEGREE = 10000000 };
     const camber_osm_entities *from = &self->entities;
     int32_t x = (int32_t)longitude, y = (int32_t)latitude;
-    uint32_t index;
     /* At the very limits the rounding decides. */
     const bool inside = longitude > -INT64_C(180) * DEGREE && longitude < INT64_C(180) * DEGREE &&
                         latitude > -INT64_C(90) * DEGREE && latitude < INT64_C(90) * DEGREE;
     if (!(self->usual && inside) && !(to_place(longitude, from->longitude_offset, from->granularity, 180.0, &x) &&
                                       to_place(latitude, from->latitude_offset, from->granularity, 90.0, &y)))
-        return camber_osm_fail(self->failure, "a node that is nowhere on Earth");
+        return false;
+    *place = camber_osm_place(x, y);
+    return true;
+}
+
+/* Gives a node its place, if a line needs it. */
+static bool set_place(decoder *self, int64_t id, uint64_t place) {
+    uint32_t index;
+    uint64_t before = CAMBER_OSM_NOWHERE;
     if (id < 0 || id >= CAMBER_OSM_MOST_ID || !camber_osm_node_set_find(self->nodes, id, &self->finger, &index))
         return true;
-    const uint64_t before =
-        atomic_exchange_explicit(&self->nodes->places[index], camber_osm_place(x, y), memory_order_relaxed);
-    return before == CAMBER_OSM_NOWHERE || camber_osm_decline(self->failure);
+    _Atomic uint64_t *to = &self->nodes->places[index];
+    if (atomic_compare_exchange_strong_explicit(to, &before, place, memory_order_relaxed, memory_order_relaxed)) {
+        self->found_count++;
+        return true;
+    }
+    if (before != place && !self->several)
+        return camber_osm_decline(self->failure);
+    while ((int64_t)before < (int64_t)place &&
+           !atomic_compare_exchange_weak_explicit(to, &before, place, memory_order_relaxed, memory_order_relaxed)) {
+    }
+    return true;
+}
+
+static bool add_node(decoder *self, int64_t id, int64_t longitude, int64_t latitude) {
+    uint64_t place;
+    if (!find_place(self, longitude, latitude, &place))
+        return camber_osm_fail(self->failure, "a node that is nowhere on Earth");
+    return set_place(self, id, place);
 }
 
 static bool read_node(decoder *self, camber_wire wire) {
@@ -99,7 +127,35 @@ static bool read_dense(decoder *self, camber_wire wire) {
            camber_osm_fail(self->failure, "nodes that do not parse");
 }
 
-static bool read_group(decoder *self, camber_wire group, bool ways_allowed) {
+/* Reads the places that stand on a way. Those that are nowhere on Earth are missing, as osmium has it. */
+static bool read_way(decoder *self, camber_wire wire) {
+    camber_wire ids = {0}, longitudes = {0}, latitudes = {0};
+    uint64_t key, place, id = 0, longitude = 0, latitude = 0;
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(WAY_NODES, CAMBER_WIRE_BYTES))
+            ids = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(WAY_LATITUDES, CAMBER_WIRE_BYTES))
+            latitudes = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(WAY_LONGITUDES, CAMBER_WIRE_BYTES))
+            longitudes = camber_wire_bytes(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    while (ids.at < ids.end && longitudes.at < longitudes.end && latitudes.at < latitudes.end) {
+        id += (uint64_t)camber_wire_signed(&ids);
+        latitude += (uint64_t)camber_wire_signed(&latitudes);
+        longitude += (uint64_t)camber_wire_signed(&longitudes);
+        if (ids.bad || latitudes.bad || longitudes.bad)
+            break;
+        if (find_place(self, (int64_t)longitude, (int64_t)latitude, &place) && !set_place(self, (int64_t)id, place))
+            return false;
+    }
+    return !(wire.bad || ids.bad || latitudes.bad || longitudes.bad) ||
+           camber_osm_fail(self->failure, "a way that does not parse");
+}
+
+/* nodes_alone: a way, or a relation if it is wanted, tells that the file is in no order. */
+static bool read_group(decoder *self, camber_wire group, const camber_osm_nodes_desc *desc, bool nodes_alone) {
     uint64_t key;
     bool read = true;
     while (read && camber_wire_next(&group, &key)) {
@@ -107,7 +163,11 @@ static bool read_group(decoder *self, camber_wire group, bool ways_allowed) {
             read = read_dense(self, camber_wire_bytes(&group));
         else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES))
             read = read_node(self, camber_wire_bytes(&group));
-        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) && !ways_allowed)
+        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) && nodes_alone)
+            return camber_osm_decline(self->failure);
+        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) && desc->on_ways)
+            read = read_way(self, camber_wire_bytes(&group));
+        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES) && nodes_alone && desc->relations)
             return camber_osm_decline(self->failure);
         else
             camber_wire_skip(&group, key);
@@ -122,17 +182,28 @@ typedef struct reading {
 
 static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
     const reading *all = user;
-    decoder self = {.nodes = all->nodes, .finger = {.leaf_id = UINT64_MAX, .id = -2}, .failure = failure};
+    const camber_osm_nodes_desc *desc = all->desc;
+    decoder self = {.nodes = all->nodes,
+                    .finger = {.leaf_id = UINT64_MAX, .id = -2},
+                    .failure = failure,
+                    .several = desc->node_blobs == 0 || desc->on_ways};
     camber_osm_entities *entities = &self.entities;
     camber_wire group;
-    if (!camber_osm_file_unpack(all->desc->file, part, pass, &((block *)slot)->unpacked, entities, failure))
+    if (!camber_osm_file_unpack(desc->file, part, pass, &((block *)slot)->unpacked, entities, failure))
         return false;
     self.usual =
         entities->granularity == USUAL_GRANULARITY && entities->longitude_offset == 0 && entities->latitude_offset == 0;
     while (camber_osm_entities_next(entities, &group))
-        if (!read_group(&self, group, part + 1 == all->desc->blob_count))
+        if (!read_group(&self, group, desc, part + 1 < desc->node_blobs))
             return false;
+    ((block *)slot)->found_count = self.found_count;
     return !entities->groups.bad || camber_osm_fail(failure, "a block that does not parse");
+}
+
+static camber_status add_block(void *user, size_t part, void *slot) {
+    (void)part;
+    ((const reading *)user)->nodes->found_count += ((const block *)slot)->found_count;
+    return CAMBER_OK;
 }
 
 camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm_nodes_desc *desc, bool *declined) {
@@ -144,6 +215,7 @@ camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm
                                        .slot_bytes = sizeof(block),
                                        .user = &all,
                                        .work = read_block,
+                                       .commit = add_block,
                                        .free_slot = free_block,
                                        .from = desc->from,
                                        .to = desc->to};

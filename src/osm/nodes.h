@@ -7,7 +7,10 @@
 
 typedef struct camber_osm_nodes_desc {
     const camber_osm_file *file;
-    size_t blob_count; /* those that may have nodes */
+    size_t blob_count; /* those that may have places */
+    size_t node_blobs; /* so many, but for the last, have nodes alone; 0: the file is in no order */
+    bool relations;    /* these are wanted, wherever they are */
+    bool on_ways;      /* ways have places, too */
     unsigned threads;
     double from, to; /* of the progress */
 } camber_osm_nodes_desc;
@@ -21,7 +24,8 @@ typedef struct camber_osm_ends {
 /* of_ways: where ways end is wanted, too; else that is 0. */
 camber_status camber_osm_find_ends(const camber_osm_file *file, bool of_ways, unsigned threads, camber_osm_ends *ends,
                                    bool *declined);
-/* Reads the places of the set's nodes. *declined: a way comes before a node, or a node comes twice. */
+/* Reads the places of the set's nodes. Of a node that has several the easternmost counts, whatever the order.
+ * *declined: nodes do not come first, or one has several places; only a file in order is declined. */
 camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm_nodes_desc *desc, bool *declined);
 
 #endif

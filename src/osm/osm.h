@@ -7,9 +7,8 @@
 /* Whether this reader is to try a file: a PBF of OpenStreetMap, of which the lines are wanted, all of them or those
  * that pass a filter as osm/where.h has it. */
 bool camber_osm_reads(const camber_source_desc *desc);
-/* Reads the file, as camber_features_read does. *declined: the file has what this reader leaves to GDAL (nodes behind
- * ways or twice, negative ids, other packings than DEFLATE, a filter that nothing passes), the set is as before, and
- * nothing is logged. */
+/* Reads the file, as camber_features_read does. *declined: the file has what this reader leaves to GDAL (negative ids,
+ * features that it does not know, a filter that nothing passes), the set is as before, and nothing is logged. */
 camber_status camber_osm_read(camber_features *features, const camber_source_desc *desc, bool *declined);
 
 #endif

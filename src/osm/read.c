@@ -3,9 +3,11 @@
  * Input: a path. Output: what GDAL's layer "lines" gives by the rules of gdal/osmconf.ini: the same lines with the same
  * attributes in the same order, to the last bit. The file is read in two passes, and no blob of it twice but a few: the
  * ways first, which lie at its end, then the places of those nodes that ways name. So a node takes eight bytes and a
- * bit, whatever else the file has. Where areas are wanted, the relations that name ways are read before them. A third
- * pass packs the ways with these places, and frees the nodes; a fourth makes world coordinates. Each pass has several
- * threads. Where areas are wanted, the sea is made of the coast's ways as well (coast.h). */
+ * bit, whatever else the file has. Where areas are wanted, the relations that name ways are read before them. A file in
+ * which a kind of entities comes before another one that it should follow is read anew: each pass looks for its kind in
+ * the whole of it, which takes time and no memory. A third pass packs the ways with these places, and frees the nodes;
+ * a fourth makes world coordinates. Each pass has several threads. Where areas are wanted, the sea is made of the
+ * coast's ways as well (coast.h). */
 #include "osm/osm.h"
 
 #include "osm/coast.h"
@@ -398,23 +400,60 @@ static camber_status make_lines(reader *self) {
 
 /* ---- A file ---- */
 
-static camber_status read_places(reader *self, const camber_osm_file *file, bool *declined) {
+/* Reads relations if they are wanted, ways, and the places of their nodes. *declined: the file is not in order, or not
+ * for this reader. */
+static camber_status read_kinds(reader *self, const camber_osm_file *file, bool any_order, bool *declined) {
     const bool areas = self->features->style->wants_areas && !self->desc->layer;
     camber_osm_ends ends;
-    camber_status status = camber_osm_find_ends(file, areas, self->threads, &ends, declined);
+    camber_status status = CAMBER_OK;
+    if (!any_order)
+        status = camber_osm_find_ends(file, areas, self->threads, &ends, declined);
     if (status != CAMBER_OK || *declined)
         return status;
-    /* The last blob that begins with ways may go on with relations, and the last that begins with nodes with ways. */
-    const camber_osm_ways_desc relations = {file, ends.ways ? ends.ways - 1 : 0, ends.ways, self->threads, 0.0, 0.0};
-    const camber_osm_ways_desc ways = {file,      ends.nodes ? ends.nodes - 1 : 0, ends.ways, self->threads, 0.0,
-                                       WAYS_SHARE};
-    const camber_osm_nodes_desc nodes = {file, ends.nodes, self->threads, WAYS_SHARE, NODES_SHARE};
+    camber_osm_ways_desc relations = {.file = file, .any_order = any_order, .threads = self->threads};
+    camber_osm_ways_desc ways = relations;
+    camber_osm_nodes_desc nodes = {.file = file,
+                                   .blob_count = file->blob_count,
+                                   .relations = areas,
+                                   .threads = self->threads,
+                                   .from = WAYS_SHARE,
+                                   .to = NODES_SHARE};
+    ways.to = WAYS_SHARE;
+    if (!any_order) {
+        /* The last blob that begins with ways may go on with relations, and the last that begins with nodes with ways.
+         */
+        relations.first_blob = ends.ways ? ends.ways - 1 : 0;
+        ways.first_blob = ends.nodes ? ends.nodes - 1 : 0;
+        relations.end_blob = ways.end_blob = ends.ways;
+        nodes.blob_count = nodes.node_blobs = ends.nodes;
+    }
     if (areas)
         status = camber_osm_relations_read(&self->ways, &relations, declined);
     if (status == CAMBER_OK && !*declined)
         status = camber_osm_ways_read(&self->ways, &ways, declined);
+    if (self->ways.has_places) {
+        nodes.on_ways = true;
+        nodes.blob_count = file->blob_count;
+    }
     if (status == CAMBER_OK && !*declined)
         status = camber_osm_nodes_read(&self->ways.nodes, &nodes, declined);
+    return status;
+}
+
+static camber_status read_places(reader *self, const camber_osm_file *file, bool *declined) {
+    const camber_osm_where *where = self->ways.where;
+    camber_status status = read_kinds(self, file, false, declined);
+    if (status != CAMBER_OK || !*declined)
+        return status;
+    camber_osm_ways_free(&self->ways);
+    status = camber_osm_ways_init(&self->ways, self->features, where, declined);
+    if (status == CAMBER_OK && !*declined)
+        status = read_kinds(self, file, true, declined);
+    if (status == CAMBER_OK && !*declined)
+        camber_log(self->context, CAMBER_LOG_INFO,
+                   "%s: nodes, ways and relations are in no order, so all of it was read once for each; osmium sort "
+                   "makes it faster",
+                   file->path);
     return status;
 }
 

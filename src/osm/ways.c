@@ -12,7 +12,7 @@
 
 /* A run is what one thread makes lines of at a time. */
 enum { RUN_NODES = 16384, FIRST_SLOTS = 1024, FIRST_LEAF_SLOTS = 16384 };
-enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, STRING = 1 };
+enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, WAY_LATITUDES = 9, STRING = 1 };
 enum { RELATION_ROLES = 8, RELATION_MEMBERS = 9, RELATION_TYPES = 10, MEMBER_WAY = 1 };
 static const uint32_t NO_STRING = UINT32_MAX, NO_PROPERTY = UINT32_MAX;
 
@@ -117,7 +117,7 @@ typedef struct block {
     camber_wire table;
     size_t string_count, set_count, slot_count, way_count, id_count, leaf_count, leaf_slot_count;
     size_t member_count, relation_count;
-    bool has_ways;
+    bool has_ways, has_places;
 } block;
 
 /* Ids that a block names, as a leaf of the nodes has them: so the file's leaves are looked up once a block. */
@@ -383,16 +383,18 @@ static bool read_way(decoder *self, camber_wire wire) {
     camber_wire keys = {0}, values = {0}, ids = {0};
     uint64_t key, number = 0;
     while (camber_wire_next(&wire, &key)) {
-        if (key == CAMBER_WIRE_KEY(ID, CAMBER_WIRE_VARINT))
+        if (key == CAMBER_WIRE_KEY(ID, CAMBER_WIRE_VARINT)) {
             number = camber_wire_varint(&wire);
-        else if (key == CAMBER_WIRE_KEY(KEYS, CAMBER_WIRE_BYTES))
+        } else if (key == CAMBER_WIRE_KEY(KEYS, CAMBER_WIRE_BYTES)) {
             keys = camber_wire_bytes(&wire);
-        else if (key == CAMBER_WIRE_KEY(VALUES, CAMBER_WIRE_BYTES))
+        } else if (key == CAMBER_WIRE_KEY(VALUES, CAMBER_WIRE_BYTES)) {
             values = camber_wire_bytes(&wire);
-        else if (key == CAMBER_WIRE_KEY(WAY_NODES, CAMBER_WIRE_BYTES))
+        } else if (key == CAMBER_WIRE_KEY(WAY_NODES, CAMBER_WIRE_BYTES)) {
             ids = camber_wire_bytes(&wire);
-        else
+        } else {
+            self->to->has_places |= key == CAMBER_WIRE_KEY(WAY_LATITUDES, CAMBER_WIRE_BYTES);
             camber_wire_skip(&wire, key);
+        }
     }
     if (wire.bad)
         return camber_osm_fail(self->failure, "a way that does not parse");
@@ -415,12 +417,12 @@ static bool read_way(decoder *self, camber_wire wire) {
 }
 
 /* relations_allowed: they were read before, or do not matter. */
-static bool read_group(decoder *self, camber_wire group, bool nodes_allowed, bool relations_allowed) {
+static bool read_group(decoder *self, camber_wire group, bool nodes_allowed, bool relations_allowed, bool any_order) {
     uint64_t key;
     while (camber_wire_next(&group, &key)) {
         const bool node = key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES) ||
                           key == CAMBER_WIRE_KEY(CAMBER_OSM_DENSE, CAMBER_WIRE_BYTES);
-        if (node && (!nodes_allowed || self->to->has_ways))
+        if (node && !any_order && (!nodes_allowed || self->to->has_ways))
             return camber_osm_decline(self->failure);
         if (key == CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES) && !relations_allowed)
             return camber_osm_decline(self->failure);
@@ -451,7 +453,7 @@ static bool begin_block(const reading *all, camber_osm_pass *pass, size_t blob, 
     self->last_leaf_id = UINT64_MAX;
     to->set_count = to->slot_count = to->way_count = to->id_count = to->member_count = to->relation_count = 0;
     to->leaf_count = to->leaf_slot_count = 0;
-    to->has_ways = false;
+    to->has_ways = to->has_places = false;
     return camber_osm_file_unpack(all->desc->file, blob, pass, &to->unpacked, entities, self->failure) &&
            list_strings(self, entities->strings);
 }
@@ -463,11 +465,12 @@ static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slo
     camber_osm_entities entities;
     camber_wire group;
     /* The blob before the first way may have the last nodes, and the one before the first relation relations. */
-    const bool relations = !all->ways->features->style->wants_areas || blob + 1 >= all->desc->end_blob;
+    const bool any_order = all->desc->any_order;
+    const bool relations = any_order || !all->ways->features->style->wants_areas || blob + 1 >= all->desc->end_blob;
     if (!begin_block(all, pass, blob, &self, &entities))
         return false;
     while (camber_osm_entities_next(&entities, &group))
-        if (!read_group(&self, group, part == 0, relations))
+        if (!read_group(&self, group, part == 0, relations, any_order))
             return false;
     return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
@@ -718,6 +721,7 @@ static camber_status add_block(void *user, size_t part, void *slot) {
     const uint32_t *members = (const uint32_t *)(const void *)from->members.bytes;
     size_t member = 0;
     (void)part;
+    ways->has_places = ways->has_places || from->has_places;
     if (from->way_count == 0)
         return CAMBER_OK;
     if (!camber_grow(ways->context, &ways->ways, &ways->way_capacity, ways->way_count + from->way_count,

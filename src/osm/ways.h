@@ -43,6 +43,7 @@ typedef struct camber_osm_ways {
     camber_osm_key *keys;
     size_t key_count;
     bool plain;                     /* the style names no key */
+    bool has_places;                /* ways have places of nodes */
     const camber_osm_where *where;  /* NULL: all ways pass */
     camber_osm_relations relations; /* none unless the style wants areas */
 
@@ -80,6 +81,7 @@ typedef struct camber_osm_ways_desc {
     const camber_osm_file *file;
     size_t first_blob; /* the first that may have a way, or a relation */
     size_t end_blob;   /* of ways: where relations begin, if the file is in order */
+    bool any_order;    /* nodes and relations may come wherever they do */
     unsigned threads;
     double from, to; /* of the progress */
 } camber_osm_ways_desc;

@@ -323,11 +323,6 @@ static void test_ends(void **state) {
 /* Files left to GDAL: it has rules of its own for them, or says why it cannot read them. */
 static void test_declined(void **state) {
     fixture *it = *state;
-    begin(it); /* a node behind a way */
-    WAY(it, street, 10, 11, 30);
-    pbf_end_block(&it->file, &it->block);
-    pbf_dense(&it->block, (const pbf_node[]){{30, 1, 2}}, 1);
-    (void)finish(it, false);
     begin(it); /* a negative id */
     pbf_dense(&it->block, (const pbf_node[]){{-5, 1, 2}, {-4, 1, 3}}, 2);
     pbf_end_block(&it->file, &it->block);
@@ -537,23 +532,6 @@ static void test_old_relations(void **state) {
         GRID_WAY(it, 3, house, 600, 700, 701, 601, 600);
         RELATION(it, bare, {1, "outer"}, {2, "inner"});
         expect_areas(it, " +1.0 +25.0-1.0", 0);
-    }
-    /* Relations that lie before ways where nobody looks for them are GDAL's. */
-    begin_grid(it);
-    GRID_WAY(it, 1, house, 0, 500, 505, 5, 0);
-    RELATION(it, wood, {1, "outer"});
-    pbf_end_block(&it->file, &it->block);
-    GRID_WAY(it, 2, street, 0, 500);
-    pbf_end_block(&it->file, &it->block);
-    write_file(&it->on, "file", it->file.bytes, it->file.size);
-    for (int areas = 0; areas < 2; areas++) {
-        bool declined = false;
-        camber_features *features;
-        it->on.style.wants_areas = areas;
-        assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
-        expect_ok(&it->on, camber_osm_read(features, &(camber_source_desc){.path = it->on.path}, &declined));
-        assert_int_equal(declined, areas);
-        camber_features_destroy(features);
     }
 }
 

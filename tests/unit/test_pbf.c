@@ -164,6 +164,187 @@ static void test_well_packed(void **state) {
     }
 }
 
+/* ---- Orders, and places on ways ---- */
+
+enum { SIDE = 12, CITY_NODES = SIDE * SIDE };
+
+typedef enum city_places {
+    ON_NODES = 0,
+    ON_WAYS, /* and on a few nodes */
+    ON_BOTH,
+    ON_EITHER, /* nodes of every second column have their places; ways have those of the others */
+} city_places;
+
+/* The way in which a file of the city is made. */
+typedef struct city_form {
+    const char *order; /* N, W, R: a block of nodes, ways, relations, which a small letter goes on with */
+    unsigned packing;
+    bool tells_no_size;
+    city_places places;
+    bool singly;     /* nodes one by one */
+    bool has_others; /* blobs of another type between */
+} city_form;
+
+static int64_t city_id(int x, int y) {
+    return 1000 + 7 * (y * SIDE + x);
+}
+
+static pbf_node city_node(int64_t id) {
+    const int64_t n = (id - 1000) / 7;
+    return (pbf_node){id, 76500000 + 10000 * (n % SIDE) + 100 * (n / SIDE), 437300000 + 9000 * (n / SIDE)};
+}
+
+static bool has_own_place(const city_form *form, int64_t id) {
+    const int64_t n = (id - 1000) / 7;
+    return form->places == ON_NODES || form->places == ON_BOTH || (form->places == ON_EITHER && n % SIDE % 2 == 0) ||
+           n % 17 == 0;
+}
+
+static void city_nodes(fixture *it, const city_form *form, int first, int end) {
+    pbf_node nodes[CITY_NODES];
+    size_t count = 0;
+    for (int i = first; i < end; i++) {
+        const int64_t id = city_id(i % SIDE, i / SIDE);
+        if (has_own_place(form, id) && form->singly)
+            pbf_single(&it->block, city_node(id));
+        else if (has_own_place(form, id))
+            nodes[count++] = city_node(id);
+    }
+    if (count)
+        pbf_dense(&it->block, nodes, count);
+}
+
+static void city_way(fixture *it, const city_form *form, int64_t id, const char *const *tags, size_t count,
+                     const int64_t *ids) {
+    pbf_node places[SIDE];
+    for (size_t i = 0; i < count; i++) {
+        places[i] = city_node(ids[i]);
+        if (form->places == ON_EITHER && has_own_place(form, ids[i]))
+            places[i] = (pbf_node){ids[i], INT32_MAX, INT32_MAX}; /* osmium's for a node that it did not find */
+    }
+    pbf_placed_way(&it->block, id, tags, ids, count, form->places == ON_NODES ? NULL : places);
+}
+
+/* A share of the ways: streets along columns and rows, houses; and, in the last, the two halves of a wood with a
+ * clearing. */
+static void city_ways(fixture *it, const city_form *form, int first, int end) {
+    static const char *const street[] = {"highway", "residential", "name", "A", NULL}, *const house[] = {"building",
+                                                                                                         "yes", NULL};
+    for (int i = first; i < end; i++) {
+        int64_t column[SIDE], row[SIDE];
+        for (int k = 0; k < SIDE; k++) {
+            column[k] = city_id(i, k);
+            row[k] = city_id(k, i);
+        }
+        const int64_t corners[] = {city_id(i / 2, 3), city_id(i / 2 + 1, 3), city_id(i / 2 + 1, 4), city_id(i / 2, 4),
+                                   city_id(i / 2, 3)};
+        city_way(it, form, 100 + i, primary, SIDE, column);
+        city_way(it, form, 200 + i, street, SIDE, row);
+        if (i % 2)
+            city_way(it, form, 300 + i, house, 5, corners);
+    }
+    if (end < SIDE)
+        return;
+    city_way(it, form, 400, NULL, 3, (const int64_t[]){city_id(1, 1), city_id(1, 9), city_id(5, 9)});
+    city_way(it, form, 410, NULL, 3, (const int64_t[]){city_id(5, 9), city_id(5, 1), city_id(1, 1)});
+    city_way(it, form, 420, NULL, 4, (const int64_t[]){city_id(2, 2), city_id(3, 2), city_id(3, 7), city_id(2, 2)});
+}
+
+static void city_relations(fixture *it) {
+    static const char *const wood[] = {"type", "multipolygon", "landuse", "forest", NULL}, *const route[] = {
+                                                                                               "type", "route", "name",
+                                                                                               "B", NULL};
+    pbf_relation(&it->block, route, (const pbf_member[]){{100, ""}, {201, ""}}, 2);
+    pbf_relation(&it->block, wood, (const pbf_member[]){{400, "outer"}, {410, "outer"}, {420, "inner"}}, 3);
+}
+
+static int count_letter(const char *text, int letter) {
+    int count = 0;
+    for (; *text; text++)
+        count += (*text | 32) == letter;
+    return count;
+}
+
+static void make_city(fixture *it, const city_form *form) {
+    const pbf_packing packing = {form->packing, form->tells_no_size};
+    const int node_blocks = count_letter(form->order, 'n'), way_blocks = count_letter(form->order, 'w');
+    int nodes = 0, ways = 0;
+    pbf_header_as(&it->file, "DenseNodes", NULL, packing);
+    for (const char *c = form->order; *c; c++) {
+        if ((*c | 32) == 'n') {
+            city_nodes(it, form, CITY_NODES * nodes / node_blocks, CITY_NODES * (nodes + 1) / node_blocks);
+            nodes++;
+        } else if ((*c | 32) == 'w') {
+            city_ways(it, form, SIDE * ways / way_blocks, SIDE * (ways + 1) / way_blocks);
+            ways++;
+        } else {
+            city_relations(it);
+        }
+        if (c[1] >= 'a')
+            continue;
+        pbf_end_block_as(&it->file, &it->block, packing);
+        if (form->has_others)
+            pbf_content_as(&it->file, "OtherData", &(pbf_bytes){.bytes = "others", .size = 6}, packing);
+    }
+    write_file(&it->on, "city.osm.pbf", it->file.bytes, it->file.size);
+}
+
+static void read_plain_city(fixture *it, camber_features **plain) {
+    bool declined;
+    make_city(it, &(city_form){"NWR", PBF_ZLIB});
+    assert_int_equal(camber_features_create(it->on.context, &it->on.style, plain), CAMBER_OK);
+    expect_ok(&it->on, camber_osm_read(*plain, &(camber_source_desc){.path = it->on.path}, &declined));
+    assert_false(declined);
+    assert_int_equal((*plain)->feature_count, 2 * SIDE + SIDE / 2 * 2 + 1);
+}
+
+/* The same city in each form. */
+static void test_forms(void **state) {
+    static const city_form forms[] = {
+        {"NWR", PBF_RAW},
+        {"Nwr", PBF_ZLIB},
+        {"NNWWR", PBF_ZLIB, true},
+        {"NWR", PBF_LZ4},
+        {"NWR", PBF_LZ4, true, .singly = true},
+        {"NWR", PBF_ZSTD, true, .has_others = true},
+        {"NWR", PBF_LZMA},
+        {"WRN", PBF_ZLIB}, /* Overpass's */
+        {"WNR", PBF_ZLIB},
+        {"RWN", PBF_ZLIB},
+        {"RNW", PBF_ZLIB},
+        {"NRW", PBF_ZLIB},
+        {"Wrn", PBF_ZLIB},
+        {"Wnrnw", PBF_LZ4},
+        {"NWNRW", PBF_ZLIB}, /* osmium cat of two files */
+        {"RNNWWN", PBF_ZLIB, .has_others = true},
+        {"NWR", PBF_ZLIB, .places = ON_WAYS}, /* osmium add-locations-to-ways */
+        {"NWWR", PBF_ZLIB, .places = ON_BOTH},
+        {"NNWWR", PBF_ZSTD, .places = ON_EITHER},
+        {"WWR", PBF_ZLIB, .places = ON_WAYS},
+        {"RWNW", PBF_LZ4, .places = ON_WAYS, .singly = true},
+        {"NRWNW", PBF_ZLIB, .places = ON_EITHER},
+    };
+    static const uint32_t threads[] = {1, 2, 5};
+    fixture *it = *state;
+    uint8_t bytes[100];
+    camber_features *plain;
+    read_plain_city(it, &plain);
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        if (forms[i].packing != PBF_RAW && !pbf_pack(forms[i].packing, bytes, 1, bytes + 1, 99))
+            continue;
+        make_city(it, &forms[i]);
+        for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
+            bool declined;
+            expect_ok(&it->on, read_written(it, threads[k], &declined));
+            if (declined || it->on.features->point_count != plain->point_count)
+                fail_msg("%s, packing %u, places %d: %zu points, not %zu", forms[i].order, forms[i].packing,
+                         (int)forms[i].places, it->on.features->point_count, plain->point_count);
+            expect_same(it->on.features, plain);
+        }
+    }
+    camber_features_destroy(plain);
+}
+
 static void test_history(void **state) {
     fixture *it = *state;
     pbf_header(&it->file, "HistoricalInformation");
@@ -177,6 +358,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_packings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_damaged_packings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_well_packed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_forms, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_history, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

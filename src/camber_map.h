@@ -159,6 +159,10 @@ typedef struct camber_features_stats {
     size_t spiked_rings;   /* have an edge that goes back the way the one before it came */
     size_t outside_holes;  /* begin outside of their area, and are filled there. Of an area with more than 200 holes
                               some are not counted */
+    /* The next are of OpenStreetMap's PBF. What is missing is left out of what names it. */
+    size_t missing_nodes;     /* that lines name, and the file does not have */
+    size_t missing_ways;      /* that multipolygons name, and that it does not have, or none of their nodes */
+    size_t dropped_relations; /* multipolygons of which no ring is left */
 } camber_features_stats;
 
 /* Sums over the files. */

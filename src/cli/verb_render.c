@@ -86,6 +86,9 @@ static int print_json(const job *j) {
         {"crossing_rings", read.crossing_rings},
         {"spiked_rings", read.spiked_rings},
         {"outside_holes", read.outside_holes},
+        {"missing_nodes", read.missing_nodes},
+        {"missing_ways", read.missing_ways},
+        {"dropped_relations", read.dropped_relations},
         {"points", lines.kept_points},
         {"segments", lines.kept_segments},
         {"joins", mesh.joins},
@@ -139,7 +142,8 @@ static void print_rings(const job *j) {
                {read.crossing_rings, "self-crossing ring", "kept"},
                {read.spiked_rings, "ring", "with a spike"},
                {read.outside_holes, "hole", "filled outside of areas"},
-               {read.open_relations, "multipolygon", "lacking ways"}};
+               {read.open_relations, "multipolygon", "lacking ways"},
+               {read.dropped_relations, "multipolygon", "left out"}};
     char text[512] = "";
     size_t length = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -148,6 +152,20 @@ static void print_rings(const job *j) {
                                        all[i].count, all[i].noun, camber_plural(all[i].count), all[i].what);
     if (length > 0)
         camber_report_say(j->session->report, "areas: %s", text);
+}
+
+/* Prints how much INPUT names without having it. */
+static void print_missing(const job *j) {
+    const camber_features_stats read = camber_features_get_stats(j->input.features);
+    char ways[64] = "";
+    if (read.missing_ways > 0)
+        snprintf(ways, sizeof ways, "%s%zu way%s of multipolygons", read.missing_nodes > 0 ? ", " : "",
+                 read.missing_ways, camber_plural(read.missing_ways));
+    if (read.missing_nodes > 0)
+        camber_report_say(j->session->report, "missing: %zu node%s of ways%s", read.missing_nodes,
+                          camber_plural(read.missing_nodes), ways);
+    else if (ways[0])
+        camber_report_say(j->session->report, "missing: %s", ways);
 }
 
 static void print_text(const job *j) {
@@ -159,6 +177,7 @@ static void print_text(const job *j) {
                       scene.width, scene.height, scene.zoom, scene.longitude, scene.latitude);
     print_counts(j, &scene);
     print_rings(j);
+    print_missing(j);
     camber_report_say(report,
                       "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
                       "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",

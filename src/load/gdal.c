@@ -84,7 +84,9 @@ camber_status camber_features_read(camber_features *features, const camber_sourc
         return status;
     if (!camber_osm_reads(desc) && !camber_source_needs_gdal(desc))
         return camber_features_read_tile_file(features, desc);
-    status = camber_gdal_load(features->context);
+    status = camber_osm_check_for_gdal(features->context, desc);
+    if (status == CAMBER_OK)
+        status = camber_gdal_load(features->context);
     const camber_gdal_calls *calls = features->context->gdal;
     return status == CAMBER_OK ? calls->read(features, desc) : status;
 }

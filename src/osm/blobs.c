@@ -6,7 +6,6 @@
 #include "osm/blobs.h"
 
 #include "base/open_file.h"
-#include "osm/codec.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -90,7 +89,7 @@ bool camber_osm_knows(const char *path) {
 /* ---- Unpacking ---- */
 
 /* Finds a block in a blob, and unpacks it where it is packed. */
-static bool unpack(camber_osm_pass *pass, camber_wire blob, camber_osm_block *plain, camber_wire *block,
+static bool unpack(camber_osm_pass *pass, camber_wire blob, camber_osm_unpacked *unpacked, camber_wire *block,
                    camber_osm_failure *failure) {
     camber_osm_codec codec = CAMBER_OSM_CODEC_NONE;
     camber_wire bytes = {0};
@@ -107,8 +106,10 @@ static bool unpack(camber_osm_pass *pass, camber_wire blob, camber_osm_block *pl
     }
     if (blob.bad)
         return camber_osm_fail(failure, "a blob that does not parse");
+    unpacked->codec = codec;
+    unpacked->tells_size = size > 0;
     if (codec != CAMBER_OSM_CODEC_RAW)
-        return camber_osm_codec_unpack(codec, pass, &bytes, size, plain, block, failure);
+        return camber_osm_codec_unpack(codec, pass, &bytes, size, &unpacked->plain, block, failure);
     *block = bytes;
     return true;
 }
@@ -132,7 +133,7 @@ static bool unpack_at(const camber_osm_file *file, const camber_osm_blob *at, ca
     }
     if ((size_t)got < at->size_bytes)
         return camber_osm_fail(failure, "it ends within a blob");
-    return unpack(pass, (camber_wire){bytes, bytes + at->size_bytes, false}, &unpacked->plain, block, failure);
+    return unpack(pass, (camber_wire){bytes, bytes + at->size_bytes, false}, unpacked, block, failure);
 }
 
 /* ---- Blocks ---- */

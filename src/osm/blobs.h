@@ -2,8 +2,7 @@
 #ifndef CAMBER_OSM_BLOBS_H
 #define CAMBER_OSM_BLOBS_H
 
-#include "osm/pass.h"
-#include "osm/wire.h"
+#include "osm/codec.h"
 
 typedef struct camber_osm_blob {
     uint64_t offset;
@@ -35,6 +34,8 @@ void camber_osm_file_close(camber_osm_file *file);
 /* A blob as it is in the file, and unpacked. */
 typedef struct camber_osm_unpacked {
     camber_osm_block packed, plain;
+    camber_osm_codec codec;
+    bool tells_size; /* how large it is unpacked */
 } camber_osm_unpacked;
 
 void camber_osm_unpacked_free(camber_context *context, camber_osm_unpacked *unpacked);

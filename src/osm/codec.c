@@ -115,10 +115,9 @@ static outcome unpack_lzma(job *self) {
     const bool full = stream.avail_out == 0 && (result == LZMA_OK || result == LZMA_BUF_ERROR);
     self->size = self->room - stream.avail_out;
     lzma_end(&stream);
-    return result == LZMA_STREAM_END                                   ? DONE
-           : result == LZMA_MEM_ERROR || result == LZMA_MEMLIMIT_ERROR ? NO_MEMORY
-           : full                                                      ? FULL
-                                                                       : BROKEN;
+    if (result == LZMA_STREAM_END || result == LZMA_MEM_ERROR)
+        return result == LZMA_STREAM_END ? DONE : NO_MEMORY;
+    return full ? FULL : BROKEN; /* or it wants a larger dictionary */
 }
 #endif
 
@@ -146,6 +145,13 @@ static const codec_facts codecs[] = {
     {CAMBER_OSM_CODEC_LZMA, "lzma", "liblzma", NULL},
 #endif
 };
+
+const char *camber_osm_codec_get_name(camber_osm_codec codec) {
+    for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++)
+        if (codecs[i].codec == codec)
+            return codecs[i].name;
+    return "";
+}
 
 /* ---- Blobs ---- */
 

@@ -16,6 +16,9 @@ typedef enum camber_osm_codec {
     CAMBER_OSM_CODEC_ZSTD = 7,
 } camber_osm_codec;
 
+/* "lz4"; "" for one that no blob is packed by. */
+const char *camber_osm_codec_get_name(camber_osm_codec codec);
+
 /* Unpacks at most most_bytes into the block. size_bytes: how many they are, as the blob says; 0: it does not.
  * *plain: the result. Fails on bytes that are damaged, and on a codec that the build lacks. */
 bool camber_osm_codec_unpack(camber_osm_codec codec, camber_osm_pass *pass, const camber_wire *packed,

@@ -10,6 +10,7 @@
  * coast's ways as well (coast.h). */
 #include "osm/osm.h"
 
+#include "osm/beyond.h"
 #include "osm/coast.h"
 #include "osm/nodes.h"
 #include "osm/packed.h"
@@ -39,6 +40,7 @@ typedef struct reader {
     uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
     size_t met;                               /* of the relations' ways, so many of those met were added */
     size_t skipped, clamped, splits;
+    size_t nodes, missing; /* that ways name; and that the file does not have */
     unsigned threads;
 } reader;
 
@@ -306,7 +308,10 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
     self->features->stats.open_relations += status == CAMBER_OK && area->assembly.open;
     if (status == CAMBER_OK && area->assembly.ring_count)
         status = find_class(self, set - 1, CAMBER_GEOMETRY_AREA, &area->class_index);
-    return status == CAMBER_OK ? add_rings(self, area) : status;
+    if (status == CAMBER_OK)
+        status = add_rings(self, area);
+    self->features->stats.dropped_relations += status == CAMBER_OK && !area->added;
+    return status;
 }
 
 /* The class of the sea: water, as ponds are. */
@@ -352,9 +357,11 @@ static camber_status make_areas(reader *self) {
     ways->packed_count = ways->packed_capacity = 0;
     if (ways->set_count)
         memset(self->classes[CAMBER_GEOMETRY_AREA], 0, ways->set_count * sizeof **self->classes);
-    camber_status status = camber_features_find_layer(self->features, RELATION_LAYER, &self->layer);
+    camber_features *features = self->features;
+    camber_status status = camber_features_find_layer(features, RELATION_LAYER, &self->layer);
     for (size_t i = 0; i < ways->relations.count && status == CAMBER_OK; i++)
         status = add_relation(self, i, &area);
+    features->stats.missing_ways += camber_osm_relations_count_missing(&ways->relations);
     if (self->coast.way_count && status == CAMBER_OK)
         status = make_sea(self, &area);
     self->clamped += area.lines.clamped_points;
@@ -437,6 +444,8 @@ static camber_status read_kinds(reader *self, const camber_osm_file *file, bool 
     }
     if (status == CAMBER_OK && !*declined)
         status = camber_osm_nodes_read(&self->ways.nodes, &nodes, declined);
+    self->nodes = self->ways.nodes.node_count;
+    self->missing = self->nodes - self->ways.nodes.found_count;
     return status;
 }
 
@@ -458,7 +467,14 @@ static camber_status read_places(reader *self, const camber_osm_file *file, bool
 }
 
 static camber_status check_result(const reader *self, size_t features_before) {
-    if (self->features->feature_count > features_before || self->skipped == 0)
+    if (self->features->feature_count > features_before)
+        return CAMBER_OK;
+    if (self->nodes > 0 && self->missing == self->nodes)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                           "%s: none of the %zu nodes that its ways name is in it; cut it anew with them, as osmium "
+                           "extract and osmium getid -r do",
+                           self->desc->path, self->nodes);
+    if (self->skipped == 0)
         return CAMBER_OK;
     return camber_fail(self->context, CAMBER_ERROR_INPUT,
                        "%s: no lines: %zu features have other geometry (points, areas, nothing); name another --layer, "
@@ -482,6 +498,18 @@ static camber_status want_sea(reader *self, camber_osm_box box) {
     return camber_features_intern(self->features, "coastline", &self->coastline);
 }
 
+/* GDAL's reader finds out why nothing passes a filter, if it can read the file. */
+static camber_status explain_filter(const reader *self, const camber_osm_file *file, bool *declined) {
+    camber_osm_beyond beyond;
+    const camber_status status = camber_osm_find_beyond(file, self->threads, &beyond);
+    *declined = status == CAMBER_OK && !camber_osm_is_beyond(&beyond);
+    if (status == CAMBER_OK && !*declined)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\"; check its keys and the values that it compares with",
+                   self->desc->path, self->desc->where);
+    return status;
+}
+
 static camber_status read_lines(reader *self, bool *declined) {
     camber_osm_file file;
     const size_t features_before = self->features->feature_count;
@@ -498,8 +526,8 @@ static camber_status read_lines(reader *self, bool *declined) {
         status = make_lines(self);
     if (status == CAMBER_OK && !*declined)
         status = check_result(self, features_before);
-    /* GDAL's reader finds out why nothing passes a filter. */
-    *declined = *declined || (filters && status == CAMBER_OK && self->features->feature_count == features_before);
+    if (filters && status == CAMBER_OK && !*declined && self->features->feature_count == features_before)
+        status = explain_filter(self, &file, declined);
     camber_osm_coast_free(&self->coast);
     camber_osm_ways_free(&self->ways);
     camber_osm_file_close(&file);
@@ -514,12 +542,16 @@ static void add_stats(const reader *self) {
     features->stats.polylines = features->polyline_count;
     features->stats.points = features->point_count;
     features->stats.skipped_features += self->skipped;
+    features->stats.missing_nodes += self->missing;
     features->stats.clamped_points += self->clamped;
     features->stats.antimeridian_splits += self->splits;
     if (self->skipped)
         camber_log(self->context, CAMBER_LOG_INFO,
                    "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
                    self->skipped);
+    if (self->missing)
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: ways name %zu nodes that are not in it", self->desc->path,
+                   self->missing);
     if (self->clamped)
         camber_log(self->context, CAMBER_LOG_WARNING, "%s: %zu points beyond latitude 85.051129 are moved there",
                    self->desc->path, self->clamped);
@@ -545,4 +577,32 @@ camber_status camber_osm_read(camber_features *features, const camber_source_des
     camber_rings_report(features, desc->path, before.polyline_count, &before.stats);
     camber_progress(self.context, "reading", 1);
     return CAMBER_OK;
+}
+
+camber_status camber_osm_check_for_gdal(camber_context *context, const camber_source_desc *desc) {
+    camber_osm_file file;
+    camber_osm_beyond beyond;
+    bool declined = false;
+    if (!camber_osm_knows(desc->path))
+        return CAMBER_OK;
+    camber_status status = camber_osm_file_open(context, desc->path, &file, &declined);
+    if (status != CAMBER_OK || declined)
+        return status;
+    status = camber_osm_find_beyond(&file, count_threads(desc), &beyond);
+    camber_osm_file_close(&file);
+    if (status != CAMBER_OK || !camber_osm_is_beyond(&beyond))
+        return status;
+    char packing[32];
+    snprintf(packing, sizeof packing, "packing by %s", camber_osm_codec_get_name(beyond.codec));
+    return camber_fail(context, CAMBER_ERROR_INPUT,
+                       "%s: GDAL has to read this layer, filter or style of it, and GDAL does not know %s; %s",
+                       desc->path,
+                       beyond.codec       ? packing
+                       : beyond.no_size   ? "blobs without their size"
+                       : beyond.unordered ? "any other order than nodes, ways, relations"
+                                          : "places on ways",
+                       beyond.codec || beyond.no_size ? "pack it anew by osmium cat -f pbf,pbf_compression=zlib"
+                       : beyond.unordered             ? "sort it by osmium sort"
+                                                      : "do without, or use the file that osmium "
+                                                        "add-locations-to-ways was given");
 }

@@ -68,6 +68,13 @@ camber_status camber_osm_relations_add_places(camber_osm_relations *relations, s
     return CAMBER_OK;
 }
 
+size_t camber_osm_relations_count_missing(const camber_osm_relations *relations) {
+    size_t count = 0;
+    for (size_t i = 0; relations->ways && i < relations->ids.node_count; i++)
+        count += relations->ways[i].place_count == 0;
+    return count;
+}
+
 /* Lists the pieces of a relation that the file has. *lacks becomes true where it lacks some. */
 static size_t list_pieces(const camber_osm_relations *relations, size_t relation, camber_osm_piece *pieces,
                           bool *lacks) {

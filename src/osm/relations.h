@@ -52,6 +52,8 @@ bool camber_osm_relations_find(const camber_osm_relations *relations, int64_t wa
 /* Keeps the places of the next way that was met. */
 camber_status camber_osm_relations_add_places(camber_osm_relations *relations, size_t met, const uint64_t *places,
                                               uint32_t count);
+/* Counts the ways that relations name and the file does not have, or none of their nodes. */
+size_t camber_osm_relations_count_missing(const camber_osm_relations *relations);
 /* Puts the rings of a relation together; it may have none. assembly->open: the file lacks some of it. */
 camber_status camber_osm_relations_assemble(const camber_osm_relations *relations, size_t relation,
                                             camber_osm_assembly *assembly);

@@ -1,5 +1,5 @@
-/* A PBF file of OpenStreetMap: a whole one, or the content of a blob, which needs no packing to be reached. The same
- * bytes are also a coast:
+/* A PBF file of OpenStreetMap: a whole one; or the content of a blob, which needs no packing to be reached; or, behind
+ * a byte that no content begins with, that of a packed one. The same bytes are also a coast:
  *
  *     box: i16 left, right, bottom, top; ways: u8 places, % 16; places: i16 longitude, i16 latitude
  */
@@ -21,13 +21,30 @@ static const char style_text[] =
 /* 10^-9 degrees */
 static const int64_t box[4] = {-1000000000, 2000000000, 3000000000, -4000000000};
 
+/* Bytes that tell how the others are packed, the fields of a blob that have them, and the size that it says. */
+static const struct {
+    uint8_t first;
+    unsigned field;
+    uint64_t size_bytes;
+} packings[] = {{0xf3, PBF_ZLIB, 0}, {0xf4, PBF_LZMA, 0},   {0xf6, PBF_LZ4, 0},
+                {0xf7, PBF_ZSTD, 0}, {0xfe, PBF_LZ4, 1000}, {0xff, PBF_ZSTD, 1000}};
+
 static void write_file(const char *path, const uint8_t *bytes, size_t size, bool content) {
     static pbf_file made;
     if (content) {
-        pbf_bytes block = {.size = 0};
+        pbf_bytes blob = {.size = 0};
+        unsigned field = PBF_RAW;
+        uint64_t size_bytes = 0;
+        for (size_t i = 0; i < sizeof packings / sizeof *packings; i++)
+            if (bytes[0] == packings[i].first) {
+                field = packings[i].field;
+                size_bytes = packings[i].size_bytes;
+            }
+        if (size_bytes)
+            pbf_number(&blob, 2, size_bytes);
         pbf_header_of(&made, "DenseNodes", box);
-        pbf_put(&block, bytes, size);
-        pbf_content(&made, "OSMData", &block, 0);
+        pbf_field(&blob, field, bytes + (field != PBF_RAW), size - (field != PBF_RAW));
+        pbf_blob(&made, "OSMData", &blob);
         bytes = made.bytes;
         size = made.size;
     }
@@ -95,6 +112,8 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         const camber_features_stats stats = camber_features_get_stats(features);
         REQUIRE((read && !declined) || stats.points == 0);
         REQUIRE(stats.points >= stats.polylines);
+        if (declined || run->hash & 2)
+            (void)fuzz_done(run, camber_osm_check_for_gdal(run->context, &desc));
         fuzz_check_areas(features);
     }
     camber_features_destroy(features);

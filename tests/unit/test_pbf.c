@@ -345,6 +345,75 @@ static void test_forms(void **state) {
     camber_features_destroy(plain);
 }
 
+/* Nodes and ways that a file names without having them are left out and counted; one without any node is refused. */
+static void test_missing(void **state) {
+    static const char *const wood[] = {"type", "multipolygon", "landuse", "forest", NULL};
+    fixture *it = *state;
+    bool declined;
+    for (int some = 0; some < 2; some++) {
+        pbf_header(&it->file, "DenseNodes");
+        if (some)
+            pbf_dense(&it->block, (const pbf_node[]){{1, 10, 20}, {2, 100010, 20}, {3, 100010, 100020}}, 3);
+        pbf_way(&it->block, 1, primary, (const int64_t[]){7, 1, 2, 3, 8}, 5);
+        pbf_way(&it->block, 2, primary, (const int64_t[]){8, 9}, 2);
+        pbf_way(&it->block, 3, NULL, (const int64_t[]){1, 2, 3, 1}, 4);
+        pbf_relation(&it->block, wood, (const pbf_member[]){{3, "outer"}, {4, "outer"}}, 2);
+        pbf_relation(&it->block, wood, (const pbf_member[]){{5, "outer"}}, 1);
+        pbf_end_block(&it->file, &it->block);
+        if (!some) {
+            expect_refused(it, "none of the 6 nodes that its ways name");
+            continue;
+        }
+        write_road(it);
+        expect_ok(&it->on, read_written(it, 2, &declined));
+        const camber_features_stats stats = camber_features_get_stats(it->on.features);
+        assert_int_equal(stats.missing_nodes, 3);
+        assert_int_equal(stats.missing_ways, 2);
+        assert_int_equal(stats.open_relations, 2);
+        assert_int_equal(stats.dropped_relations, 1);
+        assert_int_equal(stats.features, 2);
+    }
+}
+
+/* GDAL reads other layers, and filters that this reader does not know: of a file that it knows. */
+static void test_left_to_gdal(void **state) {
+    static const struct {
+        city_form form;
+        const char *words; /* NULL: it is read */
+    } all[] = {
+        {{"NWR", PBF_ZLIB}, NULL},
+        {{"NWR", PBF_RAW}, NULL},
+        {{"NWR", PBF_LZ4}, "packing by lz4; pack it anew by osmium cat"},
+        {{"NWR", PBF_ZLIB, true}, "blobs without their size"},
+        {{"NNWWR", PBF_ZLIB, .places = ON_WAYS}, "places on ways"},
+        {{"WRN", PBF_ZLIB}, "osmium sort"},
+        {{"Wnr", PBF_ZLIB}, "osmium sort"},
+    };
+    static const char *const wheres[] = {"highway LIKE 'prim%'", "highway = 'path'"};
+    fixture *it = *state;
+    uint8_t bytes[100];
+    for (size_t i = 0; i < 3 * (sizeof all / sizeof *all); i++) {
+        const char *words = all[i / 3].words;
+        if (all[i / 3].form.packing != PBF_RAW && !pbf_pack(all[i / 3].form.packing, bytes, 1, bytes + 1, 99))
+            continue;
+        make_city(it, &all[i / 3].form);
+        start_again(&it->on);
+        const camber_source_desc desc = {.path = it->on.path,
+                                         .layer = i % 3 == 0 ? "multipolygons" : NULL,
+                                         .where = i % 3 ? wheres[i % 3 - 1] : NULL};
+        const camber_status status = camber_features_read(it->on.features, &desc);
+        if (!words || i % 3 == 2) {
+            expect_ok(&it->on, status);
+            assert_int_equal(it->on.warnings, i % 3 == 2); /* nothing passes, whoever reads it */
+            assert_int_equal(it->on.features->feature_count > 0, i % 3 != 2);
+            continue;
+        }
+        assert_int_equal(status, CAMBER_ERROR_INPUT);
+        if (!strstr(it->on.error, words))
+            fail_msg("\"%s\" is not in \"%s\"", words, it->on.error);
+    }
+}
+
 static void test_history(void **state) {
     fixture *it = *state;
     pbf_header(&it->file, "HistoricalInformation");
@@ -359,6 +428,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_damaged_packings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_well_packed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_forms, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_missing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_left_to_gdal, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_history, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

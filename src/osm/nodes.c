@@ -163,12 +163,11 @@ static bool read_group(decoder *self, camber_wire group, const camber_osm_nodes_
             read = read_dense(self, camber_wire_bytes(&group));
         else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES))
             read = read_node(self, camber_wire_bytes(&group));
-        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) && nodes_alone)
+        else if (nodes_alone && (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) ||
+                                 (key == CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES) && desc->relations)))
             return camber_osm_decline(self->failure);
         else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) && desc->on_ways)
             read = read_way(self, camber_wire_bytes(&group));
-        else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES) && nodes_alone && desc->relations)
-            return camber_osm_decline(self->failure);
         else
             camber_wire_skip(&group, key);
     }

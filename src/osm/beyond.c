@@ -6,10 +6,9 @@
 
 enum { WAY_LATITUDES = 9 };
 
-/* A blob's kinds of entities: nodes are 0, ways 1, relations 2. */
 typedef struct block {
     camber_osm_unpacked unpacked;
-    unsigned first, last;
+    unsigned first, last; /* kinds of entities, which grow as they should come */
     bool has_any;
     camber_osm_beyond beyond;
 } block;
@@ -31,21 +30,17 @@ static bool has_places(camber_wire way) {
 static void look_at_group(block *to, camber_wire group) {
     uint64_t key;
     while (camber_wire_next(&group, &key)) {
-        const bool known = key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES) ||
-                           key == CAMBER_WIRE_KEY(CAMBER_OSM_DENSE, CAMBER_WIRE_BYTES) ||
-                           key == CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES) ||
-                           key == CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES);
-        if (!known) {
+        const unsigned kind = camber_osm_kind_of(key);
+        if (!kind) {
             camber_wire_skip(&group, key);
             continue;
         }
         const camber_wire entity = camber_wire_bytes(&group);
-        const unsigned field = (unsigned)(key >> 3), kind = field < CAMBER_OSM_WAY ? 0 : field - CAMBER_OSM_DENSE;
         to->first = to->has_any ? to->first : kind;
         to->beyond.unordered = to->beyond.unordered || (to->has_any && kind < to->last);
         to->last = kind;
         to->has_any = true;
-        if (field == CAMBER_OSM_WAY && !to->beyond.on_ways)
+        if (kind == CAMBER_OSM_HAS_WAYS && !to->beyond.on_ways)
             to->beyond.on_ways = has_places(entity);
     }
 }

@@ -162,6 +162,16 @@ bool camber_osm_file_unpack(const camber_osm_file *file, size_t blob, camber_osm
     return true;
 }
 
+unsigned camber_osm_kind_of(uint64_t key) {
+    switch (key) {
+    case CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES):
+    case CAMBER_WIRE_KEY(CAMBER_OSM_DENSE, CAMBER_WIRE_BYTES): return CAMBER_OSM_HAS_NODES;
+    case CAMBER_WIRE_KEY(CAMBER_OSM_WAY, CAMBER_WIRE_BYTES): return CAMBER_OSM_HAS_WAYS;
+    case CAMBER_WIRE_KEY(CAMBER_OSM_RELATION, CAMBER_WIRE_BYTES): return CAMBER_OSM_HAS_RELATIONS;
+    default: return 0;
+    }
+}
+
 bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group) {
     uint64_t key;
     while (camber_wire_next(&entities->groups, &key)) {
@@ -241,7 +251,7 @@ static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *
         return camber_osm_fail(failure, "a blob's header that is none");
     if (blob_bytes > MOST_BLOB_BYTES)
         return camber_osm_fail(failure, "a blob of more than 32 MiB");
-    const camber_osm_blob blob = {list->at + 4 + size, (uint32_t)blob_bytes};
+    const camber_osm_blob blob = {.offset = list->at + 4 + size, .size_bytes = (uint32_t)blob_bytes};
     if (blob.offset + blob_bytes > file->size_bytes)
         return camber_osm_fail(failure, "it ends within a blob");
     list->at = blob.offset + blob_bytes;

@@ -4,9 +4,19 @@
 
 #include "osm/codec.h"
 
+/* The kinds of entities that a blob has, once it was looked at. */
+enum {
+    CAMBER_OSM_HAS_NODES = 1,
+    CAMBER_OSM_HAS_WAYS = 2,
+    CAMBER_OSM_HAS_RELATIONS = 4,
+    CAMBER_OSM_LOOKED_AT = 8,
+};
+
 typedef struct camber_osm_blob {
     uint64_t offset;
     uint32_t size_bytes;
+    uint8_t kinds; /* bits; 0: nobody has looked */
+    uint8_t first; /* the bit of the first entity; 0: there is none */
 } camber_osm_blob;
 
 /* 10^-7 degrees. left is not below right: there is none. */
@@ -51,6 +61,8 @@ typedef struct camber_osm_entities {
 /* Reads and unpacks a blob. The entities lie in what is unpacked. */
 bool camber_osm_file_unpack(const camber_osm_file *file, size_t blob, camber_osm_pass *pass,
                             camber_osm_unpacked *unpacked, camber_osm_entities *entities, camber_osm_failure *failure);
+/* The bit of a kind of entities, by its key in a group; 0: it is none. */
+unsigned camber_osm_kind_of(uint64_t key);
 /* The next group of entities. false: there is none, or the block is bad (groups.bad). */
 bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group);
 

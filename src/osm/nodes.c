@@ -224,53 +224,74 @@ camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm
 /* ---- Where nodes and ways end ---- */
 
 typedef struct search {
-    const camber_osm_file *file;
+    camber_osm_file *file;
     camber_osm_ends *ends;
+    bool of_ways;
 } search;
 
-/* Whether the first entity of a blob is of one of the kinds. A blob without any is. */
-static bool begins_with_kind(const search *self, size_t blob, uint64_t last_kind, camber_osm_pass *pass, block *one,
-                             bool *begins, camber_osm_failure *failure) {
+/* Notes which kinds of entities a blob has. So passes need not unpack it again for those that it does not have. */
+static bool look_at_blob(const search *self, size_t blob, camber_osm_pass *pass, block *one,
+                         camber_osm_failure *failure) {
+    camber_osm_blob *to = &self->file->blobs[blob];
     camber_osm_entities entities;
     camber_wire group;
-    uint64_t key = CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES);
+    uint64_t key;
+    unsigned kinds = CAMBER_OSM_LOOKED_AT, first = 0;
     if (!camber_osm_file_unpack(self->file, blob, pass, &one->unpacked, &entities, failure))
         return false;
-    if (camber_osm_entities_next(&entities, &group))
-        (void)camber_wire_next(&group, &key);
-    *begins = key >> 3 >= CAMBER_OSM_NODE && key >> 3 <= last_kind;
-    return true;
+    while (camber_osm_entities_next(&entities, &group)) {
+        while (camber_wire_next(&group, &key)) {
+            const unsigned kind = camber_osm_kind_of(key);
+            first = first ? first : kind;
+            kinds |= kind;
+            camber_wire_skip(&group, key);
+        }
+        if (group.bad)
+            return camber_osm_fail(failure, "a group that does not parse");
+    }
+    to->kinds = (uint8_t)kinds;
+    to->first = (uint8_t)first;
+    return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
 
-/* Looks about a guess in steps that grow, until the end lies between two of them; then it halves what is left. */
-static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
-    const search *self = user;
-    const uint64_t last_kind = part ? CAMBER_OSM_WAY : CAMBER_OSM_DENSE;
-    size_t first = 0, end = self->file->blob_count;
-    /* Most files have nodes in six blobs of seven, and relations in the last few. */
-    size_t at = part ? end - 1 : end / 7 * 6 + end % 7 * 6 / 7, step = 1;
+/* Finds the first blob that begins with a later kind than these. It looks about a guess in steps that grow, until the
+ * end lies between two of them; then it halves what is left. A blob without entities begins with any kind. */
+static bool find_end(const search *self, unsigned last_kind, size_t at, size_t *first, camber_osm_pass *pass,
+                     block *one, camber_osm_failure *failure) {
+    size_t end = self->file->blob_count, step = 1;
     bool begins, before = false, turned = false;
-    for (bool looked = false; first < end; looked = true) {
-        if (!begins_with_kind(self, at, last_kind, pass, slot, &begins, failure))
+    *first = 0;
+    for (bool looked = false; *first < end; looked = true) {
+        if (!self->file->blobs[at].kinds && !look_at_blob(self, at, pass, one, failure))
             return false;
+        begins = self->file->blobs[at].first <= last_kind;
         turned = turned || (looked && begins != before);
         before = begins;
-        *(begins ? &first : &end) = at + begins;
-        turned = turned || step >= end - first;
-        at = turned ? first + (end - first) / 2 : begins ? first + step - 1 : end - step;
+        *(begins ? first : &end) = at + begins;
+        turned = turned || step >= end - *first;
+        at = turned ? *first + (end - *first) / 2 : begins ? *first + step - 1 : end - step;
         step *= 2;
     }
-    *(part ? &self->ends->ways : &self->ends->nodes) = first;
     return true;
 }
 
-camber_status camber_osm_find_ends(const camber_osm_file *file, bool of_ways, unsigned threads, camber_osm_ends *ends,
-                                   bool *declined) {
-    search self = {.file = file, .ends = ends};
+static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
+    const search *self = user;
+    const size_t count = self->file->blob_count;
+    (void)part;
+    /* Most files have nodes in six blobs of seven, and relations in the last few. */
+    return find_end(self, CAMBER_OSM_HAS_NODES, count / 7 * 6 + count % 7 * 6 / 7, &self->ends->nodes, pass, slot,
+                    failure) &&
+           (!self->of_ways || count == 0 ||
+            find_end(self, CAMBER_OSM_HAS_WAYS, count - 1, &self->ends->ways, pass, slot, failure));
+}
+
+camber_status camber_osm_find_ends(camber_osm_file *file, bool of_ways, camber_osm_ends *ends, bool *declined) {
+    search self = {.file = file, .ends = ends, .of_ways = of_ways};
     const camber_osm_pass_desc pass = {.context = file->context,
                                        .name = file->path,
-                                       .part_count = of_ways ? 2 : 1,
-                                       .threads = threads,
+                                       .part_count = 1,
+                                       .threads = 1,
                                        .slot_bytes = sizeof(block),
                                        .user = &self,
                                        .work = search_blobs,

@@ -22,8 +22,7 @@ typedef struct camber_osm_ends {
 } camber_osm_ends;
 
 /* of_ways: where ways end is wanted, too; else that is 0. */
-camber_status camber_osm_find_ends(const camber_osm_file *file, bool of_ways, unsigned threads, camber_osm_ends *ends,
-                                   bool *declined);
+camber_status camber_osm_find_ends(camber_osm_file *file, bool of_ways, camber_osm_ends *ends, bool *declined);
 /* Reads the places of the set's nodes. Of a node that has several the easternmost counts, whatever the order.
  * *declined: nodes do not come first, or one has several places; only a file in order is declined. */
 camber_status camber_osm_nodes_read(camber_osm_node_set *nodes, const camber_osm_nodes_desc *desc, bool *declined);

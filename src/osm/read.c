@@ -409,12 +409,12 @@ static camber_status make_lines(reader *self) {
 
 /* Reads relations if they are wanted, ways, and the places of their nodes. *declined: the file is not in order, or not
  * for this reader. */
-static camber_status read_kinds(reader *self, const camber_osm_file *file, bool any_order, bool *declined) {
+static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_order, bool *declined) {
     const bool areas = self->features->style->wants_areas && !self->desc->layer;
     camber_osm_ends ends;
     camber_status status = CAMBER_OK;
     if (!any_order)
-        status = camber_osm_find_ends(file, areas, self->threads, &ends, declined);
+        status = camber_osm_find_ends(file, areas, &ends, declined);
     if (status != CAMBER_OK || *declined)
         return status;
     camber_osm_ways_desc relations = {.file = file, .any_order = any_order, .threads = self->threads};
@@ -432,7 +432,7 @@ static camber_status read_kinds(reader *self, const camber_osm_file *file, bool 
         relations.first_blob = ends.ways ? ends.ways - 1 : 0;
         ways.first_blob = ends.nodes ? ends.nodes - 1 : 0;
         relations.end_blob = ways.end_blob = ends.ways;
-        nodes.blob_count = nodes.node_blobs = ends.nodes;
+        nodes.blob_count = nodes.node_blobs = file->blob_count ? ways.first_blob + 1 : 0;
     }
     if (areas)
         status = camber_osm_relations_read(&self->ways, &relations, declined);
@@ -449,7 +449,7 @@ static camber_status read_kinds(reader *self, const camber_osm_file *file, bool 
     return status;
 }
 
-static camber_status read_places(reader *self, const camber_osm_file *file, bool *declined) {
+static camber_status read_places(reader *self, camber_osm_file *file, bool *declined) {
     const camber_osm_where *where = self->ways.where;
     camber_status status = read_kinds(self, file, false, declined);
     if (status != CAMBER_OK || !*declined)

@@ -442,9 +442,8 @@ typedef struct reading {
     const camber_osm_ways_desc *desc;
 } reading;
 
-/* Unpacks a blob, and makes the decoder and its block ready for it. */
-static bool begin_block(const reading *all, camber_osm_pass *pass, size_t blob, decoder *self,
-                        camber_osm_entities *entities) {
+/* Makes the decoder and its block ready for a blob. */
+static void begin_block(const reading *all, camber_osm_pass *pass, decoder *self) {
     block *to = self->to;
     self->ways = all->ways;
     self->pass = pass;
@@ -454,8 +453,18 @@ static bool begin_block(const reading *all, camber_osm_pass *pass, size_t blob, 
     to->set_count = to->slot_count = to->way_count = to->id_count = to->member_count = to->relation_count = 0;
     to->leaf_count = to->leaf_slot_count = 0;
     to->has_ways = to->has_places = false;
-    return camber_osm_file_unpack(all->desc->file, blob, pass, &to->unpacked, entities, self->failure) &&
+}
+
+static bool unpack_block(decoder *self, const reading *all, size_t blob, camber_osm_entities *entities) {
+    return camber_osm_file_unpack(all->desc->file, blob, self->pass, &self->to->unpacked, entities, self->failure) &&
            list_strings(self, entities->strings);
+}
+
+/* Whether a blob that was looked at has no ways, and nothing that should not be there. */
+static bool has_no_ways(const camber_osm_blob *blob, bool nodes_allowed, bool relations_allowed) {
+    return (blob->kinds & CAMBER_OSM_LOOKED_AT) && !(blob->kinds & CAMBER_OSM_HAS_WAYS) &&
+           (nodes_allowed || !(blob->kinds & CAMBER_OSM_HAS_NODES)) &&
+           (relations_allowed || !(blob->kinds & CAMBER_OSM_HAS_RELATIONS));
 }
 
 static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
@@ -467,7 +476,10 @@ static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slo
     /* The blob before the first way may have the last nodes, and the one before the first relation relations. */
     const bool any_order = all->desc->any_order;
     const bool relations = any_order || !all->ways->features->style->wants_areas || blob + 1 >= all->desc->end_blob;
-    if (!begin_block(all, pass, blob, &self, &entities))
+    begin_block(all, pass, &self);
+    if (has_no_ways(&all->desc->file->blobs[blob], any_order || part == 0, relations))
+        return true;
+    if (!unpack_block(&self, all, blob, &entities))
         return false;
     while (camber_osm_entities_next(&entities, &group))
         if (!read_group(&self, group, part == 0, relations, any_order))
@@ -563,7 +575,12 @@ static bool read_relations(void *user, camber_osm_pass *pass, size_t part, void 
     camber_osm_entities entities;
     camber_wire group;
     uint64_t key;
-    if (!begin_block(all, pass, all->desc->first_blob + part, &self, &entities))
+    const size_t blob = all->desc->first_blob + part;
+    const unsigned kinds = all->desc->file->blobs[blob].kinds;
+    begin_block(all, pass, &self);
+    if (kinds && !(kinds & CAMBER_OSM_HAS_RELATIONS))
+        return true;
+    if (!unpack_block(&self, all, blob, &entities))
         return false;
     while (camber_osm_entities_next(&entities, &group)) {
         while (camber_wire_next(&group, &key)) {

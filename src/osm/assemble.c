@@ -3,11 +3,13 @@
  * Input: ways, closed or not, in any order and direction, with roles or without. Output: rings, outer ones first. Main
  * idea: walk from way to way by the places where they end. A walk that comes back to a place that it has been at has
  * found a ring, which is taken out of it; so rings that touch stay apart. Ways of one role go first, then all that are
- * left. A ring without a role is a hole where an odd number of others have it inside. Time is linear in the places, but
- * for the sorting of ends and for such rings. */
+ * left. If all of them are there and form rings, geometry has the last word (planar.h). Else roles have it, and a ring
+ * without one is a hole where an odd number of others have it inside. Time is linear in the places, but for the sorting
+ * of ends and for such rings. */
 #include "osm/assemble.h"
 
 #include "osm/node_set.h"
+#include "osm/planar.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,8 +38,8 @@ typedef struct walker {
 
 enum { FREE = 0, WALKED, IN_RING };
 
-/* Pairs of rings that are compared, and places that are looked at for it; where there are more, rings without a role
- * are outer ones. Only files that were made to slow us down have so many. */
+/* Pairs of rings of a relation that are compared, and places of a file that are looked at for it; where there are more,
+ * rings without a role are outer ones. Only files that were made to slow us down have so many. */
 static const size_t MOST_COMPARED = (size_t)1 << 20, MOST_PLACES = (size_t)1 << 28;
 
 static int compare_ends(const void *left, const void *right) {
@@ -167,7 +169,7 @@ static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, ui
  * at. */
 static bool has_inside(const camber_osm_assembly *a, const camber_osm_ring *outer, const camber_osm_ring *ring,
                        size_t *left) {
-    for (size_t i = ring->first; i < ring->first + ring->count && *left >= outer->count; i++) {
+    for (size_t i = ring->first; i<ring->first + ring->count && * left> outer->count; i++) {
         *left -= outer->count;
         const int inside = lies_in(a, outer, a->places[i]);
         if (inside >= 0)
@@ -184,7 +186,7 @@ static int compare_rings(const void *left, const void *right) {
 }
 
 static void find_roles(camber_osm_assembly *a) {
-    size_t unknown = 0, left = MOST_PLACES;
+    size_t unknown = 0, left = a->steps < MOST_PLACES ? MOST_PLACES - a->steps : 0;
     for (size_t i = 0; i < a->ring_count; i++)
         unknown += a->rings[i].role == CAMBER_OSM_ROLE_UNKNOWN;
     const bool compares = unknown <= MOST_COMPARED / (a->ring_count + 1);
@@ -192,15 +194,17 @@ static void find_roles(camber_osm_assembly *a) {
         size_t around = 0;
         if (a->rings[i].role != CAMBER_OSM_ROLE_UNKNOWN)
             continue;
-        for (size_t k = 0; k < a->ring_count && compares; k++)
+        for (size_t k = 0; k < a->ring_count && compares && left > 0; k++, left--)
             around += k != i && has_inside(a, &a->rings[k], &a->rings[i], &left);
         a->rings[i].role = around % 2 ? CAMBER_OSM_ROLE_INNER : CAMBER_OSM_ROLE_OUTER;
     }
+    a->steps = MOST_PLACES - left;
     if (a->ring_count)
         qsort(a->rings, a->ring_count, sizeof *a->rings, compare_rings);
 }
 
-camber_status camber_osm_assemble(camber_osm_assembly *assembly, const camber_osm_piece *pieces, size_t count) {
+camber_status camber_osm_assemble(camber_osm_assembly *assembly, const camber_osm_piece *pieces, size_t count,
+                                  bool whole) {
     camber_context *context = assembly->context;
     walker self = {.to = assembly, .pieces = pieces, .count = count};
     camber_status status = CAMBER_ERROR_MEMORY;
@@ -218,8 +222,9 @@ camber_status camber_osm_assemble(camber_osm_assembly *assembly, const camber_os
     number_nodes(&self);
     if (!walk_role(&self, CAMBER_OSM_ROLE_OUTER) || !walk_role(&self, CAMBER_OSM_ROLE_INNER) || !walk_role(&self, NONE))
         goto done;
-    find_roles(assembly);
-    status = CAMBER_OK;
+    status = whole && !assembly->open ? camber_osm_arrange(assembly) : CAMBER_OK;
+    if (status == CAMBER_OK)
+        find_roles(assembly);
 done:
     camber_free(context, self.states);
     camber_free(context, self.walk);

@@ -29,11 +29,14 @@ typedef struct camber_osm_assembly {
     size_t place_count, place_capacity;
     camber_osm_ring *rings; /* outer rings come first */
     size_t ring_count, ring_capacity;
-    bool open; /* pieces were left that form no ring */
+    bool open;    /* pieces were left that form no ring */
+    size_t steps; /* looked at so far to find out what lies in what; of all that were put together */
 } camber_osm_assembly;
 
-/* Replaces the rings; keeps the memory. Returns CAMBER_ERROR_MEMORY. */
-camber_status camber_osm_assemble(camber_osm_assembly *assembly, const camber_osm_piece *pieces, size_t count);
+/* Replaces the rings; keeps the memory. whole: no piece is missing, so that geometry tells what is a hole; else the
+ * roles do. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_osm_assemble(camber_osm_assembly *assembly, const camber_osm_piece *pieces, size_t count,
+                                  bool whole);
 void camber_osm_assembly_free(camber_osm_assembly *assembly);
 
 #endif

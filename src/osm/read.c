@@ -258,11 +258,15 @@ static camber_status add_run(void *user, size_t part, void *slot) {
 
 /* ---- Relations become areas ---- */
 
+/* Boundaries of all levels name a way some ten times. A file of a megabyte could make relations of 10^10 places. */
+static const size_t MOST_USES = 32, MOST_PLACES = (size_t)1 << 20;
+
 /* An area of a relation. */
 typedef struct made_area {
     camber_osm_assembly assembly;
     camber_world_lines lines; /* one ring */
     camber_rings rings;
+    size_t place_count; /* of all relations so far */
     uint32_t class_index;
     bool added;
     bool is_sea; /* rings lie within a box: their edges go the way that they go, however far that is */
@@ -301,9 +305,16 @@ static camber_status add_rings(reader *self, made_area *area) {
 }
 
 static camber_status add_relation(reader *self, size_t relation, made_area *area) {
-    const uint32_t set = self->ways.relations.items[relation].set;
+    const camber_osm_relations *relations = &self->ways.relations;
+    const uint32_t set = relations->items[relation].set;
     if (set == 0)
         return CAMBER_OK;
+    area->place_count += camber_osm_relations_count_places(relations, relation);
+    if (area->place_count > MOST_PLACES + MOST_USES * relations->place_count)
+        return camber_fail(self->context, CAMBER_ERROR_LIMIT,
+                           "%s: its multipolygons name their ways %zu times and more; get it from a source that you "
+                           "trust",
+                           self->desc->path, MOST_USES);
     camber_status status = camber_osm_relations_assemble(&self->ways.relations, relation, &area->assembly);
     self->features->stats.open_relations += status == CAMBER_OK && area->assembly.open;
     if (status == CAMBER_OK && area->assembly.ring_count)

@@ -75,6 +75,18 @@ size_t camber_osm_relations_count_missing(const camber_osm_relations *relations)
     return count;
 }
 
+size_t camber_osm_relations_count_places(const camber_osm_relations *relations, size_t relation) {
+    const camber_osm_relation *one = &relations->items[relation];
+    camber_osm_finger finger = {.leaf_id = UINT64_MAX, .id = -2};
+    size_t count = 0;
+    for (size_t m = one->first_member; m < one->first_member + one->member_count; m++) {
+        uint32_t index;
+        if (camber_osm_relations_find(relations, relations->members[m].way, &finger, &index))
+            count += relations->ways[index].place_count;
+    }
+    return count;
+}
+
 /* Lists the pieces of a relation that the file has. *lacks becomes true where it lacks some. */
 static size_t list_pieces(const camber_osm_relations *relations, size_t relation, camber_osm_piece *pieces,
                           bool *lacks) {
@@ -103,7 +115,7 @@ camber_status camber_osm_relations_assemble(const camber_osm_relations *relation
         return CAMBER_ERROR_MEMORY;
     bool lacks = false;
     const size_t count = list_pieces(relations, relation, pieces, &lacks);
-    const camber_status status = camber_osm_assemble(assembly, pieces, count);
+    const camber_status status = camber_osm_assemble(assembly, pieces, count, !lacks);
     assembly->open = assembly->open || lacks;
     camber_free(relations->context, pieces);
     return status;

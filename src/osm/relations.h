@@ -54,6 +54,8 @@ camber_status camber_osm_relations_add_places(camber_osm_relations *relations, s
                                               uint32_t count);
 /* Counts the ways that relations name and the file does not have, or none of their nodes. */
 size_t camber_osm_relations_count_missing(const camber_osm_relations *relations);
+/* How many places the ways of a relation have. */
+size_t camber_osm_relations_count_places(const camber_osm_relations *relations, size_t relation);
 /* Puts the rings of a relation together; it may have none. assembly->open: the file lacks some of it. */
 camber_status camber_osm_relations_assemble(const camber_osm_relations *relations, size_t relation,
                                             camber_osm_assembly *assembly);

@@ -2,6 +2,8 @@
  * a byte that no content begins with, that of a packed one. The same bytes are also a coast:
  *
  *     box: i16 left, right, bottom, top; ways: u8 places, % 16; places: i16 longitude, i16 latitude
+ *
+ * and ways of a multipolygon: u8 places, role; places: u8 of a grid.
  */
 #include "fuzz_scene.h"
 
@@ -56,6 +58,35 @@ static int32_t take_degrees(fuzz_reader *from) {
     return (int16_t)fuzz_take(from, 2);
 }
 
+/* Rings are closed, have a role, and outer ones come first, whatever ways they are made of. */
+static void use_rings(fuzz_run *run, const uint8_t *bytes, size_t size) {
+    enum { MOST_WAYS = 32, MOST_PLACES = 16 };
+    fuzz_reader from = {bytes, size};
+    camber_osm_assembly rings = {.context = run->context};
+    uint64_t places[MOST_WAYS * MOST_PLACES];
+    camber_osm_piece pieces[MOST_WAYS];
+    size_t count = 0;
+    while (from.size > 0 && count < MOST_WAYS) {
+        const uint8_t about = (uint8_t)fuzz_take(&from, 1);
+        camber_osm_piece *piece = &pieces[count];
+        uint64_t *at = places + count * MOST_PLACES;
+        *piece = (camber_osm_piece){at, 2 + about % (MOST_PLACES - 2), (camber_osm_role)(about / 16 % 3)};
+        for (uint32_t i = 0; i < piece->count; i++) {
+            const uint8_t place = (uint8_t)fuzz_take(&from, 1); /* on a grid, so that ways meet */
+            at[i] = camber_osm_place(place % 16 * 1000, place / 16 * 1000);
+        }
+        count++;
+    }
+    if (count && fuzz_done(run, camber_osm_assemble(&rings, pieces, count, size & 1)))
+        for (size_t i = 0; i < rings.ring_count; i++) {
+            const camber_osm_ring *ring = rings.rings + i;
+            REQUIRE(ring->count > 0 && ring->first + ring->count <= rings.place_count);
+            REQUIRE(rings.places[ring->first] == rings.places[ring->first + ring->count - 1]);
+            REQUIRE(ring->role != CAMBER_OSM_ROLE_UNKNOWN && (i == 0 || rings.rings[i - 1].role <= ring->role));
+        }
+    camber_osm_assembly_free(&rings);
+}
+
 /* Rings are closed, and outer ones come first, whatever a coast is. */
 static void use_coast(fuzz_run *run, const uint8_t *bytes, size_t size) {
     fuzz_reader from = {bytes, size};
@@ -99,6 +130,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     camber_features *features = NULL;
     const bool content = size > 0 && size < 8192 && bytes[0] != 0;
     use_coast(run, bytes, size);
+    use_rings(run, bytes, size);
     snprintf(path, sizeof path, "/tmp/camber-fuzz-%ld.osm.pbf", (long)getpid());
     write_file(path, bytes, size, content);
     const camber_source_desc desc = {.path = path, .threads = 2};

@@ -2,8 +2,11 @@
 #include "file_reading.h"
 
 #include "osm/osm.h"
+#include "source/rings.h"
 
 #include "pbf_file.h"
+
+#include <math.h>
 
 static char *properties[] = {"highway", "building", "landuse", "name"};
 
@@ -314,6 +317,8 @@ static void test_forms(void **state) {
         {"RNW", PBF_ZLIB},
         {"NRW", PBF_ZLIB},
         {"Wrn", PBF_ZLIB},
+        {"Rnw", PBF_ZLIB},
+        {"RNw", PBF_ZLIB},
         {"Wnrnw", PBF_LZ4},
         {"NWNRW", PBF_ZLIB}, /* osmium cat of two files */
         {"RNNWWN", PBF_ZLIB, .has_others = true},
@@ -414,6 +419,109 @@ static void test_left_to_gdal(void **state) {
     }
 }
 
+/* ---- Multipolygons ---- */
+
+/* In squares of a hundredth of a degree, about. */
+static double sum_areas(const camber_features *set, size_t *rings) {
+    double sum = 0.0;
+    *rings = 0;
+    for (size_t p = 0; p < set->polyline_count; p++) {
+        if (camber_features_kind(set, p) != CAMBER_GEOMETRY_AREA)
+            continue;
+        sum += camber_ring_area(set->points + 2 * set->offsets[p], set->offsets[p + 1] - set->offsets[p]);
+        ++*rings;
+    }
+    return 0.5 * fabs(sum) * 36000.0 * 36000.0;
+}
+
+/* Ways of a multipolygon, by their corners in hundredths of a degree; areas have the corners' numbers as ids. */
+static void add_way(fixture *it, int64_t id, size_t count, const int *corners) {
+    int64_t ids[32];
+    for (size_t i = 0; i < count; i++)
+        ids[i] = 1 + corners[2 * i] * 100 + corners[2 * i + 1];
+    pbf_way(&it->block, id, NULL, ids, count);
+}
+#define WAY(it, id, ...) add_way(it, id, sizeof(int[]){__VA_ARGS__} / sizeof(int) / 2, (const int[]){__VA_ARGS__})
+
+static void begin_grid(fixture *it) {
+    pbf_node nodes[100];
+    for (int i = 0; i < 100; i++)
+        nodes[i] = (pbf_node){1 + i / 10 * 100 + i % 10, i / 10 * 100000, i % 10 * 100000};
+    pbf_header(&it->file, "DenseNodes");
+    pbf_dense(&it->block, nodes, 100);
+}
+
+static void expect_area(fixture *it, double area, size_t rings) {
+    bool declined;
+    size_t count;
+    pbf_end_block(&it->file, &it->block);
+    write_road(it);
+    expect_ok(&it->on, read_written(it, 2, &declined));
+    const double sum = sum_areas(it->on.features, &count);
+    if (fabs(sum - area) > 0.01 || count != rings)
+        fail_msg("%zu rings of %.3f, not %zu of %.3f", count, sum, rings, area);
+}
+
+/* As libosmium assembles them: by geometry. */
+static void test_touching_rings(void **state) {
+    static const char *const wood[] = {"type", "multipolygon", "landuse", "forest", NULL};
+    fixture *it = *state;
+    /* osm-testdata's 766: a hole in two parts, whose way goes from one to the other and back. */
+    begin_grid(it);
+    WAY(it, 1, 6, 5, 4, 7, 2, 5, 4, 3, 4, 2, 7, 2, 7, 1, 1, 1, 1, 2, 4, 2, 4, 3, 6, 5);
+    WAY(it, 2, 0, 0, 0, 8, 8, 8, 8, 0, 0, 0);
+    pbf_relation(&it->block, wood, (const pbf_member[]){{1, "inner"}, {2, "outer"}}, 2);
+    expect_area(it, 64.0 - 8.0 - 6.0, 3);
+    /* Two holes that touch, each way going straight on where they do. */
+    begin_grid(it);
+    WAY(it, 1, 0, 0, 6, 0, 6, 6, 0, 6, 0, 0);
+    WAY(it, 2, 2, 2, 2, 3, 3, 3, 4, 3, 4, 4);
+    WAY(it, 3, 4, 4, 3, 4, 3, 3, 3, 2, 2, 2);
+    pbf_relation(&it->block, wood, (const pbf_member[]){{1, "outer"}, {2, "inner"}, {3, "inner"}}, 3);
+    expect_area(it, 36.0 - 2.0, 3);
+    /* A hole that is called outer, and an island in it that is called inner. */
+    begin_grid(it);
+    WAY(it, 1, 0, 0, 6, 0, 6, 6, 0, 6, 0, 0);
+    WAY(it, 2, 1, 1, 5, 1, 5, 5, 1, 5, 1, 1);
+    WAY(it, 3, 2, 2, 3, 2, 3, 3, 2, 3, 2, 2);
+    pbf_relation(&it->block, wood, (const pbf_member[]){{1, "inner"}, {2, "outer"}, {3, "inner"}}, 3);
+    expect_area(it, 36.0 - 16.0 + 1.0, 3);
+    /* Outer rings that have a side in common are one. */
+    begin_grid(it);
+    WAY(it, 1, 0, 0, 2, 0, 2, 2, 0, 2, 0, 0);
+    WAY(it, 2, 2, 0, 4, 0, 4, 2, 2, 2, 2, 0);
+    pbf_relation(&it->block, wood, (const pbf_member[]){{1, "outer"}, {2, "outer"}}, 2);
+    expect_area(it, 8.0, 1);
+}
+
+/* Relations that name the same long way again and again would take all memory, and minutes. */
+static void test_many_uses(void **state) {
+    static const char *const wood[] = {"type", "multipolygon", "landuse", "forest", NULL};
+    enum { NODES = 4000, USES = 600 };
+    static pbf_node nodes[NODES];
+    static int64_t ids[NODES + 1];
+    fixture *it = *state;
+    bool declined;
+    for (int i = 0; i < NODES; i++) {
+        ids[i] = i + 1;
+        nodes[i] = (pbf_node){ids[i], i < NODES / 2 ? 1000 * i : 1000 * (NODES - i), i < NODES / 2 ? 0 : 1000};
+    }
+    ids[NODES] = 1;
+    for (int uses = USES / 20; uses <= USES; uses += USES - USES / 20) {
+        pbf_header(&it->file, "DenseNodes");
+        pbf_dense(&it->block, nodes, NODES);
+        pbf_way(&it->block, 1, NULL, ids, NODES + 1);
+        pbf_end_block(&it->file, &it->block);
+        for (int i = 0; i < uses; i++)
+            pbf_relation(&it->block, wood, (const pbf_member[]){{1, "outer"}}, 1);
+        pbf_end_block(&it->file, &it->block);
+        write_road(it);
+        const camber_status status = read_written(it, 2, &declined);
+        assert_int_equal(status, uses < USES ? CAMBER_OK : CAMBER_ERROR_LIMIT);
+        assert_int_equal(it->on.errors, uses == USES);
+    }
+}
+
 static void test_history(void **state) {
     fixture *it = *state;
     pbf_header(&it->file, "HistoricalInformation");
@@ -430,6 +538,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_forms, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_missing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_left_to_gdal, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_touching_rings, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_many_uses, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_history, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

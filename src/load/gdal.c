@@ -4,6 +4,7 @@
 #define _GNU_SOURCE /* dladdr */
 
 #include "osm/osm.h"
+#include "osm/xml_order.h"
 #include "source/gdal_calls.h"
 #include "source/tile_reader.h"
 
@@ -77,7 +78,23 @@ bool camber_source_needs_gdal(const camber_source_desc *desc) {
     return desc->where || (stat(desc->path, &about) == 0 && S_ISDIR(about.st_mode));
 }
 
+/* GDAL has read OpenStreetMap's XML: it says nothing of ways that it has left out since it had not met their nodes. */
+static camber_status check_order(const camber_features *features, const camber_source_desc *desc, size_t before) {
+    if (!camber_osm_xml_is_unordered(desc->path))
+        return CAMBER_OK;
+    if (features->feature_count == before)
+        return camber_fail(features->context, CAMBER_ERROR_INPUT,
+                           "%s: no lines: nodes come behind the ways that name them, or ways behind relations; sort it "
+                           "by osmium sort",
+                           desc->path);
+    camber_log(features->context, CAMBER_LOG_WARNING,
+               "%s: nodes come behind ways, or ways behind relations; some may be left out: sort it by osmium sort",
+               desc->path);
+    return CAMBER_OK;
+}
+
 camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+    const size_t before = features->feature_count;
     bool declined = true;
     camber_status status = camber_osm_reads(desc) ? camber_osm_read(features, desc, &declined) : CAMBER_OK;
     if (!declined || status != CAMBER_OK)
@@ -88,7 +105,9 @@ camber_status camber_features_read(camber_features *features, const camber_sourc
     if (status == CAMBER_OK)
         status = camber_gdal_load(features->context);
     const camber_gdal_calls *calls = features->context->gdal;
-    return status == CAMBER_OK ? calls->read(features, desc) : status;
+    if (status == CAMBER_OK)
+        status = calls->read(features, desc);
+    return status == CAMBER_OK ? check_order(features, desc, before) : status;
 }
 
 const char *camber_format_list(size_t n) {

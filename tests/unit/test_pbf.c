@@ -522,6 +522,34 @@ static void test_many_uses(void **state) {
     }
 }
 
+/* GDAL reads XML from front to back, and leaves ways out without a word if it meets a relation before their nodes. */
+static void test_xml_order(void **state) {
+    static const char *const elements[] = {
+        ['n'] = "<node id='1' lat='35.9' lon='14.5'/><node id='2' lat='35.91' lon='14.5'/>\n",
+        ['w'] = "<way id='1'><nd ref='1'/><nd ref='2'/><tag k='highway' v='primary'/></way>\n",
+        ['r'] = "<relation id='1'><member type='way' ref='1' role=''/><tag k='type' v='route'/></relation>\n",
+        ['c'] = "<!-- <relation id='1'> -->\n"};
+    static const struct {
+        const char *order;
+        camber_status status;
+        size_t warnings;
+    } all[] = {{"nwr", CAMBER_OK, 0}, {"cnwr", CAMBER_OK, 0}, {"wrn", CAMBER_ERROR_INPUT, 0}, {"wn", CAMBER_OK, 1}};
+    fixture *it = *state;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        char text[1000] = "<?xml version='1.0'?>\n<osm version='0.6'>\n";
+        for (const char *c = all[i].order; *c; c++)
+            strcat(text, elements[(unsigned char)*c]);
+        strcat(text, "</osm>\n");
+        write_file(&it->on, "road.osm", text, strlen(text));
+        start_again(&it->on);
+        assert_int_equal(read_path(&it->on, it->on.path), all[i].status);
+        assert_int_equal(it->on.features->feature_count, all[i].status == CAMBER_OK);
+        assert_int_equal(it->on.warnings, all[i].warnings);
+        if (all[i].status != CAMBER_OK)
+            assert_non_null(strstr(it->on.error, "osmium sort"));
+    }
+}
+
 static void test_history(void **state) {
     fixture *it = *state;
     pbf_header(&it->file, "HistoricalInformation");
@@ -540,6 +568,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_left_to_gdal, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_touching_rings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_many_uses, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_xml_order, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_history, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

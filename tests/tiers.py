@@ -8,7 +8,8 @@ BUILD is a configured build folder; its tests/manifest.txt has a line a test (te
 A test covers the layers that its labels name and those below them, by the arrows of camber_layer() in
 src/CMakeLists.txt. A change runs
   - the tests of ./dev test whose layers it reaches;
-  - mutants of the files that changed, and the tests under the sanitizers and the deep ones that name a changed layer;
+  - mutants of the files that changed, and the tests under the sanitizers and the deep ones that name a changed layer, the
+    cheapest first and only so many that a change of everything has an end in time, too;
   - of all the others one share of seven, which the number of the commit picks, so that each runs within seven commits.
 A commit of documents alone does not count and has no share: it cannot break what others test.
 
@@ -36,6 +37,9 @@ BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cm
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
 MODULES = {"camber-map": ("gdal", "load")}  # loaded when they are needed: no arrow leads there
 DEFAULT_COST = 5.0
+# Seconds of a processor for what names a changed layer; the rest of it waits for its share.
+DEEP_SECONDS, SANITIZED_SECONDS, MUTANTS_SECONDS = 900.0, 500.0, 500.0
+SECONDS_A_MUTANT, TIMES_UNDER_SANITIZERS = 7.0, 4.0
 
 Test = collections.namedtuple("Test", "name cost fixture is_setup labels")
 
@@ -105,7 +109,13 @@ class Arrows:
         return users
 
     def areas(self, path):
-        """The layers and folders that a changed file belongs to; "build": it reaches all."""
+        """The layers and folders that a changed file belongs to, and those that compile it; "build": it reaches all."""
+        if path.startswith("kernels/"):
+            name = path.partition("/")[2]
+            return {"kernels"} | {layer for layer, files in self.kernel_users.items() if name in files}
+        return self.own_areas(path)
+
+    def own_areas(self, path):
         top, _, rest = path.partition("/")
         folder = rest.partition("/")[0] if "/" in rest else ""
         if DOCUMENTS.match(path):
@@ -117,7 +127,7 @@ class Arrows:
         if top == "src":
             return {"camber-map" if re.match(r"camber_(map|tiles)\.h", rest) else "camber", "packaging"}
         if top == "kernels":
-            return {"kernels"} | {layer for layer, files in self.kernel_users.items() if rest in files}
+            return {"kernels"}
         if top == "shaders":
             return {"shaders", "gl"}
         if top == "examples":
@@ -200,27 +210,37 @@ def assign_shares(tests):
 Choice = collections.namedtuple("Choice", "areas reached share waiting sanitized lint")
 
 
-def mutated_files(root):
+def count_mutants(root, changed):
     path = os.path.join(root, "tests/deep/test_mutations.sh")
     if not os.path.isfile(path):
-        return set()
+        return 0
     with open(path, encoding="utf-8") as file:
-        return set(re.findall(r"^mutant \w+ (\S+) ", file.read(), re.M))
+        return sum(name in changed for name in re.findall(r"^mutant \w+ (\S+) ", file.read(), re.M))
+
+
+def take_cheapest(tests, seconds, times=1.0):
+    """The names of as many of the tests as take so many seconds."""
+    taken = set()
+    for test in sorted(tests, key=lambda test: (test.cost, test.name)):
+        seconds -= times * test.cost
+        if seconds >= 0:
+            taken.add(test.name)
+    return taken
 
 
 def choose(root, tests, changed, number, recipes=()):
     """The tests of a change: changed files, the commit's number, the recipes whose words changed. number None: no share."""
     arrows, mentions = Arrows(root), Mentions(root)
-    areas = set().union(*map(arrows.areas, changed))
+    areas, own_areas = set().union(*map(arrows.areas, changed)), set().union(*map(arrows.own_areas, changed))
     of_tests = [path for path in changed if path.startswith("tests/")]
     own = set(map(stem_of, of_tests))
     stems = set().union(*map(mentions.stems, of_tests))
-    shares, reached, sanitized = assign_shares(tests), set(), []
+    shares, reached, deep, sanitized = assign_shares(tests), set(), [], []
     for test in tests:
         label, named = test.labels[0], set(test.labels[1:])
-        direct = bool((named - set(arrows.libraries)) & areas) or is_named_after(test.name, own)
+        direct = bool((named - set(arrows.libraries)) & own_areas) or is_named_after(test.name, own)
         if label in SANITIZED and direct and not test.is_setup:
-            sanitized.append(test.name)
+            sanitized.append(test)
         if test.name not in shares:
             continue
         if label in EVERYDAY:
@@ -230,10 +250,14 @@ def choose(root, tests, changed, number, recipes=()):
         elif label == "recipes":
             is_reached = "packaging" in named & areas or named & {"recipe-" + name for name in recipes}
         else:
-            is_reached = direct and not is_pinned(test)
+            is_reached = False
+            if direct and not is_pinned(test):
+                deep.append(test)
         if is_reached:
             reached.add(test.name)
-    if any(path in mutated_files(root) for path in changed):
+    reached |= take_cheapest(deep, DEEP_SECONDS)
+    sanitized = take_cheapest(sanitized, SANITIZED_SECONDS, TIMES_UNDER_SANITIZERS)
+    if 0 < count_mutants(root, changed) * SECONDS_A_MUTANT <= MUTANTS_SECONDS:
         reached.add("mutations_changed")
     if sanitized:
         reached.add("sanitize_changed")

@@ -26,7 +26,7 @@ run)
     folder=$1/share-${2%/*}
     mkdir -p "$folder"
     echo 'subdirs("..")' >"$folder/CTestTestfile.cmake"
-    usual=(-LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|python|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside)|soak_serve)$')
+    usual=(-LE "fuzz|deep|cities" -E '^(test_(faults|kernels|pixels|pixels_cl|python|read_for|overdraw|self_overlap|archives_outside|tiles_outside|serve_outside|serve_hostile|osmium)|soak_serve)$')
     case $2 in
     changed) chosen=(-R "$CAMBER_SANITIZED" "${usual[@]}") ;;
     */*) chosen=(-I "${2%/*},,${2#*/}" "${usual[@]}") ;;

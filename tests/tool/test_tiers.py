@@ -62,11 +62,11 @@ class Tiers(unittest.TestCase):
         choice = choose("docs/strokes.md", "README.md", number=None)
         self.assertEqual({test.labels[0] for test in TESTS if test.name in choice.reached}, {"tree"})
         self.assertFalse(choice.share)
-        self.assertEqual(choice.sanitized, [])
+        self.assertFalse(choice.sanitized)
 
     def test_a_recipe(self):
-        self.expect(choose("README.md", number=None, recipes={"demo"}), {"test_recipe_demo", "test_newcomer_trixie"},
-                    {"test_recipe_core"})
+        self.expect(choose("README.md", number=None, recipes={"demo"}), {"test_recipe_demo"},
+                    {"test_recipe_core", "test_newcomer_trixie"})
 
     def test_the_build(self):
         for path in ("dev", "CMakeLists.txt", "tests/CMakeLists.txt", "src/CMakeLists.txt", ".ci/run"):
@@ -74,6 +74,16 @@ class Tiers(unittest.TestCase):
             everyday = {test.name for test in TESTS if test.labels[0] in tiers.EVERYDAY and not test.is_setup}
             self.assertFalse(everyday - choice.reached, path)
             self.assertTrue(choice.share)
+
+    def test_a_change_of_everything_has_an_end(self):
+        everything = subprocess.run(["git", "-C", ROOT, "ls-files"], capture_output=True, text=True).stdout.split()
+        choice, costs = choose(*everything), {test.name: test.cost for test in TESTS}
+        deep = {test.name for test in TESTS if test.labels[0] not in tiers.EVERYDAY + ("recipes",)}
+        self.assertLessEqual(sum(costs[name] for name in choice.reached & deep), tiers.DEEP_SECONDS + 1000)
+        self.assertLessEqual(sum(costs[name] for name in choice.sanitized) * tiers.TIMES_UNDER_SANITIZERS,
+                             tiers.SANITIZED_SECONDS)
+        self.assertNotIn("mutations_changed", choice.reached)
+        self.assertNotIn("test_newcomer_trixie", choice.reached)
 
     def test_a_test(self):
         self.expect(choose("tests/unit/test_osm.c"), {"test_osm", "sanitize_changed"}, {"test_coast", "test_pixels"})

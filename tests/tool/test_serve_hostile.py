@@ -263,7 +263,7 @@ def read_again(server, wanted, seconds=PATIENCE_S):
 
 
 def test_reload_hangs():
-    """An input whose reader does not get on: what was read before stays."""
+    """An input that would take a reader minutes is refused: what was read before stays."""
     write_map("map.json")
     write_hanging("hang.pbf")
     os.symlink("map.json", "map")
@@ -271,7 +271,7 @@ def test_reload_hangs():
     wanted = server.get(TILE)[2]
     os.unlink("map")
     os.symlink("hang.pbf", "map")
-    said = read_again(server, "its reader has worked")
+    said = read_again(server, "name their ways")
     expect(len(said) == 1, said)
     expect(server.get(TILE)[::2] == (200, wanted) and server.get("/health")[0] == 200, "what was served is gone")
     os.unlink("map")

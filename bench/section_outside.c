@@ -67,13 +67,13 @@ static void measure_python(bench *b, json_t *result) {
 /* ---- The page ---- */
 
 static void measure_page(bench *b, json_t *result) {
-    static const char program[] = CAMBER_BENCH_PEERS "/page_drags.mjs";
+    static const char program[] = CAMBER_BENCH_PEERS "/page_drags.mjs", modules[] = "NODE_PATH=" CAMBER_BENCH_NPM;
     char city[1024];
     if (!bench_scene_path(b, "porto", city, sizeof city)) {
         leave_out("the page of camber serve", "CAMBER_DATA has no Porto");
         return;
     }
-    const char *const arguments[] = {"env", "NODE_PATH=" CAMBER_BENCH_NPM, "node", program, b->tool, city, NULL};
+    const char *const arguments[] = {"env", modules, "node", program, b->tool, city, NULL};
     const bench_yardstick stick = bench_yardstick_measure(b);
     const bench_child child = bench_child_run(arguments, NULL, NULL);
     json_t *row = child.status == 0 && child.output ? json_loads(child.output, 0, NULL) : NULL;

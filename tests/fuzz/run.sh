@@ -10,6 +10,7 @@ folder=$1 seconds=$2
 shift 2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+export LSAN_OPTIONS=suppressions=$here/../fixtures/lsan.supp:print_suppressions=0
 
 fuzz() {
     local target=$1 program=$folder/tests/fuzz/fuzz_$1 log=$folder/$1.log options=() kept=() before

@@ -30,7 +30,7 @@ TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
 
 from png_rows import decode, difference  # noqa: E402
-from served import (COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, find_port, is_sanitized, wait_until,  # noqa: E402
+from served import (COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, run_tests, find_port, is_sanitized, wait_until,  # noqa: E402
                     write_map)
 
 # ---- Routes ----
@@ -1050,17 +1050,4 @@ def test_full_folder():
         subprocess.run(["umount", "tiles"], check=False)
 
 
-def main():
-    names = [name for name in globals() if name.startswith("test_")]
-    for name in sys.argv[2:] or names:
-        expect(name in names, f"no test {name}; it is one of {names}")
-        start = time.monotonic()
-        with tempfile.TemporaryDirectory() as folder:
-            before = os.getcwd()
-            os.chdir(folder)
-            globals()[name]()
-            os.chdir(before)
-        print(f"{name}: {time.monotonic() - start:.1f} s", flush=True)
-
-
-main()
+run_tests(globals())

@@ -23,7 +23,7 @@ import time
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
 
-from served import COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, is_sanitized, wait_until, write_map  # noqa: E402
+from served import COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, run_tests, is_sanitized, wait_until, write_map  # noqa: E402
 
 TILE = f"/{ZOOM}/{COLUMN}/{ROW}.png"
 
@@ -401,17 +401,4 @@ def test_damaged_cache():
     server.stop()
 
 
-def main():
-    names = [name for name in globals() if name.startswith("test_")]
-    for name in sys.argv[2:] or names:
-        expect(name in names, f"no test {name}; it is one of {names}")
-        start = time.monotonic()
-        with tempfile.TemporaryDirectory() as folder:
-            before = os.getcwd()
-            os.chdir(folder)
-            globals()[name]()
-            os.chdir(before)
-        print(f"{name}: {time.monotonic() - start:.1f} s", flush=True)
-
-
-main()
+run_tests(globals())

@@ -98,7 +98,7 @@ static void check_done(const camber_options *o) {
         return;
     check_view(o);
     if (o->verb == CAMBER_VERB_SERVE)
-        REQUIRE(o->input_count && o->most_ratio <= 8 && o->most_px <= 16384);
+        REQUIRE((o->input_count || o->style) && o->most_ratio <= 8 && o->most_px <= 16384);
     if (o->verb == CAMBER_VERB_TILES) {
         REQUIRE(o->output && (o->input_count || o->style) && is_within(o->format, 0, 2));
         REQUIRE(o->min_zoom <= o->max_zoom && o->max_zoom <= 24);

@@ -127,7 +127,8 @@ typedef struct camber_source_desc {
      * the lines of a PBF of OpenStreetMap, whatever its name, by several threads. */
     const char *path;
     /* The layer that is read. NULL: OSM's "lines". In a vector tile set it is then the layers that the style names, or
-     * the road layer where the set has none of them. In other files it is every layer with lines. */
+     * the road layer where the set has none of them, or all. In other files it is every layer of which the style draws
+     * something. */
     const char *layer;
     const char *where; /* OGR attribute filter; PMTiles have none. NULL: none */
     /* true: all lines stay apart. false: lines that the style cannot tell apart become one where two of them, and no
@@ -163,6 +164,7 @@ typedef struct camber_features_stats {
     size_t missing_nodes;     /* that lines name, and the file does not have */
     size_t missing_ways;      /* that multipolygons name, and that it does not have, or none of their nodes */
     size_t dropped_relations; /* multipolygons of which no ring is left */
+    size_t input_bytes;       /* of the files that were read */
 } camber_features_stats;
 
 /* Sums over the files. */
@@ -195,6 +197,12 @@ CAMBER_API camber_features_times camber_features_get_times(const camber_features
  * For OpenStreetMap's own formats it is "(c) OpenStreetMap contributors", as their licence asks. For tiles it is what
  * their metadata or the style's source says, without its HTML. For other files nobody is known. */
 CAMBER_API const char *camber_features_get_attribution(const camber_features *features);
+
+/* Writes why nothing of the set is drawn, for a picture or for tiles without anything in it: what was read, what hides
+ * it at these zooms (the style, the zoom, the view, nodes that are missing), and the cure. 512 bytes are enough.
+ * Returns whether the style draws some of it at these zooms, so that the view alone hides it. */
+CAMBER_API bool camber_features_explain_nothing(const camber_features *features, double min_zoom, double max_zoom,
+                                                char *text, size_t size);
 
 /* Writes the box that all lines lie in: west, south, east, north in degrees. false: there are no lines, and bounds
  * stays as it was. It looks at each point. */

@@ -4,6 +4,7 @@
 #include "cli/input.h"
 
 #include "base/open_file.h"
+#include "cli/plain.h"
 
 #include <errno.h>
 #include <math.h>
@@ -159,22 +160,29 @@ int camber_input_read_style(camber_session *session, const char *path, camber_th
     return status;
 }
 
-static int open_style(camber_input *input) {
-    camber_session *session = input->session;
+int camber_input_make_style(camber_session *session, camber_theme theme, camber_style **style, const char **base_path) {
     const camber_options *options = session->options;
-    const camber_theme theme = options->theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)options->theme;
-    if (!options->style)
-        return camber_report_status(session->report,
-                                    camber_style_create_builtin(session->context, theme, &input->style));
-    camber_style_input style;
-    const int status = camber_input_read_style(session, options->style, theme, &style);
-    if (status != CAMBER_EXIT_DONE)
-        return status;
-    input->base_path = style.base_path;
-    const camber_status parsed =
-        camber_style_parse(session->context, style.text, style.size_bytes, style.name, &input->style);
-    free(style.bytes);
-    return camber_report_status(session->report, parsed);
+    camber_style_input document = {.name = "the built-in style"};
+    int status = CAMBER_EXIT_DONE;
+    if (options->style)
+        status = camber_input_read_style(session, options->style, theme, &document);
+    else
+        document.text = camber_style_get_text(camber_style_list(0), theme, &document.size_bytes);
+    if (status == CAMBER_EXIT_DONE && camber_plain_is_given(options))
+        status = camber_plain_apply(session, &document);
+    if (status == CAMBER_EXIT_DONE) {
+        *base_path = document.base_path;
+        status = camber_report_status(session->report, camber_style_parse(session->context, document.text,
+                                                                          document.size_bytes, document.name, style));
+    }
+    free(document.bytes);
+    return status;
+}
+
+static int open_style(camber_input *input) {
+    const int theme = input->session->options->theme;
+    return camber_input_make_style(input->session, theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)theme, &input->style,
+                                   &input->base_path);
 }
 
 /* Takes from the style the parts of the view that the options leave open. */
@@ -395,10 +403,29 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
         once ? input->drawn : camber_polylines_get_stats(camber_input_polylines(input));
     if (drawn.polylines > 0 || knows_why_empty(input))
         return;
-    camber_report_warn(input->session->report, "%s%s; %s",
-                       input->features ? "no line that the style draws is in the view" : "no polylines",
-                       likely_cause(input), consequence);
+    char why[1024] = "no polylines";
+#ifdef CAMBER_MAP
+    const double zoom = input->scene ? camber_scene_get_info(input->scene).zoom : 0.0;
+    if (input->features)
+        (void)camber_features_explain_nothing(input->features, zoom, zoom, why, sizeof why);
+#endif
+    camber_report_warn(input->session->report, "%s: %s%s", consequence, why, likely_cause(input));
 }
+
+#ifdef CAMBER_MAP
+void camber_input_say_missing(const camber_input *input) {
+    const camber_features_stats read = camber_features_get_stats(input->features);
+    char ways[64] = "";
+    if (read.missing_ways > 0)
+        snprintf(ways, sizeof ways, "%s%zu way%s of multipolygons", read.missing_nodes > 0 ? ", " : "",
+                 read.missing_ways, camber_plural(read.missing_ways));
+    if (read.missing_nodes > 0)
+        camber_report_say(input->session->report, "missing: %zu node%s of ways%s", read.missing_nodes,
+                          camber_plural(read.missing_nodes), ways);
+    else if (ways[0])
+        camber_report_say(input->session->report, "missing: %s", ways);
+}
+#endif
 
 const camber_polylines *camber_input_polylines(const camber_input *input) {
 #ifdef CAMBER_MAP

@@ -60,6 +60,10 @@ typedef struct camber_style_input {
     char *bytes; /* the text if it was read, to be freed; else NULL */
 } camber_style_input;
 
+/* Prints how much INPUT names without having it; mostly nothing. */
+void camber_input_say_missing(const camber_input *input);
+/* Compiles the style that the options name, or the built-in one. Returns an exit status, its line printed. */
+int camber_input_make_style(camber_session *session, camber_theme theme, camber_style **style, const char **base_path);
 /* Whether a style that ships has this name, and no file has. */
 bool camber_input_ships(const char *name);
 /* Reads a style. theme is for a style that ships. Returns an exit status, its line printed. */

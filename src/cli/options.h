@@ -72,9 +72,11 @@ typedef struct camber_options {
     bool has_bbox, has_center;
     double zoom, bearing_deg, pitch_deg; /* NAN where not given */
     double simplify_px, width_px, fan_tolerance_px;
-    uint32_t threads;      /* 0: as many as there are */
-    uint64_t memory_bytes; /* memory limit of the run without its libraries. 0: the library's default */
-    uint32_t quality;      /* WebP's, 1 to 100. 0: the library's default */
+    const char *color, *fill; /* of what no rule of a built-in style takes. NULL: the style's own */
+    double width;             /* of its lines, CSS px. 0: the style's own */
+    uint32_t threads;         /* 0: as many as there are */
+    uint64_t memory_bytes;    /* memory limit of the run without its libraries. 0: the library's default */
+    uint32_t quality;         /* WebP's, 1 to 100. 0: the library's default */
     uint32_t runs;
     uint32_t windows; /* windows of each picture that are compared with exact coverage */
     const char *only; /* part of the names of the groups of checks that are made. NULL: all */

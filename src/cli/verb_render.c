@@ -40,7 +40,7 @@ static int draw(job *j) {
         status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_input_warn_empty(&j->input, "the picture has none");
+    camber_input_warn_empty(&j->input, "nothing is drawn");
     camber_report_progress(session->report, "tessellating", -1);
     const double began_ms = camber_clock_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
@@ -154,20 +154,6 @@ static void print_rings(const job *j) {
         camber_report_say(j->session->report, "areas: %s", text);
 }
 
-/* Prints how much INPUT names without having it. */
-static void print_missing(const job *j) {
-    const camber_features_stats read = camber_features_get_stats(j->input.features);
-    char ways[64] = "";
-    if (read.missing_ways > 0)
-        snprintf(ways, sizeof ways, "%s%zu way%s of multipolygons", read.missing_nodes > 0 ? ", " : "",
-                 read.missing_ways, camber_plural(read.missing_ways));
-    if (read.missing_nodes > 0)
-        camber_report_say(j->session->report, "missing: %zu node%s of ways%s", read.missing_nodes,
-                          camber_plural(read.missing_nodes), ways);
-    else if (ways[0])
-        camber_report_say(j->session->report, "missing: %s", ways);
-}
-
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
@@ -177,7 +163,7 @@ static void print_text(const job *j) {
                       scene.width, scene.height, scene.zoom, scene.longitude, scene.latitude);
     print_counts(j, &scene);
     print_rings(j);
-    print_missing(j);
+    camber_input_say_missing(&j->input);
     camber_report_say(report,
                       "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
                       "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",

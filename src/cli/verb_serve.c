@@ -214,14 +214,24 @@ static void tell_picture(void *owner, camber_status status) {
     pthread_mutex_unlock(&w->mutex);
 }
 
+/* Warns of a map in which nothing is drawn at any zoom. A style's own sources are read as they are asked for. */
+static void tell_nothing(const reading *it) {
+    char why[1024];
+    camber_input_say_missing(&it->input);
+    if (it->session->options->input_count &&
+        !camber_features_explain_nothing(it->input.features, 0, 22, why, sizeof why))
+        camber_report_warn(it->session->report, "nothing is drawn: %s", why);
+}
+
 static int read_map(reading *it) {
     const camber_options *options = it->session->options;
+    const char *base_path;
     int status = camber_input_open(&it->input, it->session);
     if (status == CAMBER_EXIT_DONE && !options->style && options->theme < 0)
-        status = camber_report_status(it->session->report,
-                                      camber_style_create_builtin(it->session->context, CAMBER_THEME_DARK, &it->dark));
+        status = camber_input_make_style(it->session, CAMBER_THEME_DARK, &it->dark, &base_path);
     if (status != CAMBER_EXIT_DONE)
         return status;
+    tell_nothing(it);
     it->shown.chart = (camber_chart){.features = it->input.features,
                                      .styles = {it->input.style, it->dark},
                                      .simplify_px = options->simplify_px,

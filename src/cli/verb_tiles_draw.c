@@ -330,15 +330,25 @@ static int print_json(const job *j) {
                   "done", stats->done, "min_zoom", (int)options->min_zoom, "max_zoom", (int)options->max_zoom);
     if (!object)
         return camber_report_json(j->session->report, NULL);
+    const camber_features_stats read = camber_features_get_stats(j->input.features);
     const struct {
         const char *name;
         uint64_t count;
-    } counts[] = {{"tiles", stats->tiles},           {"background_tiles", stats->background},
-                  {"units", stats->units},           {"resumed_units", stats->resumed},
-                  {"emptied_tiles", stats->emptied}, {"left_out_tiles", stats->left_out},
-                  {"points", stats->points},         {"points_in", j->input.points_in},
-                  {"bytes", stats->bytes},           {"shard", j->shard.number},
-                  {"shards", j->shard.count},        {"peak_rss_bytes", camber_peak_rss_bytes()}};
+    } counts[] = {{"tiles", stats->tiles},
+                  {"background_tiles", stats->background},
+                  {"units", stats->units},
+                  {"resumed_units", stats->resumed},
+                  {"emptied_tiles", stats->emptied},
+                  {"left_out_tiles", stats->left_out},
+                  {"points", stats->points},
+                  {"points_in", j->input.points_in},
+                  {"bytes", stats->bytes},
+                  {"shard", j->shard.number},
+                  {"shards", j->shard.count},
+                  {"missing_nodes", read.missing_nodes},
+                  {"missing_ways", read.missing_ways},
+                  {"dropped_relations", read.dropped_relations},
+                  {"peak_rss_bytes", camber_peak_rss_bytes()}};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         json_object_set_new(object, counts[i].name, camber_json_count((size_t)counts[i].count));
     const struct {
@@ -365,11 +375,13 @@ static void warn_empty(const job *j) {
     const camber_options *options = j->session->options;
     if (j->stats.done || j->stats.units || j->shard.count || options->renewed)
         return;
-    camber_report_warn(j->session->report, "%s has nothing that the style draws; there are no tiles",
-                       j->place_count      ? "what --tile names"
-                       : j->region         ? "the region"
-                       : options->has_bbox ? "the box (--bbox is W,S,E,N: longitudes come first)"
-                                           : "the input");
+    char why[1024];
+    (void)camber_features_explain_nothing(j->input.features, options->min_zoom, options->max_zoom, why, sizeof why);
+    camber_report_warn(j->session->report, "there are no tiles: %s%s", why,
+                       j->place_count      ? " (--tile names where)"
+                       : j->region         ? " (--region says where)"
+                       : options->has_bbox ? " (--bbox is W,S,E,N: longitudes come first)"
+                                           : "");
 }
 
 /* Tiles of --tiles that the archive is not to get. */
@@ -398,6 +410,7 @@ static void print_text(const job *j) {
                       dry ? "would have " : "", (unsigned long long)stats->tiles, camber_plural((size_t)stats->tiles),
                       (unsigned long long)stats->units, camber_plural((size_t)stats->units),
                       (unsigned long long)stats->points, size);
+    camber_input_say_missing(&j->input);
     if (stats->emptied)
         camber_report_say(report, "%llu tile%s taken out, since nothing is there now",
                           (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));

@@ -131,8 +131,7 @@ static camber_status write_conf(camber_dataset *dataset, const camber_style *sty
     /* Never empty: the driver would fall back on nothing. */
     bool made = add_key(&list, "highway", strlen("highway"));
     for (size_t i = 0; made && i < style->property_count; i++)
-        made = strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0 ||
-               add_key(&list, style->properties[i], strlen(style->properties[i]));
+        made = add_key(&list, style->properties[i], strlen(style->properties[i]));
     for (size_t i = 0; made && camber_osm_area_keys[i]; i++)
         made = add_key(&list, camber_osm_area_keys[i], strlen(camber_osm_area_keys[i]));
     if (made && dataset->desc->where)

@@ -19,16 +19,12 @@ static int find_field(OGRFeatureDefnH schema, const char *name) {
 
 static void find_properties(camber_columns *columns, OGRFeatureDefnH schema) {
     const camber_style *style = columns->features->style;
-    columns->plain = true;
     for (size_t i = 0; i < style->property_count; i++) {
         camber_column *one = &columns->items[i];
         *one = (camber_column){.field = -1};
-        if (strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0)
-            continue;
         one->field = find_field(schema, style->properties[i]);
         if (one->field < 0)
             continue;
-        columns->plain = columns->plain && !camber_features_lines_read(columns->features, OGR_FD_GetName(schema), i);
         OGRFieldDefnH definition = OGR_FD_GetFieldDefn(schema, one->field);
         one->type = OGR_Fld_GetType(definition);
         one->boolean = OGR_Fld_GetSubType(definition) == OFSTBoolean;
@@ -47,6 +43,7 @@ camber_status camber_columns_find(camber_columns *columns, camber_features *feat
         (!columns->areas && !(columns->areas = camber_alloc(context, keys, sizeof *columns->areas))))
         return CAMBER_ERROR_MEMORY;
     columns->features = features;
+    columns->unsorted = !osm && !(tiles && camber_style_names_layer(features->style, OGR_FD_GetName(schema)));
     find_properties(columns, schema);
     columns->id_count = columns->area_count = 0;
     for (size_t i = 0; tiles && i < sizeof id_names / sizeof *id_names; i++) {
@@ -129,10 +126,9 @@ camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature,
         const camber_status status = read_value(columns, feature, &columns->items[i], &columns->values[i]);
         if (status != CAMBER_OK)
             return status;
-        if (columns->plain && strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0)
-            columns->values[i] = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true};
     }
-    return camber_features_find_class(columns->features, layer, kind, columns->values, class_index);
+    const camber_feature_class wanted = {.layer = layer, .geometry = kind, .unsorted = columns->unsorted};
+    return camber_features_find_class_of(columns->features, &wanted, columns->values, class_index);
 }
 
 bool camber_columns_id(const camber_columns *columns, OGRFeatureH feature, uint64_t *id) {

@@ -7,7 +7,7 @@
 /* How many features are examined to learn what a layer of no declared type holds. */
 enum { PEEKED_FEATURES = 32 };
 
-static bool holds_lines(OGRwkbGeometryType type, const camber_style *style) {
+static bool holds_drawn(OGRwkbGeometryType type, const camber_style *style) {
     switch (wkbFlatten(type)) {
     case wkbUnknown:
     case wkbLineString:
@@ -24,7 +24,9 @@ static bool holds_lines(OGRwkbGeometryType type, const camber_style *style) {
     case wkbSurface:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbTriangle: return style->wants_polygons || style->wants_areas;
+    case wkbTriangle: return camber_features_unsorted_kinds(style) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
+    case wkbPoint:
+    case wkbMultiPoint: return camber_features_unsorted_kinds(style) & CAMBER_KIND_POINT;
     default: return false;
     }
 }
@@ -111,7 +113,7 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style 
         one = find_roads(handle);
     else
         for (int i = 0; i < total; i++)
-            if (holds_lines(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), style))
+            if (holds_drawn(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), style))
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;

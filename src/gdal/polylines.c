@@ -263,10 +263,16 @@ static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry,
     case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(lines, geometry, false, -1) : CAMBER_OK;
     case wkbPolygon:
     case wkbTriangle:
-        if (kind != CAMBER_GEOMETRY_LINE)
+        if (kind == CAMBER_GEOMETRY_POLYGON || kind == CAMBER_GEOMETRY_AREA)
             return collect_rings(lines, geometry, kind);
-        lines->left_out |= !lines->wants_polygons && !lines->wants_areas;
+        lines->left_out |= !(lines->kinds & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA));
         return CAMBER_OK;
+    case wkbPoint:
+        if (kind == CAMBER_GEOMETRY_POINT)
+            return add_line(lines, geometry, false, -1);
+        lines->left_out |= !(lines->kinds & CAMBER_KIND_POINT);
+        return CAMBER_OK;
+    case wkbMultiPoint:
     case wkbMultiLineString:
     case wkbMultiPolygon:
     case wkbPolyhedralSurface:

@@ -45,6 +45,15 @@ typedef struct reader {
 
 /* ---- Set-up for a layer ---- */
 
+/* What is read of the layer. */
+static unsigned kinds_of(const reader *self) {
+    const camber_style *style = self->features->style;
+    if (self->columns.unsorted)
+        return camber_features_unsorted_kinds(style);
+    return CAMBER_KIND_LINE | (style->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
+           (style->wants_areas ? CAMBER_KIND_AREA : 0u);
+}
+
 /* CAMBER_ERROR_ARGUMENT: the attribute filter does not fit the layer; nothing is logged then. */
 static camber_status begin_layer(reader *self, int index) {
     self->layer = GDALDatasetGetLayer(self->dataset.handle, index);
@@ -56,6 +65,7 @@ static camber_status begin_layer(reader *self, int index) {
         status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
+    self->lines.kinds = kinds_of(self);
     /* A filter may read any field, so none is ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
@@ -81,11 +91,13 @@ static camber_status begin_osm(reader *self, const int *layers, size_t count) {
     self->relations = GDALDatasetGetLayer(handle, layers[1]);
     if (self->desc->where)
         OGR_L_SetAttributeFilter(self->relations, self->desc->where); /* the lines tell whether it fits */
-    const camber_status status =
+    camber_status status =
         camber_features_find_layer(self->features, OGR_L_GetName(self->relations), &self->relations_index);
-    return status == CAMBER_OK ? camber_columns_find(&self->relation_columns, self->features,
-                                                     OGR_L_GetLayerDefn(self->relations), false, false)
-                               : status;
+    if (status == CAMBER_OK)
+        status = camber_columns_find(&self->relation_columns, self->features, OGR_L_GetLayerDefn(self->relations),
+                                     false, false);
+    self->relation_columns.unsorted = false;
+    return status;
 }
 
 /* ---- One feature ---- */
@@ -122,7 +134,7 @@ static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_g
     uint32_t index;
     camber_status status = camber_columns_class(relation ? &self->relation_columns : &self->columns, feature,
                                                 relation ? self->relations_index : self->layer_index, kind, &index);
-    if (status != CAMBER_OK)
+    if (status != CAMBER_OK || !camber_features_draw_class(self->features, index))
         return status;
     if (self->stitcher) {
         camber_tile_feature tile = {
@@ -151,7 +163,7 @@ static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometr
     const size_t invalid = lines->invalid_points, clamped = lines->world.clamped_points;
     const camber_status status =
         way ? camber_feature_lines_collect_ring(lines, geometry) : camber_feature_lines_collect(lines, geometry, kind);
-    if (lines->wants_polygons) { /* then they were counted with the outlines */
+    if (lines->kinds & CAMBER_KIND_POLYGON) { /* then they were counted with the outlines */
         lines->invalid_points = invalid;
         lines->world.clamped_points = clamped;
     }
@@ -166,17 +178,17 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
     lines->damaged = failed;
     const bool relation = is_relation(self, feature);
     const bool area = geometry && !relation && camber_columns_is_area(&self->columns, feature, geometry);
-    const bool wanted[CAMBER_GEOMETRY_KINDS] = {!area && !relation, lines->wants_polygons && !relation,
-                                                lines->wants_areas};
+    const unsigned areas = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
+    const unsigned kinds = lines->kinds & (relation ? CAMBER_KIND_AREA : area ? areas : ~0u);
     camber_status status = CAMBER_OK;
     for (int kind = 0; geometry && kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
-        if (!wanted[kind])
+        if (!(kinds >> kind & 1))
             continue;
         status = collect(self, geometry, (camber_geometry_kind)kind, area);
         if (status == CAMBER_OK && lines->world.line_count)
             status = add_to_features(self, feature, (camber_geometry_kind)kind);
     }
-    self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons && !lines->wants_areas);
+    self->stats.skipped_features += lines->left_out || (area && !(lines->kinds & areas));
     self->stats.damaged_features += lines->damaged;
     if (lines->damaged && self->damage[0] == 0)
         snprintf(self->damage, sizeof self->damage, "%s",
@@ -387,7 +399,7 @@ static void warn_of_losses(const reader *self) {
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s, empty geometry) of %zu features", path,
-                   self->lines.wants_areas ? "neither line nor area (points" : "no line (points, areas",
+                   self->lines.kinds & CAMBER_KIND_AREA ? "neither line nor area (points" : "no line (points, areas",
                    stats->skipped_features);
     if (stats->invalid_points)
         camber_log(self->context, CAMBER_LOG_WARNING,
@@ -412,7 +424,7 @@ static camber_status check_result(reader *self, size_t features_before) {
     if (self->features->feature_count == features_before && self->stats.skipped_features)
         return camber_fail(
             self->context, CAMBER_ERROR_INPUT,
-            self->lines.wants_areas
+            self->lines.kinds & CAMBER_KIND_AREA
                 ? "%s: no lines, no areas: %zu features have other geometry (points, nothing); name "
                   "another --layer"
                 : "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
@@ -434,8 +446,6 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
         goto done;
     self->lines = (camber_feature_lines){.context = context,
                                          .world = {.context = context, .whole = self->stitcher},
-                                         .wants_polygons = style->wants_polygons,
-                                         .wants_areas = style->wants_areas,
                                          .rings.stats = &self->features->stats,
                                          .directed = style->directed};
     if (self->dataset.osm)

@@ -25,7 +25,7 @@ typedef struct camber_feature_lines {
     camber_projection_kind projection;
     bool latitude_first;                    /* degrees come as latitude, longitude */
     OGRCoordinateTransformationH transform; /* owned */
-    bool wants_polygons, wants_areas;
+    unsigned kinds;                         /* CAMBER_KIND_*: what is read */
     camber_rings rings;
     bool directed; /* outlines go clockwise as seen, those of holes the other way */
 
@@ -157,7 +157,7 @@ typedef struct camber_columns {
     camber_features *features;
     camber_column *items; /* style->property_count */
     camber_value *values; /* style->property_count */
-    bool plain;           /* the layer has none of the style's properties */
+    bool unsorted;        /* as a class has it */
     int ids[4];           /* vector tiles: fields with an id, the best first */
     size_t id_count;
     int highway, area;

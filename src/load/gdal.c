@@ -93,7 +93,7 @@ static camber_status check_order(const camber_features *features, const camber_s
     return CAMBER_OK;
 }
 
-camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
     const size_t before = features->feature_count;
     bool declined = true;
     camber_status status = camber_osm_reads(desc) ? camber_osm_read(features, desc, &declined) : CAMBER_OK;
@@ -108,6 +108,14 @@ camber_status camber_features_read(camber_features *features, const camber_sourc
     if (status == CAMBER_OK)
         status = calls->read(features, desc);
     return status == CAMBER_OK ? check_order(features, desc, before) : status;
+}
+
+camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+    struct stat about;
+    const camber_status status = read_file(features, desc);
+    if (status == CAMBER_OK && stat(desc->path, &about) == 0 && S_ISREG(about.st_mode))
+        features->stats.input_bytes += (size_t)about.st_size;
+    return status;
 }
 
 const char *camber_format_list(size_t n) {

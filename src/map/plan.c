@@ -20,32 +20,52 @@ static bool is_active(const camber_style_layer *layer, double zoom) {
     return layer->visible && layer->min_zoom <= zoom && (zoom < layer->max_zoom || layer->max_zoom >= 24.0);
 }
 
-static camber_feature_view view_of(const camber_features *features, const camber_feature_class *class) {
+camber_feature_view camber_plan_view_of(const camber_features *features, const camber_feature_class *class) {
     return (camber_feature_view){
         .values = features->values ? features->values + class->first_value : NULL,
-        .geometry_type = class->geometry == CAMBER_GEOMETRY_LINE ? "LineString" : "Polygon",
+        .geometry_type = camber_geometry_type(class->geometry),
         .id = class->id,
         .all = class->all,
     };
 }
 
-/* Areas are filled; the outlines of polygons are lines too. */
-static bool takes(camber_plan_part part, camber_geometry_kind geometry) {
+/* Areas are filled; the outlines of polygons are lines too, and points the dots of plain layers' round caps. */
+static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, camber_geometry_kind kind) {
     if (part == CAMBER_PLAN_AREA)
-        return geometry == CAMBER_GEOMETRY_AREA;
-    return part == CAMBER_PLAN_OUTLINE ? geometry == CAMBER_GEOMETRY_POLYGON : geometry != CAMBER_GEOMETRY_AREA;
+        return kind == CAMBER_GEOMETRY_AREA;
+    if (part == CAMBER_PLAN_OUTLINE)
+        return kind == CAMBER_GEOMETRY_POLYGON;
+    return kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POLYGON ||
+           (kind == CAMBER_GEOMETRY_POINT && layer->plain);
+}
+
+/* Whether features of the class come to the layer's filter. */
+static bool comes_to(const camber_features *features, const camber_style_layer *layer,
+                     const camber_feature_class *class) {
+    if (layer->plain && !class->plain)
+        return false;
+    if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
+        return false;
+    return !layer->source_layer || strcmp(layer->source_layer, features->layer_names[class->layer]) == 0;
+}
+
+bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
+                       const camber_feature_class *class) {
+    const camber_feature_view feature = camber_plan_view_of(features, class);
+    const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
+    const bool fits =
+        takes_kind(layer, layer->kind == CAMBER_LAYER_FILL ? CAMBER_PLAN_AREA : CAMBER_PLAN_LINE, class->geometry) ||
+        (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
+    return layer->kind != CAMBER_LAYER_BACKGROUND && fits && comes_to(features, layer, class) &&
+           camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
                         const camber_feature_class *class) {
     const camber_style_layer *layer = drawn->look.layer;
-    if (!takes(drawn->part, class->geometry))
+    if (!takes_kind(layer, drawn->part, class->geometry) || !comes_to(features, layer, class))
         return false;
-    if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
-        return false;
-    if (layer->source_layer && strcmp(layer->source_layer, features->layer_names[class->layer]) != 0)
-        return false;
-    const camber_feature_view feature = view_of(features, class);
+    const camber_feature_view feature = camber_plan_view_of(features, class);
     return camber_style_layer_matches(layer, camber_view_style_zoom(view), &feature);
 }
 
@@ -73,8 +93,9 @@ static bool shares_polylines(const camber_plan_layer *one, const camber_plan_lay
     const camber_style_layer *a = one->look.layer, *b = other->look.layer;
     const bool same_part =
         one->part == other->part || (one->part <= CAMBER_PLAN_BORDER && other->part <= CAMBER_PLAN_BORDER);
-    return same_part && a->source_index == b->source_index && same_text(a->source_layer, b->source_layer) &&
-           same_text(a->filter_key, b->filter_key) && camber_layer_look_shares(&one->look, &other->look);
+    return same_part && a->plain == b->plain && a->source_index == b->source_index &&
+           same_text(a->source_layer, b->source_layer) && same_text(a->filter_key, b->filter_key) &&
+           camber_layer_look_shares(&one->look, &other->look);
 }
 
 /* A hash table of sets, by what layers must agree in to share one, so that time grows only with the number of
@@ -506,7 +527,7 @@ static camber_status match_set(const camber_features *features, const camber_vie
         rows->by_class.rows[at] = CAMBER_NO_ROW;
         if (!draws_class(features, first, view, features->classes + c))
             continue;
-        const camber_feature_view feature = view_of(features, features->classes + c);
+        const camber_feature_view feature = camber_plan_view_of(features, features->classes + c);
         double *key = rows->by_class.keys + at;
         if (!(camber_plan_is_area(plan, set) ? fill_areas(plan, set, view, &feature, table, key)
                                              : fill_tuple(plan, set, view, &feature, table, key)))

@@ -111,6 +111,10 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
                                size_t polyline_count, camber_plan_entries *list);
 void camber_plan_entries_free(camber_plan_entries *list);
 /* Does both, for all features. */
+camber_feature_view camber_plan_view_of(const camber_features *features, const camber_feature_class *class);
+/* Whether a layer takes features of the class at a zoom, which it may yet draw without width or colour. */
+bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
+                       const camber_feature_class *class);
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
 void camber_plan_destroy(camber_plan *plan);
 

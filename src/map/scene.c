@@ -213,26 +213,6 @@ static camber_scene bare_scene(const camber_features *features, double simplify_
                           .plan = {.context = features->context}};
 }
 
-/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines of any source layer go by
- * come first. */
-static void list_properties(const camber_style *style, char *text, size_t size) {
-    const size_t count = style->property_count;
-    const uint8_t readers = camber_readers_of(CAMBER_LAYER_LINE, false);
-    size_t used = 0, listed = 0;
-    *text = 0;
-    for (size_t k = 0; k < 2 * count; k++) {
-        const size_t i = k < count ? k : k - count;
-        const char *name = style->properties[i];
-        const bool is_first = style->property_readers && style->property_readers[i] & readers;
-        if (strcmp(name, CAMBER_PLAIN_PROPERTY) == 0 || is_first != (k < count))
-            continue;
-        const bool fits = listed < 8 && used + strlen(name) + sizeof ", , ..." <= size;
-        used += (size_t)snprintf(text + used, size - used, "%s%s", listed++ ? ", " : "", fits ? name : "...");
-        if (!fits)
-            return;
-    }
-}
-
 static bool has_patterns(const camber_plan *plan) {
     for (size_t i = 0; i < plan->layer_count; i++)
         if (plan->layers[i].look.layer->properties[CAMBER_LINE_PATTERN] ||
@@ -245,17 +225,15 @@ static bool has_patterns(const camber_plan *plan) {
  * not there were warned of already. */
 static void tell_undrawn(const camber_scene *scene) {
     const size_t undrawn = scene->plan.undrawn, all = scene->features->feature_count;
-    char keys[256];
+    char why[1024];
     if (has_patterns(&scene->plan))
         return;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: draws nothing of %zu of %zu features", undrawn, all);
     if (!undrawn || undrawn < all)
         return;
-    list_properties(scene->features->style, keys, sizeof keys);
-    camber_log(scene->context, CAMBER_LOG_WARNING,
-               "style: no layer draws any of the %zu feature%s at this zoom%s%s; name a style that does with --style",
-               all, all == 1 ? "" : "s", *keys ? ": it goes by " : "", keys);
+    (void)camber_features_explain_nothing(scene->features, scene->view.zoom, scene->view.zoom, why, sizeof why);
+    camber_log(scene->context, CAMBER_LOG_WARNING, "nothing is drawn: %s", why);
 }
 
 camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,

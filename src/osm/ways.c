@@ -57,7 +57,7 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
     while (camber_osm_area_keys[areas])
         areas++;
     *ways = (camber_osm_ways){
-        .context = features->context, .features = features, .plain = true, .where = where, .slot_count = FIRST_SLOTS};
+        .context = features->context, .features = features, .where = where, .slot_count = FIRST_SLOTS};
     camber_osm_node_set_init(&ways->nodes, features->context);
     camber_osm_relations_init(&ways->relations, features->context);
     *declined = style->property_count + areas >= UINT16_MAX - 3 - CAMBER_OSM_WHERE_KEYS;
@@ -69,11 +69,10 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < style->property_count; i++) {
         const char *name = style->properties[i];
-        if (strcmp(name, CAMBER_PLAIN_PROPERTY) == 0 || !camber_osm_is_key(name, strlen(name)))
+        if (!camber_osm_is_key(name, strlen(name)))
             continue;
         *declined = *declined || is_column(name);
         find_key(ways, name)->property = (uint32_t)i;
-        ways->plain = false;
     }
     for (size_t i = 0; i < areas; i++)
         find_key(ways, camber_osm_area_keys[i])->area = true;
@@ -656,11 +655,8 @@ static camber_status add_set(camber_osm_ways *ways, const block *from, const uin
         return CAMBER_ERROR_MEMORY;
     camber_value *values = ways->values + ways->set_count * count;
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = intern(ways, from, strings[i], &values[i]);
-        if (ways->plain && strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0)
-            values[i] = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true};
-    }
     if (status == CAMBER_OK && ways->set_count >= ways->slot_count / 2)
         status = grow_table(ways, count);
     if (status != CAMBER_OK)

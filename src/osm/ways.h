@@ -42,7 +42,6 @@ typedef struct camber_osm_ways {
     camber_features *features;
     camber_osm_key *keys;
     size_t key_count;
-    bool plain;                     /* the style names no key */
     bool has_places;                /* ways have places of nodes */
     const camber_osm_where *where;  /* NULL: all ways pass */
     camber_osm_relations relations; /* none unless the style wants areas */

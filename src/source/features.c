@@ -135,17 +135,9 @@ static bool is_of_files(const camber_features *features) {
     return true;
 }
 
-/* Whether a layer of the style names this source layer. */
-static bool names_layer(const camber_style *style, const char *name) {
-    for (size_t i = 0; i < style->layer_count; i++)
-        if (style->layers[i].source_layer && strcmp(style->layers[i].source_layer, name) == 0)
-            return true;
-    return false;
-}
-
 static bool names_layers_of(const camber_style *one, const camber_style *other) {
     for (size_t i = 0; i < other->layer_count; i++)
-        if (other->layers[i].source_layer && !names_layer(one, other->layers[i].source_layer))
+        if (other->layers[i].source_layer && !camber_style_names_layer(one, other->layers[i].source_layer))
             return false;
     return true;
 }
@@ -153,7 +145,9 @@ static bool names_layers_of(const camber_style *one, const camber_style *other) 
 static bool reads_the_same(const camber_style *one, const camber_style *other) {
     bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
                 one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
-                one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas;
+                one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
+                one->wants_plain == other->wants_plain && one->wants_plain_areas == other->wants_plain_areas &&
+                one->wants_plain_points == other->wants_plain_points;
     for (size_t i = 0; same && i < one->property_count; i++)
         same = strcmp(one->properties[i], other->properties[i]) == 0 &&
                (one->property_readers ? one->property_readers[i] : UINT8_MAX) ==
@@ -161,8 +155,42 @@ static bool reads_the_same(const camber_style *one, const camber_style *other) {
     return same && names_layers_of(one, other) && names_layers_of(other, one);
 }
 
+static const camber_value *values_of(const camber_features *features, const camber_feature_class *one) {
+    return features->style->property_count ? features->values + one->first_value : NULL;
+}
+
+/* Whether a layer takes the class: fills take areas, and so their outlines; lines take all but areas and points. */
+static bool is_taken(const camber_features *features, const camber_style *style, const camber_feature_class *one,
+                     const camber_value *values) {
+    const camber_feature_view feature = {
+        .values = values, .geometry_type = camber_geometry_type(one->geometry), .id = one->id, .all = one->all};
+    const bool filled = one->geometry == CAMBER_GEOMETRY_AREA || one->geometry == CAMBER_GEOMETRY_POLYGON;
+    const bool lined = one->geometry == CAMBER_GEOMETRY_LINE || one->geometry == CAMBER_GEOMETRY_POLYGON;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        const bool fits = (layer->kind == CAMBER_LAYER_FILL && filled) || (layer->kind == CAMBER_LAYER_LINE && lined);
+        const char *name = layer->source_layer;
+        if (fits && !layer->plain && (!name || strcmp(name, features->layer_names[one->layer]) == 0) &&
+            camber_style_layer_takes(layer, &feature))
+            return true;
+    }
+    return false;
+}
+
+/* Whether the same classes are plain in it. */
+static bool takes_the_same(const camber_features *features, const camber_style *style) {
+    for (size_t i = 0; i < features->class_count; i++) {
+        const camber_feature_class *one = &features->classes[i];
+        if (one->unsorted && style->wants_plain &&
+            one->plain == is_taken(features, style, one, values_of(features, one)))
+            return false;
+    }
+    return true;
+}
+
 camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
-    if (style->sprite_count || features->sprites || !is_of_files(features) || !reads_the_same(features->style, style))
+    if (style->sprite_count || features->sprites || !is_of_files(features) || !reads_the_same(features->style, style) ||
+        !takes_the_same(features, style))
         return camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
                            "style: reads other properties or images than the one before; read the files again");
     features->style = style;
@@ -378,15 +406,11 @@ static uint64_t hash_value(uint64_t hash, const camber_value *value) {
 }
 
 static uint64_t hash_class(const camber_feature_class *one, const camber_value *values, size_t count) {
-    uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry);
+    uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry << 1 | one->unsorted);
     hash = camber_mix(hash_value(hash, &one->id), (uintptr_t)one->all);
     for (size_t i = 0; i < count; i++)
         hash = hash_value(hash, &values[i]);
     return hash;
-}
-
-static const camber_value *values_of(const camber_features *features, const camber_feature_class *one) {
-    return features->style->property_count ? features->values + one->first_value : NULL;
 }
 
 static bool hash_classes(camber_features *features, size_t slots) {
@@ -433,15 +457,7 @@ static camber_status add_class(camber_features *features, const camber_feature_c
 
 static bool equal_classes(const camber_feature_class *a, const camber_feature_class *b) {
     return a->source == b->source && a->layer == b->layer && a->geometry == b->geometry && a->all == b->all &&
-           equal_values(&a->id, &b->id, 1);
-}
-
-bool camber_features_lines_read(const camber_features *features, const char *layer, size_t property) {
-    const camber_style *style = features->style;
-    unsigned readers = camber_readers_of(CAMBER_LAYER_LINE, false);
-    if (names_layer(style, layer))
-        readers |= camber_readers_of(CAMBER_LAYER_LINE, true);
-    return !style->property_readers || style->property_readers[property] & readers;
+           a->unsorted == b->unsorted && equal_values(&a->id, &b->id, 1);
 }
 
 /* The layers of the style that may draw the class, as camber_readers_of has them. */
@@ -449,8 +465,8 @@ static uint8_t readers_of(camber_features *features, const camber_feature_class 
     interner *set = features->interned;
     uint8_t readers = 0;
     if (!set->read || set->layer != one->layer)
-        set->layer_is_named =
-            one->layer < features->layer_count && names_layer(features->style, features->layer_names[one->layer]);
+        set->layer_is_named = one->layer < features->layer_count &&
+                              camber_style_names_layer(features->style, features->layer_names[one->layer]);
     set->layer = one->layer;
     for (int named = 0; named <= set->layer_is_named; named++) {
         if (one->geometry != CAMBER_GEOMETRY_AREA)
@@ -477,6 +493,28 @@ static const camber_value *read_values(camber_features *features, const camber_f
     return set->read;
 }
 
+unsigned camber_features_unsorted_kinds(const camber_style *style) {
+    unsigned kinds = CAMBER_KIND_LINE;
+    if (style->wants_polygons || style->wants_plain_areas)
+        kinds |= CAMBER_KIND_POLYGON;
+    if (style->wants_areas || style->wants_plain_areas)
+        kinds |= CAMBER_KIND_AREA;
+    return style->wants_plain_points ? kinds | CAMBER_KIND_POINT : kinds;
+}
+
+bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {
+    const camber_feature_class *one = &features->classes[class_index];
+    const camber_style *style = features->style;
+    if (!one->unsorted || one->plain)
+        return true;
+    switch (one->geometry) {
+    case CAMBER_GEOMETRY_POLYGON: return style->wants_polygons;
+    case CAMBER_GEOMETRY_AREA: return style->wants_areas;
+    case CAMBER_GEOMETRY_POINT: return false;
+    default: return true;
+    }
+}
+
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index) {
     interner *set = features->interned;
@@ -497,6 +535,7 @@ camber_status camber_features_find_class_of(camber_features *features, const cam
             return CAMBER_OK;
         }
     }
+    made.plain = made.unsorted && features->style->wants_plain && !is_taken(features, features->style, &made, read);
     const camber_status status = add_class(features, &made, read);
     if (status != CAMBER_OK)
         return status;

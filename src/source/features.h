@@ -14,6 +14,7 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
+    CAMBER_GEOMETRY_POINT,   /* lines of one point, for layers that are plain */
     CAMBER_GEOMETRY_KINDS
 } camber_geometry_kind;
 
@@ -22,11 +23,12 @@ enum {
     CAMBER_KIND_LINE = 1 << CAMBER_GEOMETRY_LINE,
     CAMBER_KIND_POLYGON = 1 << CAMBER_GEOMETRY_POLYGON,
     CAMBER_KIND_AREA = 1 << CAMBER_GEOMETRY_AREA,
+    CAMBER_KIND_POINT = 1 << CAMBER_GEOMETRY_POINT,
 };
 
 /* The type that a style's filters know a kind by. */
 static inline const char *camber_geometry_type(camber_geometry_kind kind) {
-    return kind == CAMBER_GEOMETRY_LINE ? "LineString" : "Polygon";
+    return kind == CAMBER_GEOMETRY_LINE ? "LineString" : kind == CAMBER_GEOMETRY_POINT ? "Point" : "Polygon";
 }
 
 typedef struct camber_feature_class {
@@ -36,6 +38,8 @@ typedef struct camber_feature_class {
     size_t first_value;      /* into values: style->property_count of them, in the style's order */
     camber_value id;         /* null where the style does not want it */
     const camber_value *all; /* an object of all properties, where the style wants them. NULL: none */
+    bool unsorted;           /* its file has no schema that says what is a road, a river, a building */
+    bool plain;              /* no layer takes it, at whatever zoom: it is drawn by layers that are plain */
 } camber_feature_class;
 
 struct camber_features {
@@ -112,11 +116,13 @@ camber_status camber_features_intern_json(camber_features *features, const json_
 /* values: style->property_count of them, interned. */
 camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
                                          const camber_value *values, uint32_t *class_index);
-/* Does the same with an id and all properties; wanted's source and first_value are not read. */
+/* Does the same with an id and all properties; wanted's source, first_value and plain are not read. */
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index);
-/* Whether a line layer of the style that may draw lines of the source layer reads the property. */
-bool camber_features_lines_read(const camber_features *features, const char *layer, size_t property);
+/* The kinds of geometry that are read of features without a schema: CAMBER_KIND_*. */
+unsigned camber_features_unsorted_kinds(const camber_style *style);
+/* Whether features of a class are kept: those of some kinds are read in case that they are plain. */
+bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
 /* Adds a polyline to the feature that was added last. points: pairs of world coordinates. */
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);

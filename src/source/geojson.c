@@ -303,7 +303,7 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
     camber_status status = CAMBER_OK;
     bool any = self->left_out;
     unsigned unread = 0;
-    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
+    for (int kind = 0; kind < CAMBER_GEOMETRY_POINT && status == CAMBER_OK; kind++) {
         bool drawn = false;
         self->kind = (camber_geometry_kind)kind;
         if (!has_kind(geometry, self->kind, 0))

@@ -52,7 +52,7 @@ struct camber_mvt {
     camber_value *known;      /* layer->n_values */
     bool *is_known;
     uint32_t ids[ID_KEYS], promoted, clips[2]; /* keys */
-    bool plain;
+    bool unsorted;                             /* the layer is none that the style knows */
 };
 
 #define NONE UINT32_MAX
@@ -142,9 +142,6 @@ static bool find_keys(camber_mvt *mvt) {
     for (uint32_t k = 0; k < layer->n_keys; k++) {
         const ProtobufCBinaryData key = layer->keys[k];
         mvt->key_properties[k] = find_property(mvt, key);
-        mvt->stats.names_property = mvt->stats.names_property ||
-                                    (mvt->key_properties[k] != NONE &&
-                                     camber_features_lines_read(mvt->desc.features, mvt->name, mvt->key_properties[k]));
         for (int i = 0; i < ID_KEYS; i++)
             mvt->ids[i] = is_text(key, id_keys[i]) ? k : mvt->ids[i];
         for (int i = 0; i < 2 && mvt->desc.wants_progress; i++)
@@ -240,10 +237,6 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     int best = ID_KEYS;
     for (size_t i = 0; i < style->property_count; i++)
         mvt->values[i] = (camber_value){0};
-    if (mvt->plain)
-        for (size_t i = 0; i < style->property_count; i++)
-            if (strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0)
-                mvt->values[i] = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true};
     for (size_t i = 0; i + 1 < feature->n_tags; i += 2) {
         const uint32_t key = feature->tags[i], index = feature->tags[i + 1];
         if (key >= mvt->layer->n_keys || index >= mvt->layer->n_values) {
@@ -285,6 +278,25 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     return CAMBER_OK;
 }
 
+/* Adds the points that lie in the tile: those of its buffer are in the next one, too. */
+static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
+    const camber_mvt_geometry *geometry = &mvt->geometry;
+    const double side = ldexp(1.0, mvt->address.zoom);
+    camber_status status = CAMBER_OK;
+    bool added = false;
+    for (size_t i = 0; i < geometry->point_count && status == CAMBER_OK; i++) {
+        const double *point = geometry->points + 2 * i;
+        if (floor(point[0] * side) != mvt->address.column || floor(point[1] * side) != mvt->address.row)
+            continue;
+        if (!added)
+            status = camber_features_add_feature(mvt->desc.features, class_index);
+        added = true;
+        if (status == CAMBER_OK)
+            status = camber_features_add_polyline(mvt->desc.features, point, 1);
+    }
+    return status;
+}
+
 static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
                                      const char **damage) {
     const camber_style *style = mvt->desc.features->style;
@@ -294,7 +306,7 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
                                     .area = kind == CAMBER_GEOMETRY_AREA,
                                     .progress = {0, 1},
                                     .open_sides = mvt->address.open_sides};
-    camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind};
+    camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind, .unsorted = mvt->unsorted};
     camber_value promoted = {0};
     camber_status status = read_tags(mvt, feature, &promoted, &stitched, damage);
     if (style->wants_id && promoted_name(mvt))
@@ -305,8 +317,10 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
         status = read_all_properties(mvt, feature, &wanted.all);
     if (status == CAMBER_OK)
         status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched.class_index);
-    if (status != CAMBER_OK)
+    if (status != CAMBER_OK || !camber_features_draw_class(mvt->desc.features, stitched.class_index))
         return status;
+    if (kind == CAMBER_GEOMETRY_POINT)
+        return add_points(mvt, stitched.class_index);
     const camber_tile_lines lines = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.line_count};
     return camber_tile_stitcher_add(mvt->desc.stitcher, &stitched, &lines);
 }
@@ -353,7 +367,8 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
         return judge_failure(mvt, "a feature that does not parse");
     mvt->stats.features++;
     const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
-    const unsigned kinds = mvt->kinds & (feature->type == 2 ? CAMBER_KIND_LINE : feature->type == 3 ? polygons : 0u);
+    const unsigned of_type[] = {0, CAMBER_KIND_POINT, CAMBER_KIND_LINE, polygons};
+    const unsigned kinds = mvt->kinds & of_type[(unsigned)feature->type <= 3 ? feature->type : 0];
     mvt->stats.skipped_features += !kinds;
     camber_status status = CAMBER_OK;
     const char *damage = NULL;
@@ -383,9 +398,12 @@ static unsigned wanted_kinds(const camber_mvt *mvt) {
     for (size_t i = 0; i < desc->layer_count; i++) {
         if (strcmp(desc->layers[i], mvt->name) != 0)
             continue;
-        return desc->layer_kinds ? desc->layer_kinds[i]
-                                 : CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
-                                       (desc->wants_areas ? CAMBER_KIND_AREA : 0u);
+        if (desc->layer_kinds)
+            return desc->layer_kinds[i];
+        if (mvt->unsorted)
+            return camber_features_unsorted_kinds(desc->features->style);
+        return CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
+               (desc->wants_areas ? CAMBER_KIND_AREA : 0u);
     }
     return 0;
 }
@@ -425,6 +443,7 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     mvt->layer = layer;
     if (!mvt->desc.layers)
         return list_layer(mvt);
+    mvt->unsorted = mvt->desc.unsorted && !camber_style_names_layer(mvt->desc.features->style, mvt->name);
     mvt->kinds = wanted_kinds(mvt);
     if (!mvt->kinds)
         return CAMBER_OK;
@@ -436,8 +455,6 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     camber_status status = camber_features_find_layer(mvt->desc.features, mvt->name, &mvt->layer_index);
     if (status == CAMBER_OK && !find_keys(mvt))
         status = judge_failure(mvt, "a layer's keys");
-    else
-        mvt->plain = mvt->desc.plain && !mvt->stats.names_property;
     if (status != CAMBER_OK || mvt->pool.exhausted)
         return status;
     const camber_pool_mark mark = camber_pool_here(&mvt->pool);

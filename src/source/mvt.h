@@ -24,7 +24,7 @@ typedef struct camber_mvt_desc {
     bool wants_polygons, wants_areas;
     json_t *promote_id;  /* the property that is the id, as a string, or by layer as an object. NULL: none */
     bool wants_progress; /* mapbox_clip_start and mapbox_clip_end are line-progress at a feature's ends */
-    bool plain;          /* CAMBER_PLAIN_PROPERTY is true until a layer is seen to name another property */
+    bool unsorted;       /* the tiles may have no schema that the style knows */
 } camber_mvt_desc;
 
 /* Counts of all tiles so far. */
@@ -35,7 +35,6 @@ typedef struct camber_mvt_stats {
     char damage[256];     /* the first: tile, layer, cause */
     size_t features;      /* in the wanted layers */
     size_t kept_features; /* those of them that gave any points */
-    bool names_property;  /* a wanted layer has a key that the style names */
 } camber_mvt_stats;
 
 /* A layer that some tile has. */

@@ -44,13 +44,14 @@ static bool add_first_again(const pen *p) {
 
 static bool end_line(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
-    const bool ring = p->commands->kind != CAMBER_GEOMETRY_LINE;
+    const bool point = p->commands->kind == CAMBER_GEOMETRY_POINT;
+    const bool ring = !point && p->commands->kind != CAMBER_GEOMETRY_LINE;
     const size_t count = geometry->point_count - p->first;
     if (count == 0)
         return true;
     if (ring && !p->closed)
         note_damage(geometry, "a ring that is not closed");
-    if (count < (ring ? 3u : 2u)) {
+    if (count < (ring ? 3u : point ? 1u : 2u)) {
         note_damage(geometry, ring ? "a ring of one point" : "a line of one point");
         geometry->point_count = p->first;
         return true;
@@ -73,7 +74,8 @@ static int64_t unzigzag(uint32_t word) {
 
 static bool close_ring(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
-    if (p->commands->kind == CAMBER_GEOMETRY_LINE || geometry->point_count == p->first) {
+    const camber_geometry_kind kind = p->commands->kind;
+    if (kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POINT || geometry->point_count == p->first) {
         note_damage(geometry, "it closes what is not a ring");
         return true;
     }

@@ -43,27 +43,20 @@ static camber_status read_tile_at(reader *self, const camber_tile_address *addre
     return why ? CAMBER_OK : camber_mvt_read(self->mvt, address, self->bytes.data, self->bytes.size_bytes);
 }
 
-/* restart: CAMBER_PLAIN_PROPERTY was set for features before a tile named another property. */
-static camber_status read_addresses(reader *self, bool *restart) {
+static camber_status read_addresses(reader *self) {
     const camber_mvt_stats *stats = camber_mvt_get_stats(self->mvt);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < self->reading->address_count && status == CAMBER_OK; i++) {
-        const size_t before = stats->features;
-        const bool named = stats->names_property;
         const size_t damaged = stats->damaged_features, given = stats->kept_features + stats->skipped_features;
         status = read_tile_at(self, &self->reading->addresses[i]);
         self->lost += stats->damaged_features > damaged && stats->kept_features + stats->skipped_features == given;
-        if (self->reading->mvt.plain && !named && stats->names_property && before) {
-            *restart = true;
-            return CAMBER_OK;
-        }
         show_progress(self, i);
     }
     return status;
 }
 
-static camber_status read_once(camber_features *features, const camber_tile_reading *reading,
-                               camber_tile_result *result, bool *restart) {
+camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
+                                         camber_tile_result *result) {
     camber_context *context = features->context;
     reader self = {.context = context, .reading = reading, .bytes.context = context};
     camber_mvt_desc desc = reading->mvt;
@@ -72,8 +65,8 @@ static camber_status read_once(camber_features *features, const camber_tile_read
     if (status == CAMBER_OK)
         status = camber_mvt_create(context, &desc, &self.mvt);
     if (status == CAMBER_OK)
-        status = read_addresses(&self, restart);
-    if (status == CAMBER_OK && !*restart)
+        status = read_addresses(&self);
+    if (status == CAMBER_OK)
         status = camber_tile_stitcher_finish(desc.stitcher, features);
     if (status == CAMBER_OK)
         *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found, self.lost};
@@ -81,17 +74,6 @@ static camber_status read_once(camber_features *features, const camber_tile_read
     camber_mvt_destroy(self.mvt);
     camber_tile_stitcher_destroy(desc.stitcher);
     return status;
-}
-
-camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
-                                         camber_tile_result *result) {
-    camber_tile_reading again = *reading;
-    bool restart = false;
-    camber_status status = read_once(features, reading, result, &restart);
-    if (status != CAMBER_OK || !restart)
-        return status;
-    again.mvt.plain = restart = false;
-    return read_once(features, &again, result, &restart);
 }
 
 /* ---- A file as input ---- */
@@ -149,13 +131,12 @@ static camber_status look_for_layers(input *self) {
                                          .addresses = self->addresses,
                                          .address_count = self->address_count,
                                          .mvt.features = self->features};
-    bool restart = false;
     camber_budget_read_again(context);
     look.reading = &reading;
     camber_status status = camber_mvt_create(context, &reading.mvt, &look.mvt);
     if (status != CAMBER_OK)
         return status;
-    status = read_addresses(&look, &restart);
+    status = read_addresses(&look);
     size_t count;
     const camber_mvt_layer *layers = camber_mvt_layers(look.mvt, &count);
     const camber_mvt_stats *stats = camber_mvt_get_stats(look.mvt);
@@ -215,6 +196,23 @@ static const char *find_one(const input *self) {
     return named ? find_named(self, named) : find_roads(self);
 }
 
+static bool holds_drawn(const input *self, size_t i) {
+    return self->features->style->wants_plain_areas ||
+           json_is_true(json_object_get(json_array_get(self->set->layers, i), "lines"));
+}
+
+/* Tiles of no schema: the first layer with lines, or all, where the style draws what it does not know. */
+static camber_status choose_all(input *self) {
+    const size_t count = json_array_size(self->set->layers);
+    camber_free(self->context, self->layers);
+    if (!(self->layers = camber_alloc(self->context, count + 1, sizeof *self->layers)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count && (self->features->style->wants_plain || self->layer_count == 0); i++)
+        if (layer_name(self, i) && holds_drawn(self, i))
+            self->layers[self->layer_count++] = layer_name(self, i);
+    return self->layer_count ? CAMBER_OK : fail_layer(self);
+}
+
 static camber_status choose_one(input *self) {
     const char *name = find_one(self);
     if (!name) {
@@ -222,9 +220,8 @@ static camber_status choose_one(input *self) {
         if (status != CAMBER_OK)
             return status;
         name = find_one(self);
-        const json_t *first = json_array_get(self->set->layers, 0);
-        if (!name && !self->desc->layer && json_is_true(json_object_get(first, "lines")))
-            name = layer_name(self, 0);
+        if (!name && !self->desc->layer)
+            return choose_all(self);
     }
     if (!name)
         return fail_layer(self);
@@ -266,13 +263,6 @@ static camber_status choose_layers(input *self) {
     return self->layer_count ? CAMBER_OK : choose_one(self);
 }
 
-static bool wants_plain(const camber_style *style) {
-    for (size_t i = 0; i < style->property_count; i++)
-        if (strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0)
-            return true;
-    return false;
-}
-
 static camber_status read_input(input *self, camber_tile_result *result) {
     const camber_style *style = self->features->style;
     camber_status status = camber_tile_set_open(self->context, self->desc->path, CAMBER_NAMED_BY_CALLER, &self->set);
@@ -291,7 +281,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
                                                  .wants_areas = style->wants_areas,
-                                                 .plain = wants_plain(style)}};
+                                                 .unsorted = true}};
     return camber_features_read_tiles(self->features, &reading, result);
 }
 

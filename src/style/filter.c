@@ -195,14 +195,15 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
     return camber_expression_end(c, done, root, expression);
 }
 
-/* ---- Polygons ---- */
+/* ---- Types of geometry ---- */
 
-static bool names_polygon(const json_t *json) {
+/* Whether it names the type, or several of it: "MultiPolygon". */
+static bool names_type(const json_t *json, const char *type) {
     const char *text = json_string_value(json);
-    if (is_word(text, "Polygon") || is_word(text, "MultiPolygon"))
+    if (text && strcmp(strncmp(text, "Multi", 5) == 0 ? text + 5 : text, type) == 0)
         return true;
     for (size_t i = 0; i < json_array_size(json); i++)
-        if (names_polygon(json_array_get(json, i)))
+        if (names_type(json_array_get(json, i), type))
             return true;
     return false;
 }
@@ -212,7 +213,7 @@ static bool is_geometry_type(const json_t *json) {
            is_word(json_string_value(json_array_get(json, 0)), "geometry-type");
 }
 
-bool camber_filter_asks_polygons(const json_t *json) {
+bool camber_filter_asks(const json_t *json, const char *type) {
     const char *op = json_string_value(json_array_get(json, 0));
     if (!op || op[0] == '!' || is_word(op, "none"))
         return false;
@@ -221,6 +222,6 @@ bool camber_filter_asks_polygons(const json_t *json) {
         about_type = about_type || is_geometry_type(json_array_get(json, i));
     for (size_t i = 1; i < json_array_size(json) && !asks; i++)
         asks =
-            about_type ? names_polygon(json_array_get(json, i)) : camber_filter_asks_polygons(json_array_get(json, i));
+            about_type ? names_type(json_array_get(json, i), type) : camber_filter_asks(json_array_get(json, i), type);
     return asks;
 }

@@ -120,14 +120,30 @@ static bool read_layer_visibility(camber_document *d, const json_t *json, camber
     return true;
 }
 
+/* Fails at a key of a layer's metadata. */
+static bool fail_metadata(camber_document *d, const char *key, const char *message) {
+    const size_t depth = d->compiler.path_length;
+    camber_compiler_enter_key(&d->compiler, "metadata");
+    camber_compiler_enter_key(&d->compiler, key);
+    camber_compiler_fail(&d->compiler, "%s", message);
+    return camber_document_goes_on(d, depth);
+}
+
+/* Reads the metadata {"camber:plain": true}. */
+static bool read_plain(camber_document *d, const json_t *json, camber_style_layer *layer) {
+    const json_t *plain = json_object_get(json_object_get(json, "metadata"), "camber:plain");
+    layer->plain = json_is_true(plain);
+    return !plain || json_is_boolean(plain) ||
+           fail_metadata(d, "camber:plain", "expected true or false; write one of them");
+}
+
 /* Reads the metadata {"camber:overlap": ...}. */
-static bool read_metadata(camber_document *d, const json_t *json, camber_style_layer *layer) {
+static bool read_overlap(camber_document *d, const json_t *json, camber_style_layer *layer) {
     static const char *const names[] = {[CAMBER_OVERLAP_FLATTEN] = "flatten",
                                         [CAMBER_OVERLAP_ACCUMULATE] = "accumulate",
                                         [CAMBER_OVERLAP_UNITE] = "unite"};
     static const char key[] = "camber:overlap";
     const json_t *overlap = json_object_get(json_object_get(json, "metadata"), key);
-    const size_t depth = d->compiler.path_length;
     if (!overlap)
         return true;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
@@ -136,10 +152,11 @@ static bool read_metadata(camber_document *d, const json_t *json, camber_style_l
             d->compiler.style->accumulates |= layer->overlap == CAMBER_OVERLAP_ACCUMULATE;
             return true;
         }
-    camber_compiler_enter_key(&d->compiler, "metadata");
-    camber_compiler_enter_key(&d->compiler, key);
-    camber_compiler_fail(&d->compiler, "expected \"flatten\", \"accumulate\" or \"unite\"; write one of them");
-    return camber_document_goes_on(d, depth);
+    return fail_metadata(d, key, "expected \"flatten\", \"accumulate\" or \"unite\"; write one of them");
+}
+
+static bool read_metadata(camber_document *d, const json_t *json, camber_style_layer *layer) {
+    return read_overlap(d, json, layer) && read_plain(d, json, layer);
 }
 
 /* ---- Filters ---- */
@@ -390,14 +407,29 @@ static bool index_layers(camber_document *d, const json_t *layers) {
 /* Finds what else than lines is drawn of the features. */
 static void find_wants(camber_style *style) {
     style->wants_polygons = style->wants_areas = false;
+    style->wants_plain = style->wants_plain_areas = style->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool fills = layer->kind == CAMBER_LAYER_FILL && layer->visible;
         const bool lines = layer->kind == CAMBER_LAYER_LINE && layer->filter;
+        if (layer->plain) {
+            style->wants_plain |= layer->visible;
+            style->wants_plain_areas |= fills;
+            style->wants_plain_points |=
+                lines && layer->visible && camber_filter_asks(layer->filter->document, "Point");
+            continue;
+        }
         style->wants_areas |= fills;
         style->wants_polygons |= (fills && layer->properties[CAMBER_FILL_OUTLINE_COLOR]) ||
-                                 (lines && camber_filter_asks_polygons(layer->filter->document));
+                                 (lines && camber_filter_asks(layer->filter->document, "Polygon"));
     }
+}
+
+bool camber_style_names_layer(const camber_style *style, const char *source_layer) {
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (style->layers[i].source_layer && strcmp(style->layers[i].source_layer, source_layer) == 0)
+            return true;
+    return false;
 }
 
 bool camber_document_read_layers(camber_document *d, const json_t *layers) {

@@ -25,6 +25,10 @@ bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, co
     return passes_filter(layer->filter, zoom, feature);
 }
 
+bool camber_style_layer_takes(const camber_style_layer *layer, const camber_feature_view *feature) {
+    return layer->visible && passes_filter(layer->filter, layer->min_zoom, feature);
+}
+
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature) {
     return passes_filter(source->filter, 0.0, feature);
 }

@@ -8,15 +8,10 @@
 
 #include <jansson.h>
 
-/* The style's pseudo property that a source sets to true on every feature of a layer whose schema has none of
- * the other properties that the style's line layers read, and leaves null elsewhere: such lines cannot be classified.
- */
-#define CAMBER_PLAIN_PROPERTY "camber:plain"
-
 /* A feature as an expression reads it. */
 typedef struct camber_feature_view {
     const camber_value *values; /* style->property_count, in the order of style->properties */
-    const char *geometry_type;  /* "LineString" or "Polygon" */
+    const char *geometry_type;  /* "Point", "LineString" or "Polygon" */
     camber_value id;            /* where the style wants it; null: none */
     const camber_value *all;    /* an object of all properties, where the style wants them. NULL: none */
 } camber_feature_view;
@@ -91,6 +86,7 @@ typedef struct camber_style_layer {
     double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
     bool visible;
     camber_overlap overlap;    /* from its metadata, since no property of the specification says it */
+    bool plain;                /* from its metadata: draws what no other layer takes, and that alone */
     camber_expression *filter; /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
     camber_layer_ramp ramp, border_ramp; /* for line-gradient, and for its border where that has no colour */
@@ -143,6 +139,8 @@ struct camber_style {
     bool wants_polygons; /* outlines are drawn: a line layer's filter names the geometry type Polygon, or a fill layer
                             has a colour for them */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
+    /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
+    bool wants_plain, wants_plain_areas, wants_plain_points;
 };
 
 /* The readers of layers of a kind: a bit for those of any source layer, and another one for those that name theirs. */
@@ -156,6 +154,10 @@ bool camber_style_source_matches(const camber_style_source *source, const camber
 /* Whether the layer draws features of this class at this zoom (visible, zoom range, filter). A filter that
  * fails to evaluate is false. */
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature);
+/* Whether the style has a layer of its own for this source layer, so that it knows the schema. */
+bool camber_style_names_layer(const camber_style *style, const char *source_layer);
+/* Whether it does at any zoom, by a filter that does not depend on it. */
+bool camber_style_layer_takes(const camber_style_layer *layer, const camber_feature_view *feature);
 
 typedef enum camber_translate_anchor {
     CAMBER_TRANSLATE_MAP = 0,

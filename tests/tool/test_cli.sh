@@ -415,7 +415,7 @@ expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --
 is_png close.png 99 77
 expect 0 "nothing in the view" render "$osm" -o nothing.png --bbox 10,10,11,11 --size 50x50
 is_png nothing.png 50 50
-says '^camber: warning: no line that the style draws is in the view (--bbox is W,S,E,N: longitudes come first); '
+says '^camber: warning: nothing is drawn: .* in the view; .* (--bbox is W,S,E,N: longitudes come first)$'
 expect 0 "nothing in the view, tessellated" tessellate "$osm" -o nothing.glb --bbox 10,10,11,11
 [ "$(le32 nothing.glb 8)" = "$(stat -c %s nothing.glb)" ] || fail "no whole GLB"
 says '^camber: warning: '
@@ -744,12 +744,14 @@ echo '{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"h
 "coordinates":[1,1]}}]}' >"$tmp/in/points.geojson"
 sed 's/\[\[1,1\],\[2,2\]\]/[["a","b"],["c","d"]]/' "$tmp/in/line.geojson" >"$tmp/in/words.geojson"
 expect 66 "missing" render "$tmp/in/none.osm.pbf" -o a.png
-for file in empty.geojson empty.osm.pbf empty cut.mbtiles random.osm.pbf random.geojson cut.geojson points.geojson \
+for file in empty.geojson empty.osm.pbf empty cut.mbtiles random.osm.pbf random.geojson cut.geojson \
     words.geojson; do
     expect 65 "$file" render "$tmp/in/$file" -o a.png
     expect 65 "$file, tessellated" tessellate "$tmp/in/$file" -o a.glb --json
     [ -s "$tmp/stdout" ] && fail "an error has something on standard output"
 done
+echo '{"version":8,"sources":{},"layers":[{"id":"a","type":"line","filter":["==",["get","highway"],"primary"]}]}' >"$tmp/in/primary.json"
+expect 65 "points in a style of lines" render "$tmp/in/points.geojson" -o a.png --style "$tmp/in/primary.json"
 printf 'root:x:0:0:root:/root:/bin/sh\n' >"$tmp/in/text"
 cp "$tmp/in/text" "$tmp/in/text.geojson"
 for file in text text.geojson; do
@@ -767,21 +769,21 @@ rm -f a.png
 # Lines that the style leaves out are told at length; where it leaves out everything, always.
 rail=${line/highway/railway}
 echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$rail]}" >"$tmp/in/rail.geojson"
-expect 0 "a line that the style leaves out" render "$tmp/in/rail.geojson" -o a.png --size 64x64
+expect 0 "a line that the style leaves out" render "$tmp/in/rail.geojson" -o a.png --size 64x64 --style "$tmp/in/primary.json"
 lacks "$tmp/stderr" '^camber: '
-expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geojson" -o a.png -f --size 64x64 -v
+expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geojson" -o a.png -f --size 64x64 -v --style "$tmp/in/primary.json"
 says '^camber: info: style: draws nothing of 1 of 2 features$'
 echo "{\"type\":\"FeatureCollection\",\"features\":[$rail,${line/primary/nothing of a road}]}" >"$tmp/in/undrawn.geojson"
-expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64
-says '^camber: warning: style: no layer draws any of the 2 features at this zoom: it goes by .*highway.*; name a style'
+expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64 --style "$tmp/in/primary.json"
+says '^camber: warning: nothing is drawn: 2 lines of [0-9]* bytes read, but no layer of the style draws any of it: it goes by highway; name a style'
 [ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
 rm -f a.png
 point='{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}}'
 echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$point]}" >"$tmp/in/mixed.geojson"
 expect 0 "a line and a point" render "$tmp/in/mixed.geojson" -o a.png --size 64x64
 lacks "$tmp/stderr" '^camber: '
-expect 0 "a line and a point, at length" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v
-says '^camber: info: .*left out what is neither line nor area .* of 1 features$'
+expect 0 "a line and a point, at length" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v --style "$tmp/in/primary.json"
+says '^camber: info: .*left out what is no line .* of 1 features$'
 if command -v python3 >/dev/null; then # a socket that keeps apart what was written at once: threads write, too
     python3 -c 'import socket, subprocess, sys
 here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -902,7 +904,7 @@ has "$tmp/stdout" '"features": 1'
 is_png a.png 64 64
 rm -f a.png
 # Lines that lie in one place: a dot where caps are round, nothing where they are butt, at any zoom.
-place='{"type":"LineString","coordinates":[[5,5],[5,5]]}'
+place='{"type":"Feature","properties":{"highway":"residential"},"geometry":{"type":"LineString","coordinates":[[5,5],[5,5]]}}'
 echo "$place" >"$tmp/in/place.geojson"
 echo "${place/\[\[5,5\],\[5,5\]\]/[[0,90],[0,89]]}" >"$tmp/in/pole.geojson"
 for cap in butt round; do

@@ -432,7 +432,7 @@ static void test_polygons(void **state) {
     };
     for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
         json_t *json = load(samples[i].filter);
-        if (camber_filter_asks_polygons(json) != samples[i].asks)
+        if (camber_filter_asks(json, "Polygon") != samples[i].asks)
             fail_msg("%s", samples[i].filter);
         json_decref(json);
     }

@@ -254,11 +254,6 @@ static void test_read_values(void **state) {
             if ((classes[0] != classes[1]) != (cases[c][p].count == 2))
                 fail_msg("%s, case %zu", names[p], c);
         }
-    static const bool read_of_lines[] = {true, false, false}, read_of_transport[] = {true, false, true};
-    for (size_t p = 0; p < 3; p++) {
-        assert_int_equal(camber_features_lines_read(features, "lines", p), read_of_lines[p]);
-        assert_int_equal(camber_features_lines_read(features, "transport", p), read_of_transport[p]);
-    }
     /* Another style that names other source layers would have read other values. */
     camber_style_layer other_layer = {.source_layer = "roads"};
     camber_style other = style;

@@ -10,8 +10,8 @@
 
 #include <dirent.h>
 
-static char *roads[] = {"highway", "bridge", "tunnel", "layer", "building", "name", CAMBER_PLAIN_PROPERTY};
-static char *nothing[] = {CAMBER_PLAIN_PROPERTY, "no key, this"};
+static char *roads[] = {"highway", "bridge", "tunnel", "layer", "building", "name"};
+static char *nothing[] = {"no key, this"};
 
 typedef struct fixture {
     file_reading on;
@@ -211,7 +211,7 @@ static void test_ways(void **state) {
         it->on.style.wants_polygons = style % 3 == 1;
         it->on.style.wants_areas = style >= 3;
         if (style == 2)
-            use_style(it, nothing, 2);
+            use_style(it, nothing, 1);
         WAY(it, street, 10, 11, 12);
         WAY(it, house, 10, 11, 12, 10);
         WAY(it, house, 10, 11, 10);          /* two segments are no area */
@@ -499,7 +499,7 @@ static void add_coast(fixture *it, const int64_t box[4]) {
 
 /* The sea is water as a pond is, if the style looks at that, and the file says where its coast is whole. */
 static void test_sea(void **state) {
-    static char *natural[] = {"highway", "natural", CAMBER_PLAIN_PROPERTY};
+    static char *natural[] = {"highway", "natural"};
     static const char *const old[] = {"type", "multipolygon", NULL};
     static const int64_t box[4] = {1005000000, 1085000000, 2085000000, 2005000000};
     fixture *it = *state;

@@ -10,8 +10,8 @@
 #include <math.h>
 #include <sys/stat.h>
 
-static char *properties[] = {"highway", "type", "MTFCC", "bridge", "tunnel", "layer", CAMBER_PLAIN_PROPERTY};
-enum { HIGHWAY, TYPE, MTFCC, BRIDGE, TUNNEL, LAYER, PLAIN, PROPERTIES };
+static char *properties[] = {"highway", "type", "MTFCC", "bridge", "tunnel", "layer"};
+enum { HIGHWAY, TYPE, MTFCC, BRIDGE, TUNNEL, LAYER, PROPERTIES };
 
 typedef file_reading fixture;
 
@@ -46,6 +46,14 @@ static const camber_value *value_of(const camber_features *set, size_t feature, 
     return &set->values[set->classes[set->feature_class[feature]].first_value + property];
 }
 
+/* Features that no layer of the style takes, of data without a schema. */
+static size_t count_plain(const camber_features *set) {
+    size_t count = 0;
+    for (size_t i = 0; i < set->feature_count; i++)
+        count += set->classes[set->feature_class[i]].plain;
+    return count;
+}
+
 /* Features with a value of the property. */
 static size_t count_with(const camber_features *set, size_t property) {
     size_t count = 0;
@@ -73,7 +81,7 @@ static void check_tiles(fixture *it, const char *path, size_t ids, double length
     assert_int_equal(set->feature_count, ids);
     assert_int_equal(set->polyline_count, ids); /* each feature in one piece again */
     assert_int_equal(count_with(set, property), ids);
-    assert_int_equal(count_with(set, PLAIN), 0);
+    assert_int_equal(count_plain(set), 0);
     double sum = 0;
     for (size_t i = 0; i < set->polyline_count; i++)
         for (size_t k = set->offsets[i] + 1; k < set->offsets[i + 1]; k++)
@@ -174,7 +182,7 @@ static void test_real_files(void **state) {
         assert_string_equal(
             attribution ? attribution : "none",
             strstr(files[i].name, ".osm") || strstr(files[i].name, "_osm") ? "(c) OpenStreetMap contributors" : "none");
-        assert_int_equal(count_with(set, PLAIN), 0);
+        assert_int_equal(count_plain(set), 0);
     }
 }
 
@@ -187,13 +195,12 @@ static void test_real_shapefile(void **state) {
     }
     char path[1024];
     snprintf(path, sizeof path, "%s/data/pittsburgh/edges.shp", data);
-    it->keep_apart = true;
+    it->keep_apart = it->style.wants_plain = true;
     expect_ok(it, read_path(it, path));
     const camber_features *set = it->features;
     assert_int_equal(set->feature_count, 29834);
     assert_int_equal(set->point_count, 108927);
-    assert_int_equal(count_with(set, PLAIN), 29834); /* no attributes */
-    assert_true(value_of(set, 0, PLAIN)->boolean);
+    assert_int_equal(count_plain(set), 29834); /* no attributes */
     assert_null(camber_features_get_attribution(set));
     /* UTM becomes Pittsburgh: 40.44 N, 80.0 W. */
     double longitude, latitude;
@@ -205,12 +212,13 @@ static void test_real_shapefile(void **state) {
 
 static void test_line(void **state) {
     fixture *it = *state;
+    it->style.wants_plain = true;
     expect_ok(it, read_geometry(it, "{\"type\":\"LineString\",\"coordinates\":[[13,52],[13.5,52.25],[13.5,52.25]]}"));
     assert_int_equal(it->features->polyline_count, 1);
     assert_int_equal(it->features->point_count, 3); /* the repeated one too */
     expect_degrees(it->features, 0, 13, 52);
     expect_degrees(it->features, 1, 13.5, 52.25);
-    assert_int_equal(count_with(it->features, PLAIN), 1);
+    assert_int_equal(count_plain(it->features), 1);
     assert_int_equal(it->warnings, 0);
 }
 
@@ -349,7 +357,7 @@ static void test_attributes(void **state) {
     assert_int_equal(value_of(set, 0, TYPE)->type, CAMBER_VALUE_NULL); /* case counts */
     assert_int_equal(set->feature_class[0], set->feature_class[2]);    /* names are not kept */
     assert_int_equal(set->class_count, 2);
-    assert_int_equal(count_with(set, PLAIN), 0);
+    assert_int_equal(count_plain(set), 0);
 
     start_again(it);
     const camber_source_desc desc = {.path = it->path, .where = "name = 'A'"};

@@ -1,0 +1,162 @@
+/* Says why nothing of a set of features is drawn: what was read, what hides it, and the cure.
+ *
+ * Input: features, and the zooms that were to be drawn. Output: one sentence. The first cause that holds for all
+ * features is told: none was read, the style takes none, it draws none at this zoom, none lies in the view. */
+#include "map/plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* More classes than these are not asked for the zooms that they are drawn at. */
+enum { MOST_CLASSES = 256, LAST_ZOOM = 22 };
+
+typedef struct sentence {
+    char *text;
+    size_t size, used;
+} sentence;
+
+static void CAMBER_PRINTF(2, 3) say(sentence *s, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    const int added = vsnprintf(s->text + s->used, s->size - s->used, format, list);
+    va_end(list);
+    s->used = added < 0 || s->used + (size_t)added >= s->size ? s->size - 1 : s->used + (size_t)added;
+}
+
+/* ---- What was read ---- */
+
+static void say_count(sentence *s, size_t count, const char *noun, bool *any) {
+    if (count)
+        say(s, "%s%zu %s%s", *any ? ", " : "", count, noun, count == 1 ? "" : "s");
+    *any = *any || count;
+}
+
+/* "2 lines, 1 area (0.3 MB) were read". An area whose outline is drawn, too, is one area. */
+static void say_read(sentence *s, const camber_features *features) {
+    size_t kinds[CAMBER_GEOMETRY_KINDS] = {0};
+    bool any = false;
+    for (size_t i = 0; i < features->feature_count; i++)
+        kinds[features->classes[features->feature_class[i]].geometry]++;
+    const size_t outlines = kinds[CAMBER_GEOMETRY_POLYGON], areas = kinds[CAMBER_GEOMETRY_AREA];
+    say_count(s, kinds[CAMBER_GEOMETRY_LINE], "line", &any);
+    say_count(s, areas > outlines ? areas : outlines, "area", &any);
+    say_count(s, kinds[CAMBER_GEOMETRY_POINT], "point", &any);
+    say(s, "%s", any ? "" : "no feature");
+    const double bytes = (double)features->stats.input_bytes;
+    if (bytes >= 1e6)
+        say(s, " of %.1f MB", 1e-6 * bytes);
+    else if (bytes > 0.0)
+        say(s, bytes >= 1e4 ? " of %.0f kB" : " of %.0f bytes", bytes >= 1e4 ? 1e-3 * bytes : bytes);
+    say(s, any ? " read" : " read that could be drawn");
+}
+
+/* ---- Why none of it shows ---- */
+
+static void say_unread(sentence *s, const camber_features *features) {
+    const camber_features_stats *stats = &features->stats;
+    if (stats->missing_nodes)
+        say(s,
+            ": its ways name %zu nodes that are not in the file; make the extract with them (osmium extract "
+            "--strategy=complete_ways, osmium getid --add-referenced)",
+            stats->missing_nodes);
+    else if (features->has_region)
+        say(s, ": nothing lies in the view; without --bbox and --center all of it is shown");
+    else if (stats->skipped_features)
+        say(s, ": %zu features are of a geometry that the style does not draw; choose another one with --style",
+            stats->skipped_features);
+    else
+        say(s, "; check that this is the file you mean");
+}
+
+static bool is_painted(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
+    const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, feature);
+    const bool visible = paint.color.a > 0.0f || paint.border_color.a > 0.0f ||
+                         layer->properties[CAMBER_FILL_PATTERN] || layer->properties[CAMBER_LINE_PATTERN] ||
+                         layer->ramp.count;
+    return visible && paint.layer_opacity > 0.0 && (layer->kind == CAMBER_LAYER_FILL || paint.width > 0.0);
+}
+
+/* Whether a class is drawn at a zoom. */
+static bool draws_at(const camber_features *features, const camber_feature_class *class, double zoom) {
+    const camber_feature_view feature = camber_plan_view_of(features, class);
+    for (size_t i = 0; i < features->style->layer_count; i++) {
+        const camber_style_layer *layer = features->style->layers + i;
+        if (camber_plan_takes(features, layer, zoom, class) && is_painted(layer, zoom, &feature))
+            return true;
+    }
+    return false;
+}
+
+static bool any_at(const camber_features *features, double zoom) {
+    for (size_t c = 0; c < features->class_count && c < MOST_CLASSES; c++)
+        if (draws_at(features, features->classes + c, zoom))
+            return true;
+    return false;
+}
+
+/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines of any source layer go by
+ * come first. */
+static void list_properties(const camber_style *style, sentence *s) {
+    const size_t count = style->property_count;
+    const uint8_t readers = camber_readers_of(CAMBER_LAYER_LINE, false);
+    size_t listed = 0;
+    for (size_t k = 0; k < 2 * count && listed <= 8; k++) {
+        const size_t i = k < count ? k : k - count;
+        const bool is_first = style->property_readers && style->property_readers[i] & readers;
+        if (is_first != (k < count))
+            continue;
+        say(s, "%s%.64s", listed ? ", " : ": it goes by ", listed == 8 ? "..." : style->properties[i]);
+        listed++;
+    }
+}
+
+static bool any_between(const camber_features *features, double min_zoom, double max_zoom) {
+    bool any = any_at(features, max_zoom);
+    for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
+        any = any_at(features, zoom);
+    return any;
+}
+
+/* The style draws nothing of the features at these zooms. */
+static void say_hidden(sentence *s, const camber_features *features, double min_zoom, double max_zoom) {
+    int first = 0, last = LAST_ZOOM;
+    char zooms[64];
+    snprintf(zooms, sizeof zooms, min_zoom < max_zoom ? "zooms %.4g to %.4g" : "zoom %.4g", min_zoom, max_zoom);
+    while (first <= LAST_ZOOM && !any_at(features, first))
+        first++;
+    while (last > first && !any_at(features, last))
+        last--;
+    if (first <= LAST_ZOOM && last < LAST_ZOOM)
+        say(s, ", but the style draws none of it at %s; it does from zoom %d to %d", zooms, first, last);
+    else if (first <= LAST_ZOOM)
+        say(s, ", but the style draws none of it at %s; it does from zoom %d on", zooms, first);
+    else {
+        say(s, ", but no layer of the style draws any of it");
+        list_properties(features->style, s);
+        say(s, "; name a style that does with --style");
+    }
+}
+
+static void say_elsewhere(sentence *s, const camber_features *features) {
+    double bounds[4];
+    if (features->points && camber_features_get_bounds(features, bounds))
+        say(s, ", but none of it lies in the view; --bbox %.6g,%.6g,%.6g,%.6g shows it", bounds[0], bounds[1],
+            bounds[2], bounds[3]);
+    else
+        say(s, ", but none of it lies in the view; without --bbox and --center all of it is shown");
+}
+
+bool camber_features_explain_nothing(const camber_features *features, double min_zoom, double max_zoom, char *text,
+                                     size_t size) {
+    sentence s = {text, size, 0};
+    const bool draws = any_between(features, min_zoom, max_zoom);
+    say_read(&s, features);
+    if (features->feature_count == 0)
+        say_unread(&s, features);
+    else if (!draws)
+        say_hidden(&s, features, min_zoom, max_zoom);
+    else
+        say_elsewhere(&s, features);
+    return draws;
+}

@@ -208,6 +208,11 @@ CAMBER_API bool camber_features_explain_nothing(const camber_features *features,
  * stays as it was. It looks at each point. */
 CAMBER_API bool camber_features_get_bounds(const camber_features *features, double bounds[4]);
 
+/* The same for what the style draws between two zooms; west is greater than east where that box is smaller across the
+ * antimeridian. false: nothing is drawn. */
+CAMBER_API bool camber_features_get_drawn_bounds(const camber_features *features, double min_zoom, double max_zoom,
+                                                 double bounds[4]);
+
 /* Gives a set that was read from files another style, from the next scene or engine on, and leaves the lines as they
  * are. The style must read the same properties as the set's, in the same order, as the themes of one style do; it has
  * no sprites. It must outlive the set.

@@ -242,7 +242,7 @@ static int read_map(reading *it) {
                                      .owner = it};
     it->shown.is_dark = options->theme == CAMBER_THEME_DARK;
     it->shown.attribution = it->input.attribution;
-    it->shown.has_bounds = camber_features_get_bounds(it->input.features, it->shown.bounds);
+    it->shown.has_bounds = camber_features_get_drawn_bounds(it->input.features, 0, DEEPEST_ZOOM, it->shown.bounds);
     it->shown.max_zoom = DEEPEST_ZOOM;
     return CAMBER_EXIT_DONE;
 }

@@ -69,28 +69,9 @@ static void say_unread(sentence *s, const camber_features *features) {
         say(s, "; check that this is the file you mean");
 }
 
-static bool is_painted(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
-    const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, feature);
-    const bool visible = paint.color.a > 0.0f || paint.border_color.a > 0.0f ||
-                         layer->properties[CAMBER_FILL_PATTERN] || layer->properties[CAMBER_LINE_PATTERN] ||
-                         layer->ramp.count;
-    return visible && paint.layer_opacity > 0.0 && (layer->kind == CAMBER_LAYER_FILL || paint.width > 0.0);
-}
-
-/* Whether a class is drawn at a zoom. */
-static bool draws_at(const camber_features *features, const camber_feature_class *class, double zoom) {
-    const camber_feature_view feature = camber_plan_view_of(features, class);
-    for (size_t i = 0; i < features->style->layer_count; i++) {
-        const camber_style_layer *layer = features->style->layers + i;
-        if (camber_plan_takes(features, layer, zoom, class) && is_painted(layer, zoom, &feature))
-            return true;
-    }
-    return false;
-}
-
 static bool any_at(const camber_features *features, double zoom) {
     for (size_t c = 0; c < features->class_count && c < MOST_CLASSES; c++)
-        if (draws_at(features, features->classes + c, zoom))
+        if (camber_plan_draws(features, features->classes + c, zoom, zoom))
             return true;
     return false;
 }
@@ -138,9 +119,9 @@ static void say_hidden(sentence *s, const camber_features *features, double min_
     }
 }
 
-static void say_elsewhere(sentence *s, const camber_features *features) {
+static void say_elsewhere(sentence *s, const camber_features *features, double min_zoom, double max_zoom) {
     double bounds[4];
-    if (features->points && camber_features_get_bounds(features, bounds))
+    if (features->points && camber_features_get_drawn_bounds(features, min_zoom, max_zoom, bounds))
         say(s, ", but none of it lies in the view; --bbox %.6g,%.6g,%.6g,%.6g shows it", bounds[0], bounds[1],
             bounds[2], bounds[3]);
     else
@@ -157,6 +138,6 @@ bool camber_features_explain_nothing(const camber_features *features, double min
     else if (!draws)
         say_hidden(&s, features, min_zoom, max_zoom);
     else
-        say_elsewhere(&s, features);
+        say_elsewhere(&s, features, min_zoom, max_zoom);
     return draws;
 }

@@ -547,6 +547,32 @@ static camber_status match_set(const camber_features *features, const camber_vie
 
 /* ---- Entries: polylines by set, in input order, or in that of their features' keys where a set is sorted ---- */
 
+/* The place of a colour in an order that no input changes. */
+static double rank_of(camber_color color) {
+    const float parts[4] = {color.r, color.g, color.b, color.a};
+    double rank = 0.0;
+    for (int i = 0; i < 4; i++)
+        rank = 4096.0 * rank + floor(4095.0 * (double)fminf(fmaxf(parts[i], 0.0f), 1.0f));
+    return rank;
+}
+
+/* Translucent fills of several colours: areas of one colour are filled together wherever they stand in the file, or the
+ * order of others between them would decide which of them overlap. A style's own order stays. */
+static void rank_translucent(camber_plan *plan, camber_plan_set *set) {
+    double *keys = plan->pair_keys + set->first_pair;
+    const camber_plan_fill *areas = plan->patterns.areas + set->first_area;
+    bool translucent = false;
+    if (!camber_plan_is_area(plan, set) || set->sorted || set->row_count < 2)
+        return;
+    for (size_t i = 0; i < set->row_count * set->layer_count; i++)
+        translucent = translucent || areas[i].fill.color.a < 1.0f;
+    for (size_t i = 0; i < set->pair_count && translucent; i++) {
+        const size_t row = plan->pair_rows[set->first_pair + i] - set->first_row;
+        keys[i] = rank_of(areas[row * set->layer_count].fill.color);
+        set->sorted = true;
+    }
+}
+
 /* Ends the pairs of a set. Where it is sorted, the plan's key includes the sort keys, since other keys mean another
  * order. */
 static void end_set(camber_plan *plan, camber_plan_set *set) {
@@ -554,6 +580,7 @@ static void end_set(camber_plan *plan, camber_plan_set *set) {
     set->pair_count = plan->pair_count - set->first_pair;
     for (size_t i = 1; i < set->pair_count; i++)
         set->sorted = set->sorted || keys[i] < keys[0] || keys[i] > keys[0];
+    rank_translucent(plan, set);
     if (set->sorted)
         plan->key = camber_hash(plan->key, keys, set->pair_count * sizeof *keys);
 }

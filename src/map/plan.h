@@ -115,6 +115,12 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
 /* Whether a layer takes features of the class at a zoom, which it may yet draw without width or colour. */
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class);
+/* Whether anything of a class is drawn at one of the zooms (drawn.c). */
+bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
+                       double max_zoom);
+/* The box of all that is drawn at one of the zooms, in world coordinates; beyond x = 1 where it is smaller across the
+ * antimeridian; CAMBER_BOX_EMPTY: nothing is. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom, camber_box *box);
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
 void camber_plan_destroy(camber_plan *plan);
 

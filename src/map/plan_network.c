@@ -12,6 +12,8 @@
 
 /* A miter limit without reason must not undo the culling. */
 static const double LARGEST_REACH_PX = 65536.0;
+/* Further worlds to both sides of a picture's centre are left out: they would take memory for dots. */
+static const double MOST_WORLDS = 8.0;
 
 static double reach_of(const camber_stroke *stroke) {
     const double half = 0.5 * (double)stroke->width_px;
@@ -43,11 +45,9 @@ double camber_plan_reach(const camber_plan *plan) {
 
 /* ---- Copies of the world ---- */
 
-/* Copies of the world, from the first to the last in the picture. Where the picture is about as wide as a world,
- * first lies behind last: then each polyline is drawn within half a world of the centre, in one copy, or in two
- * where it crosses that line. */
+/* Copies of the world, from the first to the last in the picture: a wide one repeats it, as web maps do. */
 typedef struct copies {
-    double first, last, centre;
+    double first, last;
 } copies;
 
 static copies copies_in(const camber_view *view, const camber_plan *plan) {
@@ -56,9 +56,8 @@ static copies copies_in(const camber_view *view, const camber_plan *plan) {
     for (int i = 0; i < 4; i++)
         radius = fmax(radius, hypot(corners[2 * i] - view->x, corners[2 * i + 1] - view->y));
     radius += (camber_plan_reach(plan) + 1.0) / view->scale_px;
-    if (radius >= 0.5)
-        return (copies){0.0, -1.0, view->x};
-    return (copies){floor(view->x - radius), floor(view->x + radius), 0.0};
+    radius = fmin(radius, MOST_WORLDS);
+    return (copies){floor(view->x - radius), floor(view->x + radius)};
 }
 
 static camber_box world_box(const double *points, size_t count) {
@@ -80,11 +79,6 @@ static bool find_shifts(const camber_features *features, const copies *worlds, s
     const camber_box box = world_box(features->points + 2 * begin, end - begin);
     if (!(box.x0 <= box.x1 && box.y0 <= box.y1 && box.x1 - box.x0 <= 2.0))
         return false;
-    if (worlds->first > worlds->last) {
-        *first = floor(worlds->centre - 0.5 - box.x1) + 1.0;
-        *last = fmax(*first, ceil(worlds->centre + 0.5 - box.x0) - 1.0);
-        return true;
-    }
     /* A line that ends on the border of two worlds lies in the western one. */
     *first = worlds->first - fmax(ceil(box.x1) - 1.0, floor(box.x0));
     *last = worlds->last - floor(box.x0);

@@ -24,9 +24,11 @@ static double mercator_y(double latitude) {
 /* The middle of the bounds, at the zoom that shows all of them. */
 static void find_center(const camber_shown *shown, double center[3]) {
     const double *b = shown->bounds;
-    const double across = fmax((b[2] - b[0]) / 360.0, 1e-9), down = fmax(mercator_y(b[1]) - mercator_y(b[3]), 1e-9);
+    const double degrees = b[2] < b[0] ? b[2] - b[0] + 360.0 : b[2] - b[0]; /* across the antimeridian */
+    const double across = fmax(degrees / 360.0, 1e-9), down = fmax(mercator_y(b[1]) - mercator_y(b[3]), 1e-9);
     const double zoom = floor(log2(fmin(VIEW_WIDTH / across, VIEW_HEIGHT / down) / TILE_WIDTH));
-    center[0] = 0.5 * (b[0] + b[2]);
+    center[0] = b[0] + 0.5 * degrees;
+    center[0] -= center[0] > 180.0 ? 360.0 : 0.0;
     center[1] = 0.5 * (b[1] + b[3]);
     center[2] = fmax(shown->min_zoom, fmin(zoom, fmin(shown->max_zoom, DEEPEST_CENTER)));
 }

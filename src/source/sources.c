@@ -40,7 +40,9 @@ struct camber_sources {
 static unsigned kinds_of(const camber_style_layer *layer) {
     switch (layer->kind) {
     case CAMBER_LAYER_BACKGROUND: return 0;
-    case CAMBER_LAYER_LINE: return CAMBER_KIND_LINE | CAMBER_KIND_POLYGON;
+    case CAMBER_LAYER_LINE:
+        return (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
+               (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
     case CAMBER_LAYER_FILL: break;
     }
     return CAMBER_KIND_AREA | (layer->properties[CAMBER_FILL_OUTLINE_COLOR] ? CAMBER_KIND_POLYGON : 0u);

@@ -108,8 +108,9 @@ bool camber_compile_property(camber_compiler *c, json_t *json, const camber_prop
                              camber_expression **expression);
 /* filter.c: an expression or an older filter. */
 bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression **expression);
-/* Whether the filter picks "Polygon", or another type of geometry, by name. Call it on filters that compile. */
-bool camber_filter_asks(const json_t *json, const char *type);
+/* Whether features of a type of geometry, "Polygon" or another one, may pass the filter. Call it on filters that
+ * compile. */
+bool camber_filter_may_take(const json_t *json, const char *type);
 
 /* ---- For operators_*.c, filter.c, function.c and property.c ---- */
 

@@ -197,7 +197,19 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 
 /* ---- Types of geometry ---- */
 
-/* Whether it names the type, or several of it: "MultiPolygon". */
+/* What is known of a filter for features of one type of geometry, whatever their properties. */
+typedef enum verdict { NEVER = -1, MAYBE = 0, ALWAYS = 1 } verdict;
+
+static verdict reverse(verdict one) {
+    return (verdict) - (int)one;
+}
+
+static bool is_geometry_type(const json_t *json) {
+    return is_word(json_string_value(json), "$type") ||
+           is_word(json_string_value(json_array_get(json, 0)), "geometry-type");
+}
+
+/* Whether it is the type, or several of it, as in "MultiPolygon", or a list that has one of them. */
 static bool names_type(const json_t *json, const char *type) {
     const char *text = json_string_value(json);
     if (text && strcmp(strncmp(text, "Multi", 5) == 0 ? text + 5 : text, type) == 0)
@@ -208,20 +220,65 @@ static bool names_type(const json_t *json, const char *type) {
     return false;
 }
 
-static bool is_geometry_type(const json_t *json) {
-    return is_word(json_string_value(json), "$type") ||
-           is_word(json_string_value(json_array_get(json, 0)), "geometry-type");
+/* Comparisons with the type, in both forms of the language; those with anything else are MAYBE. */
+static verdict judge_type(const char *op, const json_t *json, const char *type) {
+    bool about_type = false, named = false;
+    for (size_t i = 1; i < json_array_size(json) && !about_type; i++)
+        about_type = is_geometry_type(json_array_get(json, i));
+    for (size_t i = 1; i < json_array_size(json) && !named; i++)
+        named = names_type(json_array_get(json, i), type);
+    if (!about_type)
+        return MAYBE;
+    if (is_word(op, "==") || is_word(op, "in"))
+        return named ? ALWAYS : NEVER;
+    return is_word(op, "!=") || is_word(op, "!in") ? (named ? NEVER : ALWAYS) : MAYBE;
 }
 
-bool camber_filter_asks(const json_t *json, const char *type) {
+/* ["match", ["geometry-type"], labels, output, ..., fallback] */
+static verdict judge_match(const json_t *json, const char *type) {
+    const size_t size = json_array_size(json);
+    if (!is_geometry_type(json_array_get(json, 1)) || size < 5)
+        return MAYBE;
+    const json_t *output = json_array_get(json, size - 1);
+    for (size_t i = 2; i + 1 < size; i += 2)
+        if (names_type(json_array_get(json, i), type)) {
+            output = json_array_get(json, i + 1);
+            break;
+        }
+    return json_is_true(output) ? ALWAYS : json_is_false(output) ? NEVER : MAYBE;
+}
+
+static verdict judge(const json_t *json, const char *type);
+
+/* all: NEVER where one member is; any: ALWAYS where one is. */
+static verdict judge_members(const json_t *json, const char *type, verdict decides) {
+    verdict made = reverse(decides);
+    for (size_t i = 1; i < json_array_size(json); i++) {
+        const verdict one = judge(json_array_get(json, i), type);
+        if (one == decides)
+            return decides;
+        made = one == MAYBE ? MAYBE : made;
+    }
+    return made;
+}
+
+static verdict judge(const json_t *json, const char *type) {
     const char *op = json_string_value(json_array_get(json, 0));
-    if (!op || op[0] == '!' || is_word(op, "none"))
-        return false;
-    bool about_type = false, asks = false;
-    for (size_t i = 1; i < json_array_size(json); i++)
-        about_type = about_type || is_geometry_type(json_array_get(json, i));
-    for (size_t i = 1; i < json_array_size(json) && !asks; i++)
-        asks =
-            about_type ? names_type(json_array_get(json, i), type) : camber_filter_asks(json_array_get(json, i), type);
-    return asks;
+    if (json_is_boolean(json))
+        return json_is_true(json) ? ALWAYS : NEVER;
+    if (!op)
+        return MAYBE;
+    if (is_word(op, "all"))
+        return judge_members(json, type, NEVER);
+    if (is_word(op, "any"))
+        return judge_members(json, type, ALWAYS);
+    if (is_word(op, "none"))
+        return reverse(judge_members(json, type, ALWAYS));
+    if (is_word(op, "!"))
+        return reverse(judge(json_array_get(json, 1), type));
+    return is_word(op, "match") ? judge_match(json, type) : judge_type(op, json, type);
+}
+
+bool camber_filter_may_take(const json_t *json, const char *type) {
+    return judge(json, type) != NEVER;
 }

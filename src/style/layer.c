@@ -137,6 +137,14 @@ static bool read_plain(camber_document *d, const json_t *json, camber_style_laye
            fail_metadata(d, "camber:plain", "expected true or false; write one of them");
 }
 
+static void warn_fill(camber_document *d, const char *key) {
+    const size_t depth = d->compiler.path_length;
+    camber_compiler_enter_key(&d->compiler, "metadata");
+    camber_compiler_enter_key(&d->compiler, key);
+    camber_compiler_warn(&d->compiler, "is of line layers; areas of one colour are filled together: leave it out");
+    d->compiler.path_length = depth;
+}
+
 /* Reads the metadata {"camber:overlap": ...}. */
 static bool read_overlap(camber_document *d, const json_t *json, camber_style_layer *layer) {
     static const char *const names[] = {[CAMBER_OVERLAP_FLATTEN] = "flatten",
@@ -149,6 +157,8 @@ static bool read_overlap(camber_document *d, const json_t *json, camber_style_la
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (json_is_string(overlap) && strcmp(json_string_value(overlap), names[i]) == 0) {
             layer->overlap = (camber_overlap)i;
+            if (layer->kind == CAMBER_LAYER_FILL && i != CAMBER_OVERLAP_FLATTEN)
+                warn_fill(d, key);
             d->compiler.style->accumulates |= layer->overlap == CAMBER_OVERLAP_ACCUMULATE;
             return true;
         }
@@ -404,24 +414,27 @@ static bool index_layers(camber_document *d, const json_t *layers) {
     return done || camber_compiler_fail_memory(&d->compiler);
 }
 
+bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type) {
+    return layer->visible && (!layer->filter || camber_filter_may_take(layer->filter->document, type));
+}
+
 /* Finds what else than lines is drawn of the features. */
 static void find_wants(camber_style *style) {
     style->wants_polygons = style->wants_areas = false;
     style->wants_plain = style->wants_plain_areas = style->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        const bool fills = layer->kind == CAMBER_LAYER_FILL && layer->visible;
-        const bool lines = layer->kind == CAMBER_LAYER_LINE && layer->filter;
-        if (layer->plain) {
-            style->wants_plain |= layer->visible;
-            style->wants_plain_areas |= fills;
-            style->wants_plain_points |=
-                lines && layer->visible && camber_filter_asks(layer->filter->document, "Point");
+        const bool polygons = layer->kind != CAMBER_LAYER_BACKGROUND && camber_style_layer_may_take(layer, "Polygon");
+        const bool fills = polygons && layer->kind == CAMBER_LAYER_FILL;
+        const bool outlines = polygons && (!fills || layer->properties[CAMBER_FILL_OUTLINE_COLOR]);
+        if (!layer->plain) {
+            style->wants_areas |= fills;
+            style->wants_polygons |= outlines;
             continue;
         }
-        style->wants_areas |= fills;
-        style->wants_polygons |= (fills && layer->properties[CAMBER_FILL_OUTLINE_COLOR]) ||
-                                 (lines && camber_filter_asks(layer->filter->document, "Polygon"));
+        style->wants_plain |= layer->visible;
+        style->wants_plain_areas |= polygons;
+        style->wants_plain_points |= layer->kind == CAMBER_LAYER_LINE && camber_style_layer_may_take(layer, "Point");
     }
 }
 

@@ -136,8 +136,8 @@ struct camber_style {
     bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool accumulates; /* a line layer's lines are seen through each other, their ends too */
-    bool wants_polygons; /* outlines are drawn: a line layer's filter names the geometry type Polygon, or a fill layer
-                            has a colour for them */
+    bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, or by a fill
+                            layer that has a colour for them */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
     /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
@@ -156,6 +156,8 @@ bool camber_style_source_matches(const camber_style_source *source, const camber
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature);
 /* Whether the style has a layer of its own for this source layer, so that it knows the schema. */
 bool camber_style_names_layer(const camber_style *style, const char *source_layer);
+/* Whether it draws any feature of a type of geometry, "Polygon" or another one. */
+bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type);
 /* Whether it does at any zoom, by a filter that does not depend on it. */
 bool camber_style_layer_takes(const camber_style_layer *layer, const camber_feature_view *feature);
 

@@ -7,7 +7,9 @@
  *     census -> schedule -> [resumed?] -> draw --> encode (threads) --> writer --> archive
  *                                          ^------- the next picture ----' */
 #include "archive/archive.h"
+#include "map/plan.h"
 #include "source/features.h"
+#include "source/mercator.h"
 #include "source/pmtiles.h"
 #include "tiles/encoding.h"
 #include "tiles/features_file.h"
@@ -342,6 +344,16 @@ static int find_center_zoom(const camber_tiles_area *area) {
     return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
+/* Of a box across the antimeridian the middle is in none of the archive's bounds, which are the world's. */
+static double find_center_longitude(const camber_tiles_area *area, const double bounds[4]) {
+    double longitude, latitude;
+    if (area->bounds.x1 <= 1.0)
+        return 0.5 * (bounds[0] + bounds[2]);
+    camber_mercator_unproject(camber_mercator_wrap(0.5 * (area->bounds.x0 + area->bounds.x1)), 0.5, &longitude,
+                              &latitude);
+    return longitude;
+}
+
 /* Whether the style's backgrounds make a dark map, over which a page's own texts and buttons should be dark, too. They
  * are looked at at the zoom that is shown first. */
 static bool is_dark(const pyramid *p) {
@@ -423,7 +435,7 @@ static camber_status open_writer(pyramid *p) {
                                  .shards = desc->shards};
     camber_status status = metadata ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     camber_tiles_area_bounds(&p->area, whole.bounds);
-    whole.center = (camber_archive_center){true, 0.5 * (whole.bounds[0] + whole.bounds[2]),
+    whole.center = (camber_archive_center){true, find_center_longitude(&p->area, whole.bounds),
                                            0.5 * (whole.bounds[1] + whole.bounds[3]), find_center_zoom(&p->area)};
     if (!camber_archive_get_format(desc->output, &whole.format))
         status =
@@ -540,13 +552,21 @@ static camber_status keep_list(pyramid *p, camber_box data) {
     return CAMBER_OK;
 }
 
+static camber_status find_drawn(const pyramid *p, camber_box *data) {
+    const bool asked = p->desc->min_zoom >= 0;
+    return camber_plan_drawn_box(p->engine->features, asked ? p->desc->min_zoom : 0,
+                                 asked ? p->desc->max_zoom : CAMBER_LARGEST_TILE_ZOOM, data);
+}
+
 /* Looks where lines are. */
 static camber_status make_schedule(pyramid *p) {
     camber_box data;
     const double start_ms = camber_now_ms();
     const uint64_t input = camber_features_hash(p->engine->features, &data);
+    camber_status status = find_drawn(p, &data);
     p->stats.census_ms += camber_now_ms() - start_ms;
-    camber_status status = camber_tiles_area_make(p->context, p->desc, data, &p->area);
+    if (status == CAMBER_OK)
+        status = camber_tiles_area_make(p->context, p->desc, data, &p->area);
     if (status != CAMBER_OK)
         return status;
     camber_fingerprint_write(p->engine, p->desc, &p->area, input, p->fingerprint);

@@ -284,7 +284,7 @@ static void test_source_layers_zooms_and_caps(void **state) {
     camber_scene *scene = make_scene(&t, WORLD);
     const camber_scene_info info = camber_scene_get_info(scene);
     assert_int_equal(info.layers, 3);
-    assert_int_equal(info.polylines, 1 + 2 + 2);
+    assert_int_equal(info.polylines, 17 * (1 + 2 + 2)); /* so wide that it reaches in from eight worlds to each side */
     size_t count;
     const camber_stroke *strokes = camber_scene_get_strokes(scene, &count);
     assert_int_equal(count, 3);
@@ -423,8 +423,8 @@ static void test_entries_of_areas(void **state) {
     assert_int_equal(camber_view_create(t.context, &WORLD, &view), CAMBER_OK);
     assert_int_equal(camber_plan_create(&t.features, &view, &plan), CAMBER_OK);
     assert_int_equal(camber_plan_network_create(&t.features, &view, &plan, NULL, &network), CAMBER_OK);
-    assert_int_equal(network.first_entries[2], 2);
-    for (size_t i = 0; i < 2; i++) {
+    assert_int_equal(network.first_entries[2], 3 * 2); /* in the worlds to both sides, too */
+    for (size_t i = 0; i < 3 * 2; i++) {
         const bool is_area = network.entries[i].polyline == 1;
         assert_int_equal(network.entries[i].is_area, is_area);
         assert_near((double)plan.strokes[plan.pair_rows[network.entries[i].row]].width_px, is_area ? 0 : 3, 0);

@@ -196,7 +196,8 @@ function makeMap() {
 // The part of the world that has tiles; null: all of it, any number of times around.
 function getBounds(tiles) {
     const [west, south, east, north] = tiles.bounds ?? [-180, -90, 180, 90];
-    return east - west >= 360 ? null : L.latLngBounds([south, west], [north, east]);
+    const far = east < west ? east + 360 : east; // across the antimeridian
+    return far - west >= 360 ? null : L.latLngBounds([south, west], [north, far]);
 }
 // CSS px; MapLibre reads the same member.
 const getSide = tiles => tiles.tileSize ?? 256;

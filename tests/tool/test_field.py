@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Data without a schema is drawn, feature by feature, in any format; and what is blank says why.
+"""What people's files met: data without a schema, in any format; what is blank and says why; outlines, overlaps of
+translucent areas, wide views, bounds.
 
-    test_plain.py TOOL
+    test_field.py TOOL
 
 TOOL is camber. Without ogr2ogr (Debian: gdal-bin) formats that are no text are left out; without CAMBER_DATA, real
 files. Exit status 1: the first failure, on standard error.
@@ -201,6 +202,79 @@ def check_told():
     check("no layer of the style draws" in text, text)
 
 
+def write_style(name, *layers, **more):
+    with open(name, "w") as file:
+        json.dump({"version": 8, "sources": {}, "layers": [{"id": str(i), **layer} for i, layer in enumerate(layers)],
+                   **more}, file)
+    return name
+
+
+def box(west, south, east, north, **properties):
+    return feature("Polygon", [[[west, south], [east, south], [east, north], [west, north], [west, south]]], **properties)
+
+
+FILL = {"type": "fill", "paint": {"fill-color": "#ccddff"}}
+RED = {"type": "line", "paint": {"line-color": "#ff0000", "line-width": 4}}
+
+
+def check_outlines():
+    """INPUT's areas are outlined as those of a style's own source."""
+    square = write("square.geojson", box(-30, -20, 30, 20))
+    for layers in ((FILL, RED), (RED,)):
+        own = write_style("own.json", *({**layer, "source": "s"} for layer in layers),
+                          sources={"s": {"type": "geojson", "data": "square.geojson"}})
+        run("render", "--style", own, "-o", "own.png", "-f", "-q", "--size", "200x200", "--center", "0,0", "--zoom", "0")
+        with open("own.png", "rb") as file:
+            wanted = png_rows.decode(file.read())
+        given = draw(square, "--style", write_style("style.json", *layers), "--center", "0,0", "--zoom", "0",
+                     size="200x200")
+        check(given == wanted and any(row[i:i + 3] == b"\xff\0\0" for row in given for i in range(0, len(row), 4)),
+              f"outlines of INPUT, {len(layers)} layers")
+    lines = write_style("lines.json", {**RED, "filter": ["==", ["geometry-type"], "LineString"]})
+    run("render", square, "-o", "out.png", "-f", "--style", lines, status=65)
+
+
+def check_overlaps():
+    """Translucent areas of several colours look the same in whatever order they come."""
+    red, more, blue = box(-30, -20, 10, 20, c="red"), box(-10, -5, 30, 35, c="red"), box(0, 0, 50, 50, c="blue")
+    style = write_style("half.json", {"type": "fill", "paint": {"fill-color": ["get", "c"], "fill-opacity": 0.5}})
+    for kernels in ("cl", "gl"):
+        pictures = [draw(write("areas.geojson", *areas), "--style", style, "--draw", kernels, "--center", "0,0", "--zoom", "0")
+                    for areas in ((red, blue, more), (red, more, blue), (blue, more, red))]
+        check(pictures[0] == pictures[1] == pictures[2], f"{kernels}: the order of areas shows")
+        check(len(colors(pictures[0])) < 40, f"{kernels}: overlaps of one colour darken")
+    refused = write_style("dark.json", {**FILL, "metadata": {"camber:overlap": "accumulate"}})
+    text = run("render", "areas.geojson", "-o", "out.png", "-f", "--style", refused)[1]
+    check("/layers/0/metadata/camber:overlap: is of line layers" in text, text)
+
+
+def check_worlds():
+    """A view wider than the world repeats it."""
+    write("world.geojson", box(-70, 60, -15, 80), box(0, 20, 40, 50), feature("LineString", [[100, 0], [179, 40]]))
+    style = write_style("world.json", FILL, RED)
+    for kernels in ("cl", "gl"):
+        rows = draw("world.geojson", "--style", style, "--draw", kernels, "--center", "143,0", "--zoom", "0", size="1200x512")
+        for row in rows:
+            pixels = [row[i:i + 4] for i in range(0, len(row), 4)]
+            worst = max(max(abs(a - b) for a, b in zip(one, other)) for one, other in zip(pixels, pixels[512:]))
+            check(worst <= 1, f"{kernels}: two worlds differ by {worst} levels")
+        check(len(colors(rows)) > 2, f"{kernels}: blank")
+
+
+def check_bounds():
+    """Bounds are of what is drawn, and across 180 degrees."""
+    style = write_style("roads.json", {**RED, "filter": ["has", "highway"]})
+    write("far.geojson", feature("LineString", [[5, 5], [6, 6]], highway="x"), feature("LineString", [[-60, -60], [60, 60]]))
+    write("fiji.geojson", feature("LineString", [[177, -17], [179, -18]], highway="x"),
+          feature("LineString", [[-179, -17], [-178, -18]], highway="x"))
+    for name, wanted, center in (("far", [5, 5, 6, 6], 5.5), ("fiji", [-180, -18, 180, -17], 179.5)):
+        run("tiles", f"{name}.geojson", "-o", f"{name}.pmtiles", "-f", "-q", "--style", style, "--max-zoom", "3")
+        run("tiles", "verify", f"{name}.pmtiles")
+        about = json.loads(run("tiles", "show", f"{name}.pmtiles", "--json")[0])
+        near = max(abs(a - b) for a, b in zip([*about["bounds"], about["center"][0]], [*wanted, center]))
+        check(near < 1e-5, f"{name}: bounds {about['bounds']}, centre {about['center']}")
+
+
 def check_data():
     data = os.environ.get("CAMBER_DATA")
     if not data:
@@ -220,7 +294,8 @@ def check_data():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        for check_one in (check_looks, check_each, check_formats, check_told, check_data):
+        for check_one in (check_looks, check_each, check_formats, check_told, check_outlines, check_overlaps,
+                          check_worlds, check_bounds, check_data):
             check_one()
         os.chdir("/")
 

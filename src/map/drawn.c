@@ -1,0 +1,80 @@
+/* What of a set of features is drawn between two zooms, and where it lies.
+ *
+ * Input: features and zooms. Output: for a class whether it is drawn, and the box of all that is. A class is asked at
+ * the last zoom first, where most styles draw everything. */
+#include "map/plan.h"
+#include "source/mercator.h"
+
+#include <math.h>
+
+static bool is_painted(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
+    const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, feature);
+    const bool visible = paint.color.a > 0.0f || paint.border_color.a > 0.0f ||
+                         layer->properties[CAMBER_FILL_PATTERN] || layer->properties[CAMBER_LINE_PATTERN] ||
+                         layer->ramp.count;
+    return visible && paint.layer_opacity > 0.0 && (layer->kind == CAMBER_LAYER_FILL || paint.width > 0.0);
+}
+
+static bool draws_at(const camber_features *features, const camber_feature_class *class, double zoom) {
+    const camber_feature_view feature = camber_plan_view_of(features, class);
+    for (size_t i = 0; i < features->style->layer_count; i++) {
+        const camber_style_layer *layer = features->style->layers + i;
+        if (camber_plan_takes(features, layer, zoom, class) && is_painted(layer, zoom, &feature))
+            return true;
+    }
+    return false;
+}
+
+bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
+                       double max_zoom) {
+    bool any = draws_at(features, class, max_zoom);
+    for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
+        any = draws_at(features, class, zoom);
+    return any;
+}
+
+/* ---- Where it lies ---- */
+
+static void add_polyline(const camber_features *features, size_t polyline, double shift, camber_box *box) {
+    for (size_t i = features->offsets[polyline]; i < features->offsets[polyline + 1]; i++)
+        if (isfinite(features->points[2 * i]) && isfinite(features->points[2 * i + 1]))
+            camber_box_add(box, features->points[2 * i] + shift, features->points[2 * i + 1]);
+}
+
+/* Whether the polyline lies in the western half of the world. */
+static bool is_western(const camber_features *features, size_t polyline) {
+    camber_box box = CAMBER_BOX_EMPTY;
+    add_polyline(features, polyline, 0.0, &box);
+    return 0.5 * (box.x0 + box.x1) < 0.5;
+}
+
+camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom,
+                                    camber_box *box) {
+    camber_box moved = CAMBER_BOX_EMPTY; /* the western half of the world behind the eastern one */
+    bool *drawn = camber_alloc_zero(features->context, features->class_count, sizeof *drawn);
+    *box = CAMBER_BOX_EMPTY;
+    if (!drawn)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t c = 0; c < features->class_count; c++)
+        drawn[c] = camber_plan_draws(features, features->classes + c, min_zoom, max_zoom);
+    for (size_t p = 0; p < features->polyline_count && features->points; p++) {
+        if (!drawn[features->feature_class[features->polyline_feature[p]]])
+            continue;
+        add_polyline(features, p, 0.0, box);
+        add_polyline(features, p, is_western(features, p) ? 1.0 : 0.0, &moved);
+    }
+    if (moved.x1 - moved.x0 < box->x1 - box->x0)
+        *box = moved;
+    camber_free(features->context, drawn);
+    return CAMBER_OK;
+}
+
+bool camber_features_get_drawn_bounds(const camber_features *features, double min_zoom, double max_zoom,
+                                      double bounds[4]) {
+    camber_box box;
+    if (camber_plan_drawn_box(features, min_zoom, max_zoom, &box) != CAMBER_OK || box.x0 > box.x1)
+        return false;
+    camber_mercator_unproject(box.x0, box.y1, &bounds[0], &bounds[1]);
+    camber_mercator_unproject(box.x1 > 1.0 ? box.x1 - 1.0 : box.x1, box.y0, &bounds[2], &bounds[3]);
+    return true;
+}

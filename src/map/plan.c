@@ -560,10 +560,10 @@ static double rank_of(camber_color color) {
  * order of others between them would decide which of them overlap. A style's own order stays. */
 static void rank_translucent(camber_plan *plan, camber_plan_set *set) {
     double *keys = plan->pair_keys + set->first_pair;
-    const camber_plan_fill *areas = plan->patterns.areas + set->first_area;
     bool translucent = false;
-    if (!camber_plan_is_area(plan, set) || set->sorted || set->row_count < 2)
+    if (!plan->patterns.areas || !camber_plan_is_area(plan, set) || set->sorted || set->row_count < 2)
         return;
+    const camber_plan_fill *areas = plan->patterns.areas + set->first_area;
     for (size_t i = 0; i < set->row_count * set->layer_count; i++)
         translucent = translucent || areas[i].fill.color.a < 1.0f;
     for (size_t i = 0; i < set->pair_count && translucent; i++) {

@@ -99,9 +99,8 @@ static camber_status take_value(camber_features *features, const json_t *json, c
 /* ---- Classes ---- */
 
 static bool append_class(json_t *to, const camber_features *features, const camber_feature_class *class) {
-    json_t *json =
-        json_pack("[I,I,I,b]", (json_int_t) class->source, (json_int_t) class->layer, (json_int_t) class->geometry,
-                  class->unsorted);
+    json_t *json = json_pack("[I,I,I,b]", (json_int_t) class->source, (json_int_t) class->layer,
+                             (json_int_t) class->geometry, class->unsorted);
     const camber_value none = {.type = CAMBER_VALUE_NULL};
     bool good = json && append_value(json, &class->id) && append_value(json, class->all ? class->all : &none);
     for (size_t i = 0; i < features->style->property_count && good; i++)

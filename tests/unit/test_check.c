@@ -121,6 +121,12 @@ static void test_places(void **state) {
          PAINT("\"line-dasharray\": [\"let\", \"v\", 1, [\"match\", [\"get\", \"x\"], 1, [\"literal\", [1, 1]], "
                "[\"literal\", [-1]]]]"),
          "/layers/0/paint/line-dasharray/3/4/1/0", true},
+        {"", PAINT("\"line-dasharray\": [3, 1, 1]"), "/layers/0/paint/line-dasharray", false},
+        {"", PAINT("\"line-dasharray\": {\"stops\": [[3, [1, 1]], [5, [3]]]}"),
+         "/layers/0/paint/line-dasharray/stops/1/1", false},
+        {"", PAINT("\"line-dasharray\": [\"step\", [\"zoom\"], [\"literal\", [1, 2]], 4, [\"literal\", [1, 1, 2]]]"),
+         "/layers/0/paint/line-dasharray/4/1", false},
+        {"", PAINT("\"line-dasharray\": [3, 1, 1, 2]"), NULL, false},
         {"", PAINT("\"line-opacity\": {\"stops\": [[1, 0], [2, 5]]}"), "/layers/0/paint/line-opacity/stops/1/1", true},
         {"", PAINT("\"line-opacity\": {\"property\": \"o\", \"type\": \"identity\", \"default\": 1}"), NULL, false},
         {"", PAINT("\"line-width\": [\"interpolate\", [\"linear\"], [\"zoom\"], 5, 1, 10, -4]"),

@@ -783,6 +783,14 @@ for type in '6 its tiles are MLT .*; make it again with MVT' '5 its tiles are pi
     '7 its tiles are of type 7, which camber does not know; .*'; do
     refused a.pmtiles "PMTiles\3$(printf '\\0%.0s' {1..89})\1\1\\${type%% *}$(printf '\\0%.0s' {1..27})" "${type#* }"
 done
+# A parallel across the world, and a line that goes the short way, over the antimeridian.
+echo '{"type":"MultiLineString","coordinates":[[[-180,0],[180,0]],[[-100,40],[100,40]]]}' >"$tmp/in/par.geojson"
+expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 512x512
+says '^1 feature, 3 polylines, 6 points, '
+says '^antimeridian: crossed 1 time; '
+expect 0 "lines across the world, as JSON" render "$tmp/in/par.geojson" -o a.png -f --center 0,0 --zoom 0 --json
+has "$tmp/stdout" '"antimeridian_splits": 1'
+rm -f a.png
 expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64

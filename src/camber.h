@@ -536,8 +536,9 @@ typedef struct camber_color {
     float r, g, b, a;
 } camber_color;
 
-/* Lengths that are drawn and left out in turn, from where a polyline begins; an odd count is gone through twice, as in
- * SVG. The ends of dashes are round where the stroke's caps are, and straight elsewhere. */
+/* Lengths that are drawn and left out in turn, from where a polyline begins. An odd count is gone through twice, as in
+ * SVG; in a MapLibre style, the last dash of such a list runs on into the first. The ends of dashes are round where the
+ * stroke's caps are, and straight elsewhere. */
 typedef struct camber_dash {
     const float *lengths; /* count, in units of the paint's dash_unit_px; 0 or more each, and their sum is above 0 */
     size_t count;         /* 1 to CAMBER_DASH_LENGTHS_MAX */

@@ -139,16 +139,16 @@ typedef struct camber_source_desc {
 } camber_source_desc;
 
 typedef struct camber_features_stats {
-    size_t features;         /* read, lines kept */
-    size_t polylines;        /* kept, after parts were split, tile pieces joined and lines merged */
-    size_t points;           /* kept */
-    size_t skipped_features; /* points, and polygons where no layer of the style draws them */
-    size_t damaged_features; /* that came with a failure, or whose geometry does not parse */
-    size_t invalid_points;   /* dropped: NaN or infinite */
-    size_t clamped_points;   /* moved to latitude 85.051129 */
-    size_t antimeridian_splits;
-    size_t joined_pieces;    /* vector tiles: pieces of one feature joined at a tile border */
-    size_t merged_polylines; /* so many polylines fewer, for lines were merged end to end */
+    size_t features;            /* read, lines kept */
+    size_t polylines;           /* kept, after parts were split, tile pieces joined and lines merged */
+    size_t points;              /* kept */
+    size_t skipped_features;    /* points, and polygons where no layer of the style draws them */
+    size_t damaged_features;    /* that came with a failure, or whose geometry does not parse */
+    size_t invalid_points;      /* dropped: NaN or infinite */
+    size_t clamped_points;      /* moved to latitude 85.051129 */
+    size_t antimeridian_splits; /* jumps of more than 180 degrees, which go the short way: over it */
+    size_t joined_pieces;       /* vector tiles: pieces of one feature joined at a tile border */
+    size_t merged_polylines;    /* so many polylines fewer, for lines were merged end to end */
     /* The next are of areas, where a layer of the style fills them. */
     size_t closed_rings;   /* did not end where they begin, and were closed */
     size_t turned_rings;   /* wound the wrong way: holes as their outer ring does, or all rings of a tile's area */

@@ -425,6 +425,15 @@ void camber_input_say_missing(const camber_input *input) {
     else if (ways[0])
         camber_report_say(input->session->report, "missing: %s", ways);
 }
+
+void camber_input_say_split(const camber_input *input) {
+    const size_t splits = camber_features_get_stats(input->features).antimeridian_splits;
+    if (splits > 0)
+        camber_report_say(input->session->report,
+                          "antimeridian: crossed %zu time%s; what jumps by more than 180 degrees goes the short way "
+                          "round the Earth",
+                          splits, camber_plural(splits));
+}
 #endif
 
 const camber_polylines *camber_input_polylines(const camber_input *input) {

@@ -62,6 +62,8 @@ typedef struct camber_style_input {
 
 /* Prints how much INPUT names without having it; mostly nothing. */
 void camber_input_say_missing(const camber_input *input);
+/* Says how often lines and areas go over the antimeridian; mostly none does. */
+void camber_input_say_split(const camber_input *input);
 /* Compiles the style that the options name, or the built-in one. Returns an exit status, its line printed. */
 int camber_input_make_style(camber_session *session, camber_theme theme, camber_style **style, const char **base_path);
 /* Whether a style that ships has this name, and no file has. */

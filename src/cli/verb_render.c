@@ -89,6 +89,7 @@ static int print_json(const job *j) {
         {"missing_nodes", read.missing_nodes},
         {"missing_ways", read.missing_ways},
         {"dropped_relations", read.dropped_relations},
+        {"antimeridian_splits", read.antimeridian_splits},
         {"points", lines.kept_points},
         {"segments", lines.kept_segments},
         {"joins", mesh.joins},
@@ -164,6 +165,7 @@ static void print_text(const job *j) {
     print_counts(j, &scene);
     print_rings(j);
     camber_input_say_missing(&j->input);
+    camber_input_say_split(&j->input);
     camber_report_say(report,
                       "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
                       "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",

@@ -348,6 +348,7 @@ static int print_json(const job *j) {
                   {"missing_nodes", read.missing_nodes},
                   {"missing_ways", read.missing_ways},
                   {"dropped_relations", read.dropped_relations},
+                  {"antimeridian_splits", read.antimeridian_splits},
                   {"peak_rss_bytes", camber_peak_rss_bytes()}};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         json_object_set_new(object, counts[i].name, camber_json_count((size_t)counts[i].count));
@@ -411,6 +412,7 @@ static void print_text(const job *j) {
                       (unsigned long long)stats->units, camber_plural((size_t)stats->units),
                       (unsigned long long)stats->points, size);
     camber_input_say_missing(&j->input);
+    camber_input_say_split(&j->input);
     if (stats->emptied)
         camber_report_say(report, "%llu tile%s taken out, since nothing is there now",
                           (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));

@@ -257,7 +257,8 @@ static void leave_out_quotes(char *message) {
     *out = 0;
 }
 
-static camber_status fail_open(camber_dataset *dataset, bool directory) {
+/* gdal_path: what GDAL was asked to open. */
+static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, bool directory) {
     const char *path = dataset->desc->path, *said = dataset->errors.message;
     VSIStatBufL about;
     if (directory)
@@ -271,6 +272,12 @@ static camber_status fail_open(camber_dataset *dataset, bool directory) {
         return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
     if (there && about.st_size == 0)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", path);
+    /* What standard input began with is read already, and a cure is for the file that is named. */
+    const camber_gdal_cure *cure =
+        is_connection(gdal_path) || STARTS_WITH(path, "/vsi") ? NULL : camber_gdal_find_cure(gdal_path);
+    if (cure)
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: %s; %s%s%s", path, cure->what, cure->before,
+                           cure->after ? path : "", cure->after ? cure->after : "");
     if (ends_with(path, ".pmtiles") && dataset->desc->where)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
                            "%s: this GDAL filters no PMTiles; leave out the filter, or convert them to MBTiles", path);
@@ -293,6 +300,12 @@ static int zoom_of(const camber_dataset *dataset) {
     char *end = NULL;
     const long zoom = text && isdigit((unsigned char)*text) ? strtol(text, &end, 10) : -1;
     return end && *end == 0 && zoom >= 0 && zoom <= 30 ? (int)zoom : -1;
+}
+
+/* Whether this is a vector tile that GDAL cannot place on Earth: it places those whose path ends in zoom/column/row. */
+static bool is_bare_tile(GDALDatasetH handle) {
+    OGRLayerH layer = GDALDatasetGetLayer(handle, 0);
+    return EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(handle)), "MVT") && layer && !OGR_L_GetSpatialRef(layer);
 }
 
 /* The path as GDAL wants it: a .gz goes through its decompressor, - is standard input. */
@@ -348,7 +361,14 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
                                  (const char *const *)drivers, (const char *const *)options, NULL);
     CPLPopErrorHandler();
     if (!dataset->handle) {
-        status = fail_open(dataset, directory);
+        status = fail_open(dataset, path, directory);
+        goto done;
+    }
+    if (!directory && is_bare_tile(dataset->handle)) {
+        status = camber_fail(context, CAMBER_ERROR_INPUT,
+                             "%s: a vector tile whose path does not say which; name it as ZOOM/COLUMN/ROW.pbf, or draw "
+                             "it by a style with a source of \"tiles\": [\"tiles/{z}/{x}/{y}.pbf\"]",
+                             desc->path);
         goto done;
     }
     dataset->osm = EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), "OSM");

@@ -85,6 +85,20 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style 
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
 
+/* ---- cures.c: files that GDAL does not open ---- */
+
+typedef struct camber_gdal_cure {
+    size_t at, size; /* where the bytes are that tell the kind of file, and how many */
+    const char *bytes;
+    const char *driver; /* GDAL's, if only some builds have it. NULL: GDAL has none */
+    const char *what;   /* what the file is */
+    const char *before; /* what to do */
+    const char *after;  /* the rest of it, after the file's path. NULL: without the path */
+} camber_gdal_cure;
+
+/* NULL: its first bytes tell nothing. */
+const camber_gdal_cure *camber_gdal_find_cure(const char *path);
+
 /* ---- box.c: reading a layer by its index ---- */
 
 typedef struct camber_box_reading {

@@ -8,7 +8,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { DEEPEST = 4, VECTOR_TILES = 1 };
+enum { DEEPEST = 4 };
+
+/* Types of tiles; those between are pictures. */
+enum { VECTOR_TILES = 1, MAPLIBRE_TILES = 6 };
 
 /* Real directories take some hundred kilobytes. */
 static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
@@ -400,6 +403,23 @@ static camber_status check_compression(const camber_tile_set *set, int compressi
                        set->name, what, compressions[compression >= 0 && compression <= 4 ? compression : 0]);
 }
 
+/* Tiles of an unknown type may well be vector tiles. */
+static camber_status check_type(const camber_tile_set *set) {
+    const int type = ((const archive *)set->self)->header.tile_type;
+    if (set->takes_any || type == VECTOR_TILES || type == 0)
+        return CAMBER_OK;
+    if (type == MAPLIBRE_TILES)
+        return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                           "%s: its tiles are MLT (MapLibre tiles), and camber reads MVT; make it again with MVT",
+                           set->name);
+    if (type < MAPLIBRE_TILES)
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: its tiles are pictures; camber reads vector tiles",
+                           set->name);
+    return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                       "%s: its tiles are of type %d, which camber does not know; make it again with MVT (type 1)",
+                       set->name, type);
+}
+
 static camber_status read_header(camber_tile_set *set) {
     archive *self = set->self;
     const char *why = NULL;
@@ -414,7 +434,6 @@ static camber_status read_header(camber_tile_set *set) {
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
                            set->name, head[7]);
     camber_pmtiles_parse_header(head, &self->header);
-    const int type = self->header.tile_type;
     set->min_zoom = self->header.min_zoom;
     set->max_zoom = self->header.max_zoom;
     for (int i = 0; i < 4; i++)
@@ -423,9 +442,8 @@ static camber_status read_header(camber_tile_set *set) {
                       set->bounds[2] <= 180 && set->bounds[1] >= -90 && set->bounds[3] <= 90;
     if (!set->has_bounds)
         memcpy(set->bounds, (double[4]){-180, -90, 180, 90}, sizeof set->bounds);
-    if (!set->takes_any && type != VECTOR_TILES && type != 0)
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: its tiles are pictures; camber reads vector tiles",
-                           set->name);
+    if (check_type(set) != CAMBER_OK)
+        return CAMBER_ERROR_INPUT;
     if (set->min_zoom > set->max_zoom || set->max_zoom > CAMBER_LARGEST_TILE_ZOOM)
         return fail(set, "its zooms make no sense");
     status = check_compression(set, self->header.directory_compression, "directories");

@@ -1,12 +1,17 @@
 /* Makes lines of points as they are read.
  *
  * Input: points in degrees or metres, and where lines end. Output: lines in world coordinates. Between two points a
- * line goes the short way round the Earth, so it is split where that way crosses the antimeridian. */
+ * line goes the short way round the Earth, so it is split where that way crosses the antimeridian. From the meridian's
+ * one side to its other, as a parallel goes, there is no short way, and a line goes across the world as it is written.
+ */
 #include "source/world_lines.h"
 
 #include "source/mercator.h"
 
 #include <math.h>
+
+/* Points as near to an edge of the world lie on it: 4 cm. */
+static const double EDGE = 1e-9;
 
 void camber_world_lines_begin(camber_world_lines *lines) {
     lines->point_count = lines->line_count = 0;
@@ -78,8 +83,16 @@ static void cross_antimeridian(camber_world_lines *lines, double x, double y) {
     lines->antimeridian_splits++;
 }
 
+/* Whether the way from the last point to x is as long as the world is wide. A line that comes to the antimeridian from
+ * inside the world, as a ship's track, goes on beyond it: then both points are one. */
+static bool goes_across(const camber_world_lines *lines, double x) {
+    const double before = lines->point_count - lines->first > 1 ? lines->points[2 * lines->point_count - 4] : lines->x;
+    const double came = fabs(lines->x - before);
+    return fabs(x - lines->x) > 1.0 - EDGE && !(came > 0.0 && came <= 0.5);
+}
+
 static void add(camber_world_lines *lines, double x, double y) {
-    if (lines->open && !lines->whole && !lines->uncut && fabs(x - lines->x) > 0.5)
+    if (lines->open && !lines->whole && !lines->uncut && fabs(x - lines->x) > 0.5 && !goes_across(lines, x))
         cross_antimeridian(lines, x, y);
     push(lines, x, y);
     lines->x = x;

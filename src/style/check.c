@@ -242,8 +242,9 @@ static void list_sources(checker *k, const camber_style *style) {
 /* ---- Reports ---- */
 
 static camber_status check_document(checker *k, const char *json, size_t size_bytes, const char *name) {
-    camber_document d = {.compiler = {.context = k->context, .name = name, .report = keep_problem, .report_user = k},
-                         .reads_on = true};
+    camber_document d = {
+        .compiler = {.context = k->context, .name = name, .report = keep_problem, .report_user = k, .checks = true},
+        .reads_on = true};
     d.compiler.style = camber_alloc_zero(k->context, 1, sizeof *d.compiler.style);
     if (!d.compiler.style)
         return CAMBER_ERROR_MEMORY;

@@ -75,6 +75,7 @@ struct camber_compiler {
     const json_t *state; /* an object of what "global-state" reads. NULL: nothing */
     bool state_defaults; /* its members are {"default": value}, as a style's are */
     unsigned held_count; /* warnings of constants that are held to their range; CAMBER_HELD_LIMIT at most */
+    bool checks;         /* a style is checked: what is drawn as it says may be told, too, where it may surprise */
     bool strict;         /* what stands for a property is an expression or a function: no list, no enum's names */
     /* Receives messages instead of the log; path tells where. NULL: the log */
     void (*report)(void *user, const camber_compiler *c, camber_log_level level, const char *message);

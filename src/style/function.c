@@ -6,6 +6,7 @@
 #include "style/operators.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const camber_typing number_type = {.type = CAMBER_TYPE_NUMBER}, string_type = {.type = CAMBER_TYPE_STRING},
                            bool_type = {.type = CAMBER_TYPE_BOOL};
@@ -212,12 +213,39 @@ typedef struct span {
     size_t first, last;
 } span;
 
-/* Pushes the stops and their values. Where stops have one input, the first counts; below its first stop a step has
- * that stop's value. */
+/* Warns of a stop at the input of the one before. */
+static void warn_of_twin(function *f, const json_t *input) {
+    char number[32];
+    snprintf(number, sizeof number, "%g", json_number_value(input));
+    if (f->c->held_count >= CAMBER_HELD_LIMIT)
+        return;
+    f->c->held_count++;
+    camber_compiler_warn(f->c, "the stop before is at %.64s, too, and this one counts; leave one of them out",
+                         json_is_number(input)   ? number
+                         : json_is_string(input) ? json_string_value(input)
+                         : json_is_true(input)   ? "true"
+                                                 : "false");
+}
+
+/* Pushes a stop's value and, but for a step's first stop, where it is. */
+static bool push_stop(function *f, size_t index, bool is_somewhere, double at) {
+    if (is_somewhere && !camber_push_stop(f->c, at))
+        return false;
+    camber_compiler_enter_index(f->c, 1);
+    if (!push_value(f, json_array_get(json_array_get(f->stops, index), 1)))
+        return false;
+    camber_compiler_leave(f->c);
+    return true;
+}
+
+/* Pushes the stops and their values; below its first stop a step has that stop's value. Of stops at one input the last
+ * counts from there on, and below it the first, as in browsers: so a function may jump. At its first input itself a
+ * function has the first value in browsers, hence the next double. The specification's tests of functions as
+ * expressions keep the first alone. */
 static bool push_stops(function *f, span stops) {
     camber_compiler *c = f->c;
     const bool step = f->shape == SHAPE_INTERVAL;
-    double before = -HUGE_VAL, pushed = -HUGE_VAL, zoom = -HUGE_VAL;
+    double before = -HUGE_VAL, start = HUGE_VAL, zoom = -HUGE_VAL;
     camber_compiler_enter_key(c, "stops");
     for (size_t i = stops.first; i < stops.last; i++) {
         const json_t *input;
@@ -225,18 +253,17 @@ static bool push_stops(function *f, span stops) {
         if (!read_stop(f, i, &input, &zoom))
             return false;
         const double at = json_number_value(input);
+        const bool first = i == stops.first;
         if (at < before)
             return camber_compiler_fail(c, "the stop %g is below the one before; sort the stops", at);
+        const bool twin = !first && at <= before;
+        if (twin)
+            warn_of_twin(f, input);
+        start = first ? at : start;
         before = at;
-        const bool first = i == stops.first;
-        if (first || at > pushed) {
-            camber_compiler_enter_index(c, 1);
-            if (!push_value(f, json_array_get(json_array_get(f->stops, i), 1)) ||
-                ((!first || !step) && !camber_push_stop(c, at)))
-                return false;
-            camber_compiler_leave(c);
-            pushed = first && step ? pushed : at;
-        }
+        if (!(twin && c->strict) &&
+            !push_stop(f, i, !first || !step, first || at > start ? at : nextafter(at, HUGE_VAL)))
+            return false;
         camber_compiler_leave(c);
     }
     camber_compiler_leave(c);
@@ -293,8 +320,11 @@ static bool compile_property_curve(function *f, span stops, double base, uint32_
 
 /* ---- Categories ---- */
 
-static bool same_input(const json_t *a, const json_t *b) {
-    return a && json_equal(a, b);
+/* Whether the stop has the input of the one before. */
+static bool is_twin(const function *f, size_t index) {
+    const json_t *a = json_array_get(json_array_get(f->stops, index - 1), 0),
+                 *b = json_array_get(json_array_get(f->stops, index), 0);
+    return f->composite ? json_equal(json_object_get(a, "value"), json_object_get(b, "value")) : json_equal(a, b);
 }
 
 /* Pushes a stop's condition where inputs are booleans, else its label. */
@@ -313,11 +343,11 @@ static bool push_category(function *f, const json_t *input, camber_label label, 
            camber_push_operand(c, node);
 }
 
-/* Conditions of booleans, or a match of strings or numbers. */
+/* Conditions of booleans, or a match of strings or numbers. Of stops of one input the last counts. */
 static bool compile_categories(function *f, span stops, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
-    const json_t *input = NULL, *before = NULL;
+    const json_t *input = NULL;
     double zoom = -HUGE_VAL;
     if (!read_stop(f, stops.first, &input, &zoom))
         return false;
@@ -326,12 +356,15 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
     if (evaluate == camber_evaluate_match && (!compile_get(f, node) || !camber_push_operand(c, *node)))
         return false;
     camber_compiler_enter_key(c, "stops");
-    for (size_t i = stops.first; i < stops.last; i++, before = input) {
+    for (size_t i = stops.first; i < stops.last; i++) {
         camber_compiler_enter_index(c, i);
         if (!read_stop(f, i, &input, &zoom))
             return false;
         const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .position = (uint32_t)i};
-        if (!same_input(before, input) &&
+        if (i > stops.first && is_twin(f, i))
+            warn_of_twin(f, input);
+        const bool counts = c->strict ? i == stops.first || !is_twin(f, i) : i + 1 == stops.last || !is_twin(f, i + 1);
+        if (counts &&
             (!push_category(f, input, label, &type) || !push_value(f, json_array_get(json_array_get(f->stops, i), 1))))
             return false;
         camber_compiler_leave(c);

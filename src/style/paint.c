@@ -70,6 +70,16 @@ static bool store_pair(const camber_property_row *row, const camber_value *value
     return true;
 }
 
+/* A style's list of odd length has a dash at both ends, which run into each other where the list begins again: a gap of
+ * 0 is between them. So a single length is a solid line. */
+static void close_dashes(camber_layer_dashes *dashes) {
+    _Static_assert(CAMBER_DASH_LENGTHS_MAX % 2 == 0, "an odd list has room for one more length");
+    if (dashes->count == 1)
+        dashes->count = 0;
+    else if (dashes->count % 2)
+        dashes->lengths[dashes->count++] = 0.0f;
+}
+
 /* Stores dashes. Without lengths above 0, or with one below 0, the line is solid; of too many lengths the first are
  * taken. */
 static bool store_dashes(const camber_property_row *row, const camber_value *value, camber_layer_dashes *dashes) {
@@ -85,6 +95,7 @@ static bool store_dashes(const camber_property_row *row, const camber_value *val
         dashes->lengths[i] = (float)fmin(length, 1e6);
     }
     dashes->count = sum > 0.0 ? count : 0;
+    close_dashes(dashes);
     return true;
 }
 

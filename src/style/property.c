@@ -108,6 +108,17 @@ static bool check_range(camber_compiler *c, const camber_property *property, con
     return camber_compiler_fail(c, "%g is out of range; use %s", value->number, write_range(property, range));
 }
 
+/* Tells who checks a style what an odd list of dashes means, since SVG has another rule. It is drawn without a word. */
+static void warn_of_odd_list(camber_compiler *c, const camber_property *property, size_t count) {
+    if (property->type != CAMBER_TYPE_ARRAY || property->length > 0 || count % 2 == 0 || !c->checks)
+        return;
+    if (count == 1)
+        camber_compiler_warn(c, "a list of one length is a solid line; add a gap, or leave the list out");
+    else
+        camber_compiler_warn(c, "of an odd list of lengths the last dash runs on into the first; add a gap at its end "
+                                "if they should be apart");
+}
+
 bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value) {
     if (value->type == CAMBER_VALUE_STRING && property->values)
         return check_name(c, property, value->string);
@@ -117,6 +128,8 @@ bool camber_property_check(camber_compiler *c, const camber_property *property, 
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
         if (!check_range(c, property, &value->items[i]))
             return false;
+    if (value->type == CAMBER_VALUE_ARRAY)
+        warn_of_odd_list(c, property, value->count);
     return check_range(c, property, value);
 }
 
@@ -183,6 +196,7 @@ static bool check_output(camber_compiler *c, const camber_property *property, co
             return false;
         camber_compiler_leave(c);
     }
+    warn_of_odd_list(c, property, json_array_size(json));
     return true;
 }
 

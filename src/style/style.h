@@ -166,9 +166,10 @@ typedef enum camber_translate_anchor {
     CAMBER_TRANSLATE_VIEWPORT,
 } camber_translate_anchor;
 
-/* Lengths that are drawn and left out in turn, in widths of the line. */
+/* Lengths that are drawn and left out in turn, in widths of the line. Of a list of odd length, the style's rule is that
+ * its last dash runs on into its first; here a gap of 0 follows it. */
 typedef struct camber_layer_dashes {
-    uint32_t count; /* 0: solid */
+    uint32_t count; /* even; 0: solid */
     float lengths[CAMBER_DASH_LENGTHS_MAX];
 } camber_layer_dashes;
 

@@ -759,6 +759,38 @@ for file in text text.geojson; do
     says "$file: no map in a format that camber reads; name another file (camber info lists the formats)\$"
     lacks "$tmp/stderr" root
 done
+# Files that are known by their first bytes, and that GDAL does not open: each with its cure.
+refused() { # NAME BYTES SAYS
+    printf '%b' "$2" >"$tmp/in/$1"
+    expect 65 "$1" render "$tmp/in/$1" -o a.png
+    says "in/$1: $3\$"
+}
+refused a.osm.bz2 'BZh91AY&SY' "packed by bzip2, .*; draw it by bzcat $tmp/in/a.osm.bz2 | camber render - -o OUT"
+refused a.osm.xz '\3757zXZ\0' "packed by xz, .*; draw it by xzcat $tmp/in/a.osm.xz | camber render - -o OUT"
+refused a.osm.zst '\50\265\57\375' "packed by zstd, .*; draw it by zstdcat $tmp/in/a.osm.zst | camber render - -o OUT"
+refused a.zip 'PK\3\4' "a zip archive; name what is in it, as /vsizip/$tmp/in/a.zip/NAME .*"
+refused a.o5m '\377\340\4o5m2\376' "OpenStreetMap's data as o5m, .*; convert it by osmium cat -o OUT.osm.pbf $tmp/in/a.o5m"
+refused a.fgb 'fgb\2fgb\0\0\0\0\0' "version 2 of FlatGeobuf, .*; make it again by ogr2ogr -f FlatGeobuf .*"
+"$tool" info | grep -q Parquet || refused a.parquet 'PAR1\0\0\0\0PAR1' "Parquet, whose driver this GDAL lacks; convert it by ogr2ogr .*"
+# A vector tile that has the layer "a" with a line: GDAL places tiles by their paths.
+tile='\32\26x\2\12\1a\22\14\30\2\42\10\11dd\12\320\17\320\17\50\200\40'
+refused a.pbf "$tile" 'a vector tile whose path does not say which; name it as ZOOM/COLUMN/ROW.pbf, or draw it by a style .*'
+mkdir -p "$tmp/in/3/4"
+printf '%b' "$tile" >"$tmp/in/3/4/2.pbf"
+expect 0 "a vector tile of a set" render "$tmp/in/3/4/2.pbf" -o a.png --size 64x64
+rm -f a.png
+for type in '6 its tiles are MLT .*; make it again with MVT' '5 its tiles are pictures; camber reads vector tiles' \
+    '7 its tiles are of type 7, which camber does not know; .*'; do
+    refused a.pmtiles "PMTiles\3$(printf '\\0%.0s' {1..89})\1\1\\${type%% *}$(printf '\\0%.0s' {1..27})" "${type#* }"
+done
+# A parallel across the world, and a line that goes the short way, over the antimeridian.
+echo '{"type":"MultiLineString","coordinates":[[[-180,0],[180,0]],[[-100,40],[100,40]]]}' >"$tmp/in/par.geojson"
+expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 512x512
+says '^1 feature, 3 polylines, 6 points, '
+says '^antimeridian: crossed 1 time; '
+expect 0 "lines across the world, as JSON" render "$tmp/in/par.geojson" -o a.png -f --center 0,0 --zoom 0 --json
+has "$tmp/stdout" '"antimeridian_splits": 1'
+rm -f a.png
 expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64

@@ -337,6 +337,8 @@ static void test_functions(void **state) {
         {"{\"property\": \"w\", \"stops\": [[{\"zoom\": 10, \"value\": 0}, 0], [{\"zoom\": 10, \"value\": 4}, 8], "
          "[{\"zoom\": 20, \"value\": 0}, 100]]}",
          NUMBER_SPEC, "{\"zoom\": 15}", "{\"properties\": {\"w\": 2}}", "number", "52"},
+        /* The specification's tests keep the first of two stops at one input, which browsers do not. */
+        {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER_SPEC, "{\"zoom\": 1}", NULL, "number", "20"},
         {"{\"stops\": [[0, \"a {x} b {y}\"], [10, \"{x}\"]]}",
          "{\"type\": \"string\", \"tokens\": true, \"expression\": {\"interpolated\": false, \"parameters\": "
          "[\"zoom\"]}}",

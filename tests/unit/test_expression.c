@@ -179,7 +179,24 @@ static void test_curves(void **state) {
         {"{\"stops\": [[10, 0], [14, 15]], \"base\": 2}", NUMBER, 2, "{}", "0"},
         {"{\"stops\": [[10, 0], [14, 15]], \"type\": \"interval\"}", NUMBER, 13.9, "{}", "0"},
         {"{\"stops\": [[10, 0], [14, 15]], \"type\": \"interval\"}", NUMBER, 14, "{}", "15"},
-        {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER, 1.5, "{}", "25"},
+        /* Of stops at one input the last counts from there on, as in browsers; below it the first. */
+        {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER, 1.5, "{}", "27.5"},
+        {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER, 0.5, "{}", "15"},
+        {"{\"stops\": [[0, 10], [1, 20], [1, 22], [1, 25]]}", NUMBER, 1, "{}", "25"},
+        {"{\"stops\": [[1, 20], [1, 22], [1, 25]]}", NUMBER, 1, "{}", "20"},
+        {"{\"stops\": [[1, 20], [1, 22], [1, 25]]}", NUMBER, 1.01, "{}", "25"},
+        {"{\"stops\": [[0, 2], [12, 2], [12, 12]], \"type\": \"interval\"}", NUMBER, 12, "{}", "12"},
+        {"{\"stops\": [[12, 2], [12, 12]], \"type\": \"interval\"}", NUMBER, 12, "{}", "2"},
+        {"{\"stops\": [[12, 2], [12, 12]], \"type\": \"interval\"}", NUMBER, 12.01, "{}", "12"},
+        {"{\"stops\": [[0, 2], [5, 2], [5, 12]], \"property\": \"a\"}", NUMBER, 0, "{\"a\": 7}", "12"},
+        {"{\"stops\": [[\"x\", 2], [\"x\", 3], [\"y\", 4]], \"property\": \"a\", \"type\": \"categorical\"}", NUMBER, 0,
+         "{\"a\": \"x\"}", "3"},
+        {"{\"stops\": [[true, 2], [true, 3]], \"property\": \"a\", \"type\": \"categorical\"}", NUMBER, 0,
+         "{\"a\": true}", "3"},
+        {"{\"stops\": [[{\"zoom\": 5, \"value\": 1}, 2], [{\"zoom\": 5, \"value\": 1}, 4], [{\"zoom\": 5, \"value\": "
+         "3}, 6]], "
+         "\"property\": \"a\"}",
+         NUMBER, 5, "{\"a\": 2}", "5"},
         {"{\"stops\": [[10, \"#000\"], [14, \"#fff\"]]}", COLOR, 11, "{}", "[0.25, 0.25, 0.25, 1]"},
         {"[\"interpolate\", [\"exponential\", 1e300], [\"zoom\"], 0, 0, 20, 1]", NUMBER, 10, "{}", "0.5"},
         /* Farther apart than a double reaches, and a denormal apart. */

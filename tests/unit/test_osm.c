@@ -167,11 +167,12 @@ static void test_real_areas(void **state) {
 
 /* ---- Small files ---- */
 
-/* Nodes 10 to 15 in a row; 16 at the north pole; 20 and 21 on both sides of the antimeridian. */
+/* Nodes 10 to 15 in a row; 16 at the north pole; 20 and 21 on both sides of the antimeridian, 22 and 23 on
+ * it. */
 static const pbf_node nodes[] = {{10, 10000000, 20000000},  {11, 10100000, 20000000}, {12, 10200000, 20100000},
                                  {13, 10300000, 20200000},  {14, 10400000, 20300000}, {15, 10500000, 20400000},
                                  {16, 10500000, 900000000}, {20, 1799000000, 5},      {21, -1799000000, 5},
-                                 {22, 1800000000, 7}};
+                                 {22, 1800000000, 7},       {23, -1800000000, 7}};
 enum { NODES = sizeof nodes / sizeof *nodes };
 
 static const char *const street[] = {"highway", "residential", "name", "A", NULL};
@@ -231,8 +232,11 @@ static void test_ways(void **state) {
         WAY(it, street, 20, 21, 20, 22);     /* over the antimeridian and back */
         WAY(it, street, 22, 21);             /* from the antimeridian */
         WAY(it, street, 21, 20, 10, 11, 12); /* and on */
+        WAY(it, street, 23, 22);             /* across the world */
+        WAY(it, street, 20, 22, 23, 21);     /* over the antimeridian by points on it */
+        WAY(it, house, 23, 22, 12, 23);
         const size_t count = finish(it, true);
-        assert_int_equal(count, (style % 3 == 1 ? 15 : 12) + (style >= 3 ? 3 : 0)); /* three areas */
+        assert_int_equal(count, (style % 3 == 1 ? 18 : 14) + (style >= 3 ? 4 : 0)); /* four areas */
     }
 }
 

@@ -311,6 +311,17 @@ static void test_antimeridian(void **state) {
     expect_ok(it, read_geometry(it, "{\"type\":\"LineString\",\"coordinates\":[[170,0],[190,0],[200,10],[170,10]]}"));
     assert_int_equal(it->features->polyline_count, 3);
     expect_degrees(it->features, 3, -170, 0);
+    /* From one side of the meridian to its other: across the world, unless it comes from beside it. */
+    expect_ok(it, read_geometry(it, "{\"type\":\"LineString\",\"coordinates\":[[-180,0],[180,0],[180,10],[-180,10]]}"));
+    assert_int_equal(camber_features_get_stats(it->features).antimeridian_splits, 0);
+    assert_int_equal(it->features->polyline_count, 1);
+    expect_degrees(it->features, 0, -180, 0);
+    expect_degrees(it->features, 1, 180, 0);
+    expect_degrees(it->features, 3, -180, 10);
+    expect_ok(it, read_geometry(it, "{\"type\":\"LineString\",\"coordinates\":[[170,0],[180,0],[-180,0],[-170,0]]}"));
+    assert_int_equal(camber_features_get_stats(it->features).antimeridian_splits, 1);
+    assert_int_equal(it->features->polyline_count, 2);
+    assert_int_equal(it->features->point_count, 4);
     /* On the meridian itself there is nothing to split. */
     expect_ok(it, read_geometry(it, "{\"type\":\"LineString\",\"coordinates\":[[170,0],[180,0]]}"));
     assert_int_equal(it->features->polyline_count, 1);

@@ -600,6 +600,36 @@ static void test_plain(void **state) {
     teardown(&f);
 }
 
+/* Of an odd list of dashes the last runs on into the first, as MapLibre draws it; one length is a solid line. */
+static void test_odd_dashes(void **state) {
+    (void)state;
+    static const struct {
+        const char *json;
+        uint32_t count;
+        float lengths[4];
+    } samples[] = {{"[3, 1, 1]", 4, {3, 1, 1, 0}},
+                   {"[\"step\", [\"zoom\"], [\"literal\", [3, 1, 1]], 9, [\"literal\", [2, 1]]]", 4, {3, 1, 1, 0}},
+                   {"[3]", 0, {0}},
+                   {"[0]", 0, {0}},
+                   {"[3, 0]", 2, {3, 0}},
+                   {"[3, 1, 1, 2]", 4, {3, 1, 1, 2}}};
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        char json[512];
+        fixture f;
+        setup(&f);
+        snprintf(json, sizeof json,
+                 "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"paint\": "
+                 "{\"line-dasharray\": %s}}]}",
+                 samples[i].json);
+        assert_int_equal(parse(&f, json), CAMBER_OK);
+        assert_int_equal(f.warning_count, 0); /* it is for who checks a style to know */
+        const camber_layer_dashes dashes = camber_style_layer_paint(f.style->layers, 5.0, NULL).dashes;
+        assert_int_equal(dashes.count, samples[i].count);
+        assert_memory_equal(dashes.lengths, samples[i].lengths, samples[i].count * sizeof(float));
+        teardown(&f);
+    }
+}
+
 static void test_warnings(void **state) {
     (void)state;
     fixture f;
@@ -991,12 +1021,12 @@ static void test_reference(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),         cmocka_unit_test(test_builtin), cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_wrong_fills),   cmocka_unit_test(test_layer),   cmocka_unit_test(test_plain),
-        cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),  cmocka_unit_test(test_reference),
-        cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),
-        cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),       cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_layer),         cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_odd_dashes),  cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),
+        cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting),
+        cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,6 +39,7 @@ typedef struct camber_tiles_info {
     uint32_t shard, shards;  /* 0: it is no part */
     const camber_tiles_zoom *zooms;
     size_t zoom_count;
+    const char *schema; /* of vector tiles, where the style city knows it, as "OpenMapTiles"; else NULL */
 } camber_tiles_info;
 
 /* Reads what an archive has. Free *info with camber_tiles_info_destroy.

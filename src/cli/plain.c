@@ -15,7 +15,7 @@ typedef struct answer {
     size_t size;
 } answer;
 
-/* What does not fit is no colour's. */
+/* A longer answer is no colour's. */
 static bool collect(void *user, const void *bytes, size_t size_bytes) {
     answer *to = user;
     if (size_bytes > sizeof to->text - to->size)

@@ -30,6 +30,7 @@ static int show_json(camber_report *report, const camber_tiles_info *info) {
                   "contents", camber_json_count((size_t)info->contents), "zooms", zooms, "bounds",
                   info->has_bounds ? numbers(info->bounds, 4) : json_null(), "center",
                   info->has_center ? numbers(info->center, 3) : json_null());
+    json_object_set_new(object, "schema", info->schema ? json_string(info->schema) : json_null());
     json_object_set_new(object, "metadata", json_loads(info->metadata, 0, NULL));
     json_object_set_new(object, "fingerprint", info->fingerprint ? camber_json_text(info->fingerprint) : json_null());
     json_object_set_new(object, "shard", info->shards ? json_integer(info->shard) : json_null());
@@ -59,6 +60,9 @@ static int show_text(camber_report *report, const char *path, const camber_tiles
     for (size_t i = 0; i < info->zoom_count; i++)
         printf("  zoom %2d   %12" PRIu64 " tiles %15" PRIu64 " bytes\n", info->zooms[i].zoom, info->zooms[i].tiles,
                info->zooms[i].size_bytes);
+    if (strcmp(info->type, "pbf") == 0)
+        printf("schema      %s\n",
+               info->schema ? info->schema : "none that the style city knows; its layers are drawn plainly");
     print_text("metadata", info->metadata);
     if (info->fingerprint)
         print_text("fingerprint", info->fingerprint);

@@ -272,7 +272,7 @@ static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, b
         return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
     if (there && about.st_size == 0)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", path);
-    /* What standard input began with is read already, and a cure is for the file that is named. */
+    /* The beginning of standard input is read already, and a cure is for the file that is named. */
     const camber_gdal_cure *cure =
         is_connection(gdal_path) || STARTS_WITH(path, "/vsi") ? NULL : camber_gdal_find_cure(gdal_path);
     if (cure)

@@ -45,7 +45,7 @@ typedef struct reader {
 
 /* ---- Set-up for a layer ---- */
 
-/* What is read of the layer. */
+/* Tells which kinds of geometry are read of the layer. */
 static unsigned kinds_of(const reader *self) {
     const camber_style *style = self->features->style;
     if (self->columns.unsorted)

@@ -1,4 +1,4 @@
-/* What of a set of features is drawn between two zooms, and where it lies.
+/* Tells what of a set of features is drawn between two zooms, and where it lies.
  *
  * Input: features and zooms. Output: for a class whether it is drawn, and the box of all that is. A class is asked at
  * the last zoom first, where most styles draw everything. */

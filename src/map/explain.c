@@ -24,7 +24,7 @@ static void CAMBER_PRINTF(2, 3) say(sentence *s, const char *format, ...) {
     s->used = added < 0 || s->used + (size_t)added >= s->size ? s->size - 1 : s->used + (size_t)added;
 }
 
-/* ---- What was read ---- */
+/* ---- The features that were read ---- */
 
 static void say_count(sentence *s, size_t count, const char *noun, bool *any) {
     if (count)

@@ -443,7 +443,8 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     mvt->layer = layer;
     if (!mvt->desc.layers)
         return list_layer(mvt);
-    mvt->unsorted = mvt->desc.unsorted && !camber_style_names_layer(mvt->desc.features->style, mvt->name);
+    mvt->unsorted =
+        mvt->desc.unsorted && (mvt->desc.no_schema || !camber_style_names_layer(mvt->desc.features->style, mvt->name));
     mvt->kinds = wanted_kinds(mvt);
     if (!mvt->kinds)
         return CAMBER_OK;

@@ -24,7 +24,8 @@ typedef struct camber_mvt_desc {
     bool wants_polygons, wants_areas;
     json_t *promote_id;  /* the property that is the id, as a string, or by layer as an object. NULL: none */
     bool wants_progress; /* mapbox_clip_start and mapbox_clip_end are line-progress at a feature's ends */
-    bool unsorted;       /* the tiles may have no schema that the style knows */
+    bool unsorted;       /* the tiles may have no schema that the style knows, unless it names their layers */
+    bool no_schema;      /* they have none, even if a layer has a name that the style knows */
 } camber_mvt_desc;
 
 /* Counts of all tiles so far. */

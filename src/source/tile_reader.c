@@ -6,6 +6,7 @@
  */
 #include "source/tile_reader.h"
 #include "source/rings.h"
+#include "source/schema.h"
 
 #include <stdio.h>
 #include <strings.h>
@@ -238,6 +239,12 @@ static bool names_layers(const camber_style *style) {
     return false;
 }
 
+/* A style that draws what it does not know goes by the names of layers only where they are those of a schema: anyone
+ * may call a layer roads. */
+static bool has_schema(const input *self) {
+    return !self->features->style->wants_plain || camber_schema_of_layers(self->set->layers);
+}
+
 /* Lists the layers of the set that the style's layers name. */
 static void list_named(input *self) {
     const camber_style *style = self->features->style;
@@ -258,7 +265,8 @@ static camber_status choose_layers(input *self) {
         const camber_status status = json_array_size(self->set->layers) ? CAMBER_OK : look_for_layers(self);
         if (status != CAMBER_OK)
             return status;
-        list_named(self);
+        if (has_schema(self))
+            list_named(self);
     }
     return self->layer_count ? CAMBER_OK : choose_one(self);
 }
@@ -281,7 +289,8 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
                                                  .wants_areas = style->wants_areas,
-                                                 .unsorted = true}};
+                                                 .unsorted = true,
+                                                 .no_schema = !has_schema(self)}};
     return camber_features_read_tiles(self->features, &reading, result);
 }
 

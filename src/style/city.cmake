@@ -1,7 +1,7 @@
 # The built-in style: kinds of areas and two palettes, with rivers, rails and the roads of roads.cmake on them.
 #
-# It draws extracts of OpenStreetMap by its keys, and vector tiles of the OpenMapTiles schema by their layers and classes.
-# The lower kinds come first.
+# It draws extracts of OpenStreetMap by its keys, and vector tiles by their layers and classes: those of the schemas
+# OpenMapTiles, Protomaps (3 and 4) and Shortbread. The lower kinds come first.
 
 set(city_kinds reserve built commerce industry campus field park wood sand rock wetland ice pitch water pier apron plaza)
 set(city_keys natural landuse leisure waterway amenity man_made aeroway highway)
@@ -32,26 +32,104 @@ set(city_pier_man_made pier breakwater groyne)
 set(city_apron_aeroway apron runway taxiway helipad)
 set(city_plaza_highway pedestrian footway path steps cycleway living_street residential unclassified service track)
 
-# The classes of each kind in the layers of tiles. "*": all of the layer.
-set(city_tile_layers park landuse landcover water aeroway transportation)
+# The classes of each kind in the layers of tiles, whatever the schema: a layer's name may be that of several, and their
+# classes do not contradict each other. "*": all of the layer.
+set(city_tile_layers park landuse landcover natural land sites water ocean water_polygons aeroway transportation
+    pier_polygons street_polygons bridges)
 set(city_tiles_reserve_park *)
+set(city_tiles_reserve_landuse nature_reserve national_park protected_area)
 set(city_tiles_built_landuse residential suburb quarter neighbourhood)
+set(city_tiles_built_landcover urban_area)
+set(city_tiles_built_land residential)
 set(city_tiles_commerce_landuse commercial retail)
-set(city_tiles_industry_landuse industrial railway garages quarry military)
+set(city_tiles_commerce_land commercial retail)
+set(city_tiles_industry_landuse industrial railway garages quarry military naval_base airfield)
+set(city_tiles_industry_land industrial railway garages quarry landfill brownfield)
+set(city_tiles_industry_sites construction)
 set(city_tiles_campus_landuse school university college kindergarten hospital library)
-set(city_tiles_field_landcover farmland)
-set(city_tiles_park_landuse cemetery zoo theme_park)
+set(city_tiles_campus_sites school university college hospital)
+set(city_tiles_field_landuse farmland grass meadow grassland scrub)
+set(city_tiles_field_landcover farmland grassland scrub)
+set(city_tiles_field_natural grass meadow grassland scrub)
+set(city_tiles_field_land farmland grass meadow grassland scrub heath orchard vineyard plant_nursery greenfield)
+set(city_tiles_park_landuse cemetery zoo theme_park park garden golf_course dog_park recreation_ground village_green
+    allotments)
 set(city_tiles_park_landcover grass)
-set(city_tiles_wood_landcover wood)
+set(city_tiles_park_land cemetery grave_yard park garden golf_course recreation_ground village_green allotments)
+set(city_tiles_wood_landuse wood forest)
+set(city_tiles_wood_landcover wood forest)
+set(city_tiles_wood_natural wood forest)
+set(city_tiles_wood_land forest)
+set(city_tiles_sand_landuse sand beach)
 set(city_tiles_sand_landcover sand)
-set(city_tiles_rock_landcover rock)
+set(city_tiles_sand_natural sand beach)
+set(city_tiles_sand_land sand beach shingle)
+set(city_tiles_rock_landuse bare_rock)
+set(city_tiles_rock_landcover rock barren)
+set(city_tiles_rock_natural bare_rock)
+set(city_tiles_rock_land bare_rock scree)
+set(city_tiles_wetland_landuse wetland)
 set(city_tiles_wetland_landcover wetland)
-set(city_tiles_ice_landcover ice)
+set(city_tiles_wetland_natural wetland)
+set(city_tiles_wetland_land swamp bog string_bog wet_meadow marsh)
+set(city_tiles_ice_landuse glacier)
+set(city_tiles_ice_landcover ice glacier)
+set(city_tiles_ice_natural glacier)
+set(city_tiles_ice_water_polygons glacier)
 set(city_tiles_pitch_landuse pitch playground stadium)
+set(city_tiles_pitch_land playground)
+set(city_tiles_pitch_sites sports_centre)
 set(city_tiles_water_water *)
+set(city_tiles_water_ocean *)
+set(city_tiles_water_water_polygons water river canal reservoir basin dock)
+set(city_tiles_pier_landuse pier)
 set(city_tiles_pier_transportation pier)
+set(city_tiles_pier_pier_polygons *)
+set(city_tiles_apron_landuse runway taxiway)
 set(city_tiles_apron_aeroway apron runway taxiway helipad)
+set(city_tiles_apron_street_polygons runway taxiway)
+set(city_tiles_plaza_landuse pedestrian)
 set(city_tiles_plaza_transportation path)
+set(city_tiles_plaza_street_polygons pedestrian service)
+set(city_tiles_plaza_bridges *)
+set(city_tiles_class [=[["coalesce", ["get", "class"], ["get", "kind"], ["get", "pmap:kind"]]]=])
+
+# The lines of each schema: the layers of rivers, rails and roads, the classes of the roads, and what makes a road a
+# tunnel, a bridge or a ramp. Protomaps has the two versions' names. A bridge with a roof is a tunnel.
+set(city_schemas openmaptiles protomaps shortbread)
+set(city_openmaptiles_rivers waterway)
+set(city_openmaptiles_rails transportation)
+set(city_openmaptiles_roads transportation)
+set(city_openmaptiles_class [=[["get", "class"]]=])
+set(city_openmaptiles_tunnel [=[["==", ["get", "brunnel"], "tunnel"]]=])
+set(city_openmaptiles_bridge [=[["==", ["get", "brunnel"], "bridge"]]=])
+set(city_openmaptiles_ramp [=[["==", ["get", "ramp"], 1]]=])
+set(city_protomaps_rivers water physical_line)
+set(city_protomaps_rails roads transit)
+set(city_protomaps_roads roads)
+set(city_protomaps_class [=[["coalesce", ["get", "kind_detail"], ["get", "pmap:kind_detail"]]]=])
+set(city_protomaps_tunnel [=[["any", ["==", ["get", "is_tunnel"], true], ["==", ["get", "pmap:level"], -1]]]=])
+set(city_protomaps_bridge [=[["any", ["==", ["get", "is_bridge"], true], ["==", ["get", "pmap:level"], 1]]]=])
+set(city_protomaps_ramp [=[["any", ["==", ["get", "is_link"], true], ["==", ["get", "pmap:link"], 1]]]=])
+set(city_shortbread_rivers water_lines)
+set(city_shortbread_rails streets)
+set(city_shortbread_roads streets)
+set(city_shortbread_class [=[["get", "kind"]]=])
+set(city_shortbread_tunnel [=[["==", ["get", "tunnel"], true]]=])
+set(city_shortbread_bridge [=[["all", ["==", ["get", "bridge"], true], ["!=", ["get", "tunnel"], true]]]=])
+set(city_shortbread_ramp [=[["==", ["get", "link"], true]]=])
+
+# The classes of lines, of all schemas and of OpenStreetMap. Those of roads are omt_values_CLASS, and these of a schema.
+set(city_rivers river canal stream drain ditch tidal_channel)
+set(city_rails rail transit light_rail narrow_gauge preserved funicular monorail subway tram)
+set(city_paths path footway cycleway bridleway steps corridor sidewalk crossing track)
+set(city_shortbread_service pedestrian)
+set(city_shortbread_minor residential unclassified living_street)
+set(city_protomaps_service pedestrian alley driveway parking_aisle)
+set(city_protomaps_minor residential unclassified living_street road)
+foreach(class tertiary secondary primary trunk motorway)
+  set(city_protomaps_${class} ${class}_link)
+endforeach()
 
 # From which zoom on a kind is drawn, where it is small. An opacity says so, and no minzoom: a scene keeps its network as
 # long as the same layers have features.
@@ -104,10 +182,14 @@ set(city_dark_building "#242c3b")
 set(city_dark_stream   "#1b4360")
 set(city_dark_rail     "#505a6d")
 
-# A test of a key for one of the values.
-function(city_match out key)
+# Tests of what goes by OpenStreetMap's keys: whether it is in a tunnel; and Protomaps 3 repeats keys beside its classes.
+set(city_tunnel [=[["match", ["to-string", ["get", "tunnel"]], ["", "0", "no", "false"], false, true]]=])
+set(city_no_schema [=[["!", ["has", "pmap:kind"]]]=])
+
+# A test of an expression for one of the values.
+function(city_match out value)
   list(JOIN ARGN "\", \"" values)
-  set(${out} "[\"match\", [\"get\", \"${key}\"], [\"${values}\"], true, false]" PARENT_SCOPE)
+  set(${out} "[\"match\", ${value}, [\"${values}\"], true, false]" PARENT_SCOPE)
 endfunction()
 
 # Appends a layer that fills a kind: id, more of its head, filter.
@@ -126,19 +208,19 @@ endfunction()
 
 # Appends the layers of a kind: one of what a key makes of this kind, and one for each layer of tiles that has it.
 function(city_areas out theme kind)
-  set(filter "[\"any\"")
+  set(filter "[\"all\", ${city_no_schema}, [\"any\"")
   foreach(key IN LISTS city_keys)
     if(DEFINED city_${kind}_${key})
-      city_match(match ${key} ${city_${kind}_${key}})
+      city_match(match "[\"get\", \"${key}\"]" ${city_${kind}_${key}})
       string(APPEND filter ",\n                ${match}")
     endif()
   endforeach()
-  city_layer(${out} ${theme} ${kind} ${kind} "" "${filter}]")
+  city_layer(${out} ${theme} ${kind} ${kind} "" "${filter}]]")
   foreach(layer IN LISTS city_tile_layers)
     if(DEFINED city_tiles_${kind}_${layer})
       set(filter "")
       if(NOT city_tiles_${kind}_${layer} STREQUAL "*")
-        city_match(filter class ${city_tiles_${kind}_${layer}})
+        city_match(filter "${city_tiles_class}" ${city_tiles_${kind}_${layer}})
       endif()
       city_layer(${out} ${theme} ${kind} tiles-${layer}-${kind} " \"source-layer\": \"${layer}\"," "${filter}")
     endif()
@@ -146,13 +228,56 @@ function(city_areas out theme kind)
   set(${out} "${${out}}" PARENT_SCOPE)
 endfunction()
 
-# Writes city-THEME.json into the folder. The roads of tiles have the colours of the other roads.
-function(city_style theme folder)
-  foreach(name IN LISTS omt_classes ITEMS paper casing_bridge)
-    set(omt_city_${theme}_${name} "${${theme}_${name}}")
+# Appends a layer by its template, with the variables that this names filled in.
+macro(city_append out template)
+  string(CONFIGURE "${template}" city_text @ONLY)
+  string(STRIP "${city_text}" city_text)
+  string(APPEND ${out} ",\n    ${city_text}")
+endmacro()
+
+set(city_template_building [=[
+    {"id": "@ID@", "type": "fill",@HEAD@
+     "paint": {"fill-color": ["interpolate", ["linear"], ["zoom"], 13.5, "@BUILDING_FAR@", 15, "@BUILDING@"],
+               "fill-opacity": ["step", ["zoom"], 0, 13.5, 1]}}]=])
+set(city_template_river [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "layout": {"line-cap": "round", "line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": ["match", @CLASS@, ["river", "canal"], "@WATER@", "@STREAM@"],
+               "line-width": ["interpolate", ["exponential", 1.4], ["zoom"],
+                              8, ["match", @CLASS@, "river", 0.6, "canal", 0.5, 0],
+                              12, ["match", @CLASS@, "river", 2, "canal", 1.5, 0.6],
+                              16, ["match", @CLASS@, "river", 6, "canal", 5, 2],
+                              20, ["match", @CLASS@, "river", 26, "canal", 22, 8]]}}]=])
+set(city_template_rail [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@RAIL@",
+               "line-width": ["interpolate", ["exponential", 1.4], ["zoom"], 8, 0, 9, 0.4, 14, 1, 16, 1.6, 20, 5.5]}}]=])
+
+# Areas have no line around them.
+set(city_no_area "[\"!=\", [\"geometry-type\"], \"Polygon\"]")
+
+# Appends the rivers or rails that lie in no tunnel: of OpenStreetMap's keys, and of the layers of each schema.
+macro(city_lines out kind key)
+  city_match(match "[\"get\", \"${key}\"]" ${city_${kind}s})
+  set(CLASS "[\"get\", \"${key}\"]")
+  set(ID ${kind})
+  set(HEAD "\n     \"filter\": [\"all\", ${city_no_area}, ${city_no_schema}, ${match},\n                [\"!\", ${city_tunnel}]],")
+  city_append(${out} "${city_template_${kind}}")
+  city_match(match "${city_tiles_class}" ${city_${kind}s})
+  set(CLASS "${city_tiles_class}")
+  foreach(schema IN LISTS city_schemas)
+    foreach(layer IN LISTS city_${schema}_${kind}s)
+      set(ID tiles-${layer}-${kind})
+      set(HEAD " \"source-layer\": \"${layer}\",\n     \"filter\": [\"all\", ${city_no_area}, ${match},\n                ")
+      string(APPEND HEAD "[\"!\", ${city_${schema}_tunnel}]],")
+      city_append(${out} "${city_template_${kind}}")
+    endforeach()
   endforeach()
-  omt_roads(city_${theme})
-  set(IS_ROAD "[\"all\", [\"!=\", [\"geometry-type\"], \"Polygon\"], ${IS_ROAD}]")
+endmacro()
+
+# Appends what lies on the areas: buildings, rivers, rails, and the roads of tiles, in the colours of the other roads.
+function(city_details out theme)
   foreach(color building building_far water stream rail)
     string(TOUPPER ${color} name)
     set(${name} "${city_${theme}_${color}}")
@@ -162,16 +287,52 @@ function(city_style theme folder)
     list(GET ${theme}_${color} 1 ${name})
   endforeach()
   set(CASING_BRIDGE "${${theme}_casing_bridge}")
+
+  set(ID building)
+  set(HEAD "\n     \"filter\": [\"match\", [\"to-string\", [\"get\", \"building\"]], [\"\", \"no\"], false, true],")
+  city_append(${out} "${city_template_building}")
+  foreach(layer building buildings)
+    set(ID tiles-${layer})
+    set(HEAD " \"source-layer\": \"${layer}\",")
+    city_append(${out} "${city_template_building}")
+  endforeach()
+  city_lines(${out} river waterway)
+  city_lines(${out} rail railway)
+
+  foreach(name IN LISTS omt_classes ITEMS paper casing_bridge)
+    set(omt_city_${name} "${${theme}_${name}}")
+    set(known_${name} ${omt_values_${name}})
+  endforeach()
+  file(READ ${PROJECT_SOURCE_DIR}/src/style/city.json.in roads)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/style/city.json.in)
+  foreach(schema IN LISTS city_schemas)
+    set(LAYER ${city_${schema}_roads})
+    foreach(name class tunnel bridge ramp)
+      string(TOUPPER ${name} placeholder)
+      set(${placeholder} "${city_${schema}_${name}}")
+      set(omt_${name} "${city_${schema}_${name}}")
+    endforeach()
+    foreach(name IN LISTS omt_classes)
+      set(omt_values_${name} ${known_${name}} ${city_${schema}_${name}})
+    endforeach()
+    city_match(IS_PATH "${CLASS}" ${city_paths})
+    omt_roads(city)
+    foreach(filter IS_ROAD IS_PATH)
+      set(${filter} "[\"all\", ${city_no_area}, ${${filter}}]")
+    endforeach()
+    city_append(${out} "${roads}")
+  endforeach()
+  set(${out} "${${out}}" PARENT_SCOPE)
+endfunction()
+
+# Writes city-THEME.json into the folder.
+function(city_style theme folder)
   set(layers ",\n    {\"id\": \"plain-area\", \"type\": \"fill\", \"metadata\": {\"camber:plain\": true},\n")
   string(APPEND layers "     \"paint\": {\"fill-color\": [\"global-state\", \"plain-fill\"]}}")
   foreach(kind IN LISTS city_kinds)
     city_areas(layers ${theme} ${kind})
   endforeach()
-  file(READ ${PROJECT_SOURCE_DIR}/src/style/city.json.in lines)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/style/city.json.in)
-  string(CONFIGURE "${lines}" lines @ONLY)
-  string(STRIP "${lines}" lines)
-  string(APPEND layers ",\n    ${lines}")
+  city_details(layers ${theme})
   road_layers(layers ${theme})
   plain_lines(layers line "[\"!=\", [\"geometry-type\"], \"Point\"]" 0)
   plain_lines(layers point "[\"==\", [\"geometry-type\"], \"Point\"]" 4)

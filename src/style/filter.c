@@ -197,7 +197,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 
 /* ---- Types of geometry ---- */
 
-/* What is known of a filter for features of one type of geometry, whatever their properties. */
+/* How a filter ends for features of one type of geometry, as far as that is known without their properties. */
 typedef enum verdict { NEVER = -1, MAYBE = 0, ALWAYS = 1 } verdict;
 
 static verdict reverse(verdict one) {

@@ -344,7 +344,7 @@ static int find_center_zoom(const camber_tiles_area *area) {
     return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
-/* Of a box across the antimeridian the middle is in none of the archive's bounds, which are the world's. */
+/* The middle of a box across the antimeridian is not that of the archive's bounds, which are the world's then. */
 static double find_center_longitude(const camber_tiles_area *area, const double bounds[4]) {
     double longitude, latitude;
     if (area->bounds.x1 <= 1.0)

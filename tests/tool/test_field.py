@@ -103,7 +103,7 @@ def check_looks():
             found = colors(draw(write(f"{name}.geojson", one), "--theme", theme, "--center", "5.05,5.05", "--zoom", "8"))
             best = max(contrast(color, paper) for color in found)
             check(best >= 3 and len(found) > 1, f"{theme}, {name}: the best contrast is {best}")
-    # What the options say, exactly.
+    # The options' colours, exactly.
     found = colors(draw(write("all.geojson", LINE, SQUARE, POINT), "--color", "#ff0000", "--fill", "rgb(0, 255, 0)",
                         "--width", "8"))
     check(found.get((255, 0, 0), 0) > 120 * 8 and found.get((0, 255, 0), 0) > 120 * 60, f"the options: {found}")

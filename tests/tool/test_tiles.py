@@ -627,6 +627,69 @@ def test_metadata():
            ["input", "style", "options", "area", "version"], shown)
 
 
+def message(field, content):
+    """A field of protobuf: bytes with their length, or a number."""
+    def varint(number):
+        return bytes([number & 127 | 128]) + varint(number >> 7) if number > 127 else bytes([number])
+    if isinstance(content, int):
+        return varint(field << 3) + varint(content)
+    return varint(field << 3 | 2) + varint(len(content)) + content
+
+
+def vector_tile(layers):
+    """Each layer has one feature, the western half of the tile, or a line through its middle."""
+    zigzag = {"area": [9, 0, 0, 26, 4096, 0, 0, 8192, 4095, 0, 15], "line": [9, 0, 4096, 10, 8192, 0]}
+    tile = b""
+    for name, (what, properties) in layers.items():
+        shape = b"".join(message(0, number)[1:] for number in zigzag[what])
+        tags = b"".join(bytes([i, i]) for i in range(len(properties)))
+        tile += message(3, message(15, 2) + message(1, name.encode()) +
+                        message(2, message(2, tags) + message(3, 3 if what == "area" else 2) + message(4, shape)) +
+                        b"".join(message(3, key.encode()) for key in properties) +
+                        b"".join(message(4, message(7, 1) if value is True else message(1, value.encode()))
+                                 for value in properties.values()) + message(5, 4096))
+    return tile
+
+
+def write_vector_tiles(path, layers):
+    """The north-western tile of zoom 1; rows count from the south."""
+    about = [{"id": name, "fields": {key: "String" for key in properties}} for name, (_, properties) in layers.items()]
+    base = sqlite3.connect(path)
+    base.execute("CREATE TABLE metadata (name TEXT, value TEXT)")
+    base.execute("CREATE TABLE tiles (zoom_level INTEGER, tile_column INTEGER, tile_row INTEGER, tile_data BLOB)")
+    base.executemany("INSERT INTO metadata VALUES (?, ?)",
+                     [("name", "x"), ("format", "pbf"), ("json", json.dumps({"vector_layers": about}))])
+    base.execute("INSERT INTO tiles VALUES (?, ?, ?, ?)", (1, 0, 1, zlib.compress(vector_tile(layers))))
+    base.commit()
+    base.close()
+
+
+def test_schemas():
+    """show tells the schema by the names of layers; and the style city draws it, or plainly what has none."""
+    water, motorway, plain = (0xa6, 0xcf, 0xdd), (0xe2, 0x72, 0x5b), (0x3f, 0x65, 0x95)
+    cases = {
+        "OpenMapTiles": {"water": ("area", {"class": "lake"}), "transportation": ("line", {"class": "motorway"})},
+        "Protomaps 4": {"earth": ("area", {"kind": "earth"}), "water": ("area", {"kind": "lake"}),
+                         "roads": ("line", {"kind": "highway", "kind_detail": "motorway", "is_bridge": True})},
+        "Protomaps 3": {"earth": ("area", {"pmap:kind": "earth"}), "water": ("area", {"pmap:kind": "lake"}),
+                         "roads": ("line", {"pmap:kind": "highway", "pmap:kind_detail": "motorway"})},
+        "Shortbread": {"water_polygons": ("area", {"kind": "water"}), "streets": ("line", {"kind": "motorway"})},
+        None: {"roads": ("line", {"NAME": "x"})}}
+    for schema, layers in cases.items():
+        path = f"{schema}.mbtiles"
+        write_vector_tiles(path, layers)
+        expect(json.loads(camber("tiles", "show", path, "--json").stdout)["schema"] == schema, schema)
+        line = re.search(r"^schema +(.*)$", camber("tiles", "show", path).stdout, re.M).group(1)
+        expect(line == (schema or "none that the style city knows; its layers are drawn plainly"), line)
+        camber("render", path, "-o", "x.png", "-f", "-q", "--center", "-90,66.51326", "--zoom", 16, "--size", "100x100",
+               "--width", 8)
+        found = {tuple(row[i:i + 3]) for row in decode(read("x.png")) for i in range(0, len(row), 4)}
+        expect({water, motorway} <= found if schema else plain in found, f"{schema} has the colours {sorted(found)}")
+    make_lines("lines.geojson")
+    tiles("lines.geojson", "-o", "x.pmtiles", "--max-zoom", 9)
+    expect("schema" not in camber("tiles", "show", "x.pmtiles").stdout, "pictures have a schema")
+
+
 def test_full():
     """A limit on a file's size stands for a full disk: one line, nothing half-written, and room brings the rest."""
     make_lines("lines.geojson")
@@ -705,7 +768,7 @@ def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)  # under nohup or a shell's & it is ignored, and by children
     tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed,
              test_stopped, test_other_run, test_renew, test_merged_sizes, test_area, test_folders, test_dry_run,
-             test_metadata, test_full]
+             test_metadata, test_schemas, test_full]
     named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]
     for test in named or tests:
         with tempfile.TemporaryDirectory(prefix="camber-tiles-") as folder:

@@ -179,7 +179,7 @@ static void test_curves(void **state) {
         {"{\"stops\": [[10, 0], [14, 15]], \"base\": 2}", NUMBER, 2, "{}", "0"},
         {"{\"stops\": [[10, 0], [14, 15]], \"type\": \"interval\"}", NUMBER, 13.9, "{}", "0"},
         {"{\"stops\": [[10, 0], [14, 15]], \"type\": \"interval\"}", NUMBER, 14, "{}", "15"},
-        /* Of stops at one input the last counts from there on, as in browsers; below it the first. */
+        /* The last of several stops at one input counts from there on, as in browsers; below it the first. */
         {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER, 1.5, "{}", "27.5"},
         {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER, 0.5, "{}", "15"},
         {"{\"stops\": [[0, 10], [1, 20], [1, 22], [1, 25]]}", NUMBER, 1, "{}", "25"},

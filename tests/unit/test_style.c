@@ -278,6 +278,17 @@ static void test_roads(void **state) {
 
 /* ---- The built-in style ---- */
 
+/* "true" is a boolean, and what begins as a number is one. */
+static camber_value tag_value(const char *text) {
+    char *end;
+    const double number = strtod(text, &end);
+    if (strcmp(text, "true") == 0)
+        return (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true};
+    if (end != text)
+        return (camber_value){.type = CAMBER_VALUE_NUMBER, .number = number};
+    return (camber_value){.type = CAMBER_VALUE_STRING, .string = text};
+}
+
 /* A feature with some of a style's properties: "landuse=forest class=wood". */
 static void set_tags(const camber_style *style, const char *tags, camber_value *values, char texts[128]) {
     memset(values, 0, style->property_count * sizeof *values);
@@ -290,7 +301,7 @@ static void set_tags(const camber_style *style, const char *tags, camber_value *
             i++;
         if (i == style->property_count)
             fail_msg("the style does not read %s", tag);
-        values[i] = (camber_value){.type = CAMBER_VALUE_STRING, .string = value};
+        values[i] = tag_value(value);
     }
 }
 
@@ -355,6 +366,38 @@ static void check_city(const camber_style *style) {
         {"", "building=yes", "building"},
         {"", "building=no", ""},
         {"building", "", "tiles-building"},
+        {"landuse", "kind=park", "tiles-landuse-park"},
+        {"landuse", "kind=nature_reserve", "tiles-landuse-reserve"},
+        {"landuse", "kind=grassland", "tiles-landuse-field"},
+        {"landuse", "kind=pedestrian", "tiles-landuse-plaza"},
+        {"landuse", "kind=runway", "tiles-landuse-apron"},
+        {"landuse", "kind=platform", ""},
+        {"landcover", "kind=urban_area", "tiles-landcover-built"},
+        {"landcover", "kind=forest", "tiles-landcover-wood"},
+        {"landcover", "kind=glacier", "tiles-landcover-ice"},
+        {"water", "kind=ocean", "tiles-water-water"},
+        {"buildings", "kind=building", "tiles-buildings"},
+        {"earth", "kind=earth", ""},
+        {"natural", "pmap:kind=wood natural=wood", "tiles-natural-wood"},
+        {"natural", "pmap:kind=wetland natural=wetland", "tiles-natural-wetland"},
+        {"landuse", "pmap:kind=park leisure=park", "tiles-landuse-park"},
+        {"landuse", "pmap:kind=university amenity=university", "tiles-landuse-campus"},
+        {"water", "pmap:kind=water natural=water", "tiles-water-water"},
+        {"buildings", "pmap:kind=building", "tiles-buildings"},
+        {"ocean", "", "tiles-ocean-water"},
+        {"water_polygons", "kind=river", "tiles-water_polygons-water"},
+        {"water_polygons", "kind=glacier", "tiles-water_polygons-ice"},
+        {"land", "kind=forest", "tiles-land-wood"},
+        {"land", "kind=garden", "tiles-land-park"},
+        {"land", "kind=residential", "tiles-land-built"},
+        {"land", "kind=industrial", "tiles-land-industry"},
+        {"land", "kind=marsh", "tiles-land-wetland"},
+        {"sites", "kind=hospital", "tiles-sites-campus"},
+        {"sites", "kind=parking", ""},
+        {"pier_polygons", "kind=groyne", "tiles-pier_polygons-pier"},
+        {"street_polygons", "kind=pedestrian", "tiles-street_polygons-plaza"},
+        {"street_polygons", "kind=taxiway", "tiles-street_polygons-apron"},
+        {"bridges", "kind=bridge", "tiles-bridges-plaza"},
         {"", "highway=pedestrian", "plaza"},
         {"", "highway=residential", "plaza"},
         {"", "highway=motorway", ""},
@@ -365,15 +408,50 @@ static void check_city(const camber_style *style) {
     } lines[] = {
         {"", "waterway=river", "river"},
         {"", "waterway=stream tunnel=culvert", ""},
-        {"waterway", "class=river", "tiles-river"},
+        {"waterway", "class=river", "tiles-waterway-river"},
         {"waterway", "class=river brunnel=tunnel", ""},
         {"", "railway=rail", "rail"},
         {"", "railway=abandoned", ""},
-        {"transportation", "class=rail", "tiles-rail"},
+        {"transportation", "class=rail", "tiles-transportation-rail"},
         {"", "highway=primary", "ground-primary-casing ground-primary-fill"},
-        {"transportation", "class=primary", "tiles-casing tiles-road"},
-        {"transportation", "class=minor brunnel=bridge", "tiles-bridge-casing tiles-bridge"},
-        {"transportation", "class=path", "tiles-path"},
+        {"transportation", "class=primary", "tiles-transportation-casing tiles-transportation-road"},
+        {"transportation", "class=minor brunnel=bridge",
+         "tiles-transportation-bridge-casing tiles-transportation-bridge"},
+        {"transportation", "class=path", "tiles-transportation-path"},
+        {"transportation", "class=residential", ""},
+        {"water", "kind=river", "tiles-water-river"},
+        {"water", "kind=reef", ""},
+        {"roads", "kind=highway kind_detail=motorway", "tiles-roads-casing tiles-roads-road"},
+        {"roads", "kind=major_road kind_detail=primary_link is_link=true", "tiles-roads-casing tiles-roads-road"},
+        {"roads", "kind=minor_road kind_detail=residential is_bridge=true",
+         "tiles-roads-bridge-casing tiles-roads-bridge"},
+        {"roads", "kind=minor_road kind_detail=service is_tunnel=true", "tiles-roads-tunnel-casing tiles-roads-tunnel"},
+        {"roads", "kind=path kind_detail=sidewalk", "tiles-roads-path"},
+        {"roads", "kind=path kind_detail=track", "tiles-roads-path"},
+        {"roads", "kind=path kind_detail=pier", ""},
+        {"roads", "kind=rail kind_detail=tram", "tiles-roads-rail"},
+        {"roads", "kind=rail kind_detail=subway is_tunnel=true", ""},
+        {"roads", "kind=ferry", ""},
+        {"physical_line", "pmap:kind=stream waterway=stream", "tiles-physical_line-river"},
+        {"physical_line", "pmap:kind=stream waterway=stream pmap:level=-1", ""},
+        {"physical_line", "pmap:kind=cliff natural=cliff", ""},
+        {"roads", "pmap:kind=medium_road pmap:kind_detail=tertiary pmap:level=0",
+         "tiles-roads-casing tiles-roads-road"},
+        {"roads", "pmap:kind=highway pmap:kind_detail=motorway_link pmap:link=1 pmap:level=1",
+         "tiles-roads-bridge-casing tiles-roads-bridge"},
+        {"roads", "pmap:kind=major_road pmap:kind_detail=trunk pmap:level=-1",
+         "tiles-roads-tunnel-casing tiles-roads-tunnel"},
+        {"transit", "pmap:kind=rail pmap:kind_detail=rail railway=rail pmap:level=1", "tiles-transit-rail"},
+        {"transit", "pmap:kind=rail pmap:kind_detail=subway railway=subway pmap:level=-1", ""},
+        {"water_lines", "kind=canal", "tiles-water_lines-river"},
+        {"water_lines", "kind=ditch tunnel=true", ""},
+        {"streets", "kind=trunk link=true", "tiles-streets-casing tiles-streets-road"},
+        {"streets", "kind=living_street bridge=true", "tiles-streets-bridge-casing tiles-streets-bridge"},
+        {"streets", "kind=primary bridge=true tunnel=true", "tiles-streets-tunnel-casing tiles-streets-tunnel"},
+        {"streets", "kind=footway", "tiles-streets-path"},
+        {"streets", "kind=narrow_gauge", "tiles-streets-rail"},
+        {"streets", "kind=subway tunnel=true", ""},
+        {"streets", "kind=runway", ""},
         {"transportation_name", "class=primary", ""},
         {"water_name", "class=lake", ""},
         {"", "building=yes", ""},
@@ -600,7 +678,7 @@ static void test_plain(void **state) {
     teardown(&f);
 }
 
-/* Of an odd list of dashes the last runs on into the first, as MapLibre draws it; one length is a solid line. */
+/* The last dash of an odd list runs on into the first, as MapLibre draws it; one length is a solid line. */
 static void test_odd_dashes(void **state) {
     (void)state;
     static const struct {

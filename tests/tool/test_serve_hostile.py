@@ -75,8 +75,8 @@ def test_absolute():
     for path in ("http://", "http:///" + TILE, "http:/" + TILE, "ftp://x" + TILE, "http://x/nothing", "http://x//" + TILE):
         expect(server.get(path)[0] == 404, path)
     server.stop()
-    line = [json.loads(line) for line in server.errors if line.startswith("{")][-6]
-    expect(line["path"] == "http://" or line["path"].startswith("/"), line)
+    paths = [json.loads(line)["path"] for line in server.errors if line.startswith("{")] # of several threads, in any order
+    expect("http://" in paths, paths)
 
 
 def test_bounds():

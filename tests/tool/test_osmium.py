@@ -105,9 +105,9 @@ def osmium(*arguments):
     subprocess.run(["osmium", *arguments, "--overwrite"], check=True, stderr=subprocess.DEVNULL)
 
 
-def picture(path):
+def picture(path, *options):
     """The pixels, and what was read."""
-    read = counts(path)
+    read = counts(path, *options)
     with open("out.png", "rb") as file:
         return file.read(), [read[key] for key in ("features", "polylines", "points_in", "missing_nodes")]
 
@@ -119,6 +119,8 @@ def write_forms():
         yield f"{packing}.osm.pbf", CITY
     osmium("cat", CITY, "-f", "pbf,pbf_dense_nodes=false", "-o", "single.osm.pbf")
     yield "single.osm.pbf", CITY
+    osmium("cat", CITY, "-f", "pbf,add_metadata=false,pbf_dense_nodes=false,pbf_compression=lz4", "-o", "bare.osm.pbf")
+    yield "bare.osm.pbf", CITY
     osmium("add-locations-to-ways", CITY, "-o", "places.osm.pbf")
     yield "places.osm.pbf", CITY
     osmium("add-locations-to-ways", "-n", CITY, "-f", "pbf,pbf_compression=none", "-o", "both.osm.pbf")
@@ -140,6 +142,11 @@ def check_city():
         if like not in pictures:
             pictures[like] = picture(like)
         expect(picture(path) == pictures[like], f"{path} is not drawn as {like} is")
+        forms += 1
+    # GDAL reads XML, and makes no sea.
+    for ending in "osm", "osm.gz":
+        osmium("cat", CITY, "-f", ending, "-o", f"city.{ending}")
+        expect(picture(f"city.{ending}", "--style", "roads") == picture(CITY, "--style", "roads"), f"the roads of {ending}")
         forms += 1
     size = os.path.getsize(CITY)
     own, gdals = (counts(path, "--style", "roads") for path in (CITY, f"/vsisubfile/0_{size},{CITY}"))

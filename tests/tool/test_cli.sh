@@ -785,7 +785,7 @@ for type in '6 its tiles are MLT .*; make it again with MVT' '5 its tiles are pi
 done
 # A parallel across the world, and a line that goes the short way, over the antimeridian.
 echo '{"type":"MultiLineString","coordinates":[[[-180,0],[180,0]],[[-100,40],[100,40]]]}' >"$tmp/in/par.geojson"
-expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 512x512
+expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 300x300
 says '^1 feature, 3 polylines, 6 points, '
 says '^antimeridian: crossed 1 time; '
 expect 0 "lines across the world, as JSON" render "$tmp/in/par.geojson" -o a.png -f --center 0,0 --zoom 0 --json

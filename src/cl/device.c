@@ -124,7 +124,7 @@ static size_t find_on_platform(cl_platform_id platform, found_device *found, siz
     }
     for (cl_uint i = 0; i < id_count && i < DEVICES_MAX && count < capacity; i++) {
         found[count] = (found_device){.platform = platform, .id = ids[i]};
-        snprintf(found[count].info.platform, sizeof found->info.platform, "%s", name);
+        snprintf(found[count].info.platform, sizeof found->info.platform, "%.127s", name);
         code = query_info(found + count);
         if (code == CL_SUCCESS)
             count++;

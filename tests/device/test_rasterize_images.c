@@ -33,7 +33,7 @@ static void make_images(drawing *d, bool noise) {
             const double x = 2 * SCENE_PI * (k % width) / width, y = 2 * SCENE_PI * (k / width) / height;
             const double alpha = noise ? camber_random_between(&seed, 0, 255) : 150 + 100 * sin(y);
             uint8_t *px = d->rgba[i] + 4 * (size_t)k;
-            px[3] = i % 2 ? (uint8_t)alpha : 255;
+            px[3] = (uint8_t)(i % 2 ? alpha : 255.0);
             for (int c = 0; c < 3; c++) {
                 const double value = noise ? camber_random_between(&seed, 0, 1) : 0.5 + 0.5 * sin(x + (c + 1) * y + c);
                 px[c] = (uint8_t)(value * px[3]);

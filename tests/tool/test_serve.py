@@ -990,8 +990,9 @@ def test_lost_device():
         pass
     statuses = [server.get(path % (ZOOM, COLUMN + 1, ROW + i))[0] for i in range(3)]
     expect(statuses == [500] * 3, f"lost: {statuses}")
-    expect(server.process.wait(timeout=PATIENCE_S) == 69, f"status {server.process.returncode}")
+    server.process.wait(timeout=PATIENCE_S)
     server.reader.join(PATIENCE_S)
+    expect(server.process.returncode == 69, f"status {server.process.returncode}: {server.errors}")
     expect("the device is lost" in server.errors[-1], server.errors)
 
 

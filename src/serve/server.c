@@ -1,7 +1,9 @@
 /* The server's life: sockets, daemons, what is shown, and the end.
  *
- * A pool of threads waits for sockets by epoll and answers; the drawing has threads of its own. At the end no new
- * connection is taken, requests that are here are answered, each with "Connection: close", and then all is freed. */
+ * A pool of threads waits for sockets by poll and answers; the drawing has threads of its own. By epoll libmicrohttpd
+ * ends the process now and then, as a thread and MHD_quiesce_daemon both take the listening socket out of the set. At
+ * the end no new connection is taken, requests that are here are answered, each with "Connection: close", and then all
+ * is freed. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/server.h"
@@ -119,7 +121,7 @@ static int start(camber_listener *listener, const char *address, unsigned thread
         write_url(listener->server); /* before the first request can come */
     struct MHD_OptionItem pool[] = {{MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)threads, NULL}, {MHD_OPTION_END, 0, NULL}};
     listener->daemon =
-        MHD_start_daemon(MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, camber_request_answer,
+        MHD_start_daemon(MHD_USE_POLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, camber_request_answer,
                          listener, MHD_OPTION_LISTEN_SOCKET, (MHD_socket)listening, MHD_OPTION_CONNECTION_LIMIT,
                          connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES,
                          MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)(2 * MOST_SECONDS), MHD_OPTION_URI_LOG_CALLBACK,

@@ -24,9 +24,9 @@ static bool holds_drawn(OGRwkbGeometryType type, const camber_style *style) {
     case wkbSurface:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbTriangle: return camber_features_unsorted_kinds(style) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
+    case wkbTriangle: return camber_features_kinds(style, true) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
     case wkbPoint:
-    case wkbMultiPoint: return camber_features_unsorted_kinds(style) & CAMBER_KIND_POINT;
+    case wkbMultiPoint: return camber_features_kinds(style, true) & CAMBER_KIND_POINT;
     default: return false;
     }
 }

@@ -45,15 +45,6 @@ typedef struct reader {
 
 /* ---- Set-up for a layer ---- */
 
-/* Tells which kinds of geometry are read of the layer. */
-static unsigned kinds_of(const reader *self) {
-    const camber_style *style = self->features->style;
-    if (self->columns.unsorted)
-        return camber_features_unsorted_kinds(style);
-    return CAMBER_KIND_LINE | (style->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
-           (style->wants_areas ? CAMBER_KIND_AREA : 0u);
-}
-
 /* CAMBER_ERROR_ARGUMENT: the attribute filter does not fit the layer; nothing is logged then. */
 static camber_status begin_layer(reader *self, int index) {
     self->layer = GDALDatasetGetLayer(self->dataset.handle, index);
@@ -65,7 +56,7 @@ static camber_status begin_layer(reader *self, int index) {
         status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
-    self->lines.kinds = kinds_of(self);
+    self->lines.kinds = camber_features_kinds(self->features->style, self->columns.unsorted);
     /* A filter may read any field, so none is ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);

@@ -493,26 +493,16 @@ static const camber_value *read_values(camber_features *features, const camber_f
     return set->read;
 }
 
-unsigned camber_features_unsorted_kinds(const camber_style *style) {
-    unsigned kinds = CAMBER_KIND_LINE;
-    if (style->wants_polygons || style->wants_plain_areas)
-        kinds |= CAMBER_KIND_POLYGON;
-    if (style->wants_areas || style->wants_plain_areas)
-        kinds |= CAMBER_KIND_AREA;
-    return style->wants_plain_points ? kinds | CAMBER_KIND_POINT : kinds;
+unsigned camber_features_kinds(const camber_style *style, bool unsorted) {
+    const bool plain_areas = unsorted && style->wants_plain_areas;
+    return CAMBER_KIND_LINE | (style->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
+           (style->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
+           (unsorted && style->wants_plain_points ? CAMBER_KIND_POINT : 0u);
 }
 
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {
     const camber_feature_class *one = &features->classes[class_index];
-    const camber_style *style = features->style;
-    if (!one->unsorted || one->plain)
-        return true;
-    switch (one->geometry) {
-    case CAMBER_GEOMETRY_POLYGON: return style->wants_polygons;
-    case CAMBER_GEOMETRY_AREA: return style->wants_areas;
-    case CAMBER_GEOMETRY_POINT: return false;
-    default: return true;
-    }
+    return !one->unsorted || one->plain || camber_features_kinds(features->style, false) >> one->geometry & 1;
 }
 
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,

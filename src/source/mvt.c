@@ -401,7 +401,7 @@ static unsigned wanted_kinds(const camber_mvt *mvt) {
         if (desc->layer_kinds)
             return desc->layer_kinds[i];
         if (mvt->unsorted)
-            return camber_features_unsorted_kinds(desc->features->style);
+            return camber_features_kinds(desc->features->style, true);
         return CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
                (desc->wants_areas ? CAMBER_KIND_AREA : 0u);
     }

@@ -140,8 +140,8 @@ struct camber_archive {
 /* Opens an archive by its path. Returns what camber_tile_set_open does. */
 camber_status camber_archive_open(camber_context *context, const char *path, camber_archive **archive);
 /* Finds the type of the tiles by the first of them, where the archive does not say it. What is none that is known stays
- * OTHER. */
-void camber_archive_sniff(camber_archive *archive);
+ * OTHER. Returns what camber_archive_walk does. */
+camber_status camber_archive_sniff(camber_archive *archive);
 void camber_archive_close(camber_archive *archive);
 
 typedef struct camber_archive_tile {

@@ -79,7 +79,7 @@ camber_status camber_tiles_reader_create(camber_context *context, const char *pa
     if (status == CAMBER_OK)
         status = find_type(made);
     if (status == CAMBER_OK)
-        camber_archive_sniff(made->archive);
+        status = camber_archive_sniff(made->archive);
     if (status == CAMBER_OK)
         status = describe(made);
     if (status == CAMBER_OK)

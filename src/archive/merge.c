@@ -186,7 +186,7 @@ static camber_status open_parts(merging *m) {
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < m->desc->part_count && status == CAMBER_OK; i++)
         if ((status = camber_archive_open(m->context, m->desc->parts[i], &m->parts[i])) == CAMBER_OK)
-            camber_archive_sniff(m->parts[i]);
+            status = camber_archive_sniff(m->parts[i]);
     return status;
 }
 

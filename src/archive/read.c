@@ -277,27 +277,38 @@ camber_status camber_archive_walk(camber_archive *archive,
     return camber_folder_visit(archive->path, &files);
 }
 
+typedef struct sniffing {
+    camber_archive *archive;
+    bool done;
+} sniffing;
+
 /* One is enough: the walk ends as if it had failed. */
 static camber_status sniff_tile(void *user, const camber_archive_tile *tile) {
-    camber_archive *archive = user;
+    sniffing *self = user;
+    camber_archive *archive = self->archive;
     camber_bytes bytes = {.context = archive->context};
     const char *why = NULL;
-    if (tile->size_bytes <= CAMBER_ARCHIVE_LARGEST_TILE_BYTES &&
-        camber_archive_read(archive, tile, &bytes, &why) == CAMBER_OK && !why) {
+    camber_status status = CAMBER_OK;
+    if (tile->size_bytes <= CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
+        status = camber_archive_read(archive, tile, &bytes, &why);
+    self->done = status == CAMBER_OK;
+    if (self->done && !why) {
         archive->type = camber_tile_sniff(bytes.data, bytes.size_bytes);
         archive->gzipped = archive->type == CAMBER_TILE_MVT && bytes.data[0] == 0x1f;
     }
     camber_bytes_free(&bytes);
-    return CAMBER_ERROR_LIMIT;
+    return self->done ? CAMBER_ERROR_LIMIT : status;
 }
 
-void camber_archive_sniff(camber_archive *archive) {
+camber_status camber_archive_sniff(camber_archive *archive) {
+    sniffing self = {archive, false};
     if (archive->type != CAMBER_TILE_OTHER)
-        return;
-    (void)camber_archive_walk(archive, sniff_tile, archive);
+        return CAMBER_OK;
+    const camber_status status = camber_archive_walk(archive, sniff_tile, &self);
     archive->sniffed = archive->type != CAMBER_TILE_OTHER;
     if (archive->format != CAMBER_ARCHIVE_PMTILES) /* there they are packed where they are not */
         archive->gzipped = archive->type == CAMBER_TILE_MVT;
+    return self.done ? CAMBER_OK : status;
 }
 
 camber_status camber_archive_read(camber_archive *archive, const camber_archive_tile *tile, camber_bytes *bytes,

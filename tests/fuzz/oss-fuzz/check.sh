@@ -64,7 +64,7 @@ run_target() { # NAME
         fail "$name takes libraries from this system"
     timeout 600 "$folder/away/$name" "$seeds" -max_total_time=1 -max_len=4096 -rss_limit_mb=2048 \
         -artifact_prefix="$folder/broken-" >"$folder/$1.log" 2>&1 ||
-        { fail "$name does not run"; tail -n 5 "$folder/$1.log"; }
+        { fail "$name does not run"; grep -a "does not hold" "$folder/$1.log"; tail -n 5 "$folder/$1.log"; }
 }
 
 check_targets() {

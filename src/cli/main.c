@@ -8,6 +8,7 @@
 #include "cli/verbs.h"
 
 #include <signal.h>
+#include <stdio.h>
 
 static int run(camber_session *session) {
     switch (session->options->verb) {
@@ -43,6 +44,12 @@ static int run_guarded(void *user) {
     const bool guarded = camber_guard_start(&guard, session->report->bars);
     session->guard = &guard;
     const int status = run(session);
+    if (guarded && status != CAMBER_EXIT_DONE && camber_session_is_opening(session)) {
+        /* What has failed needs no device: nobody waits until it is open. */
+        fflush(NULL);
+        camber_guard_lock(&guard);
+        camber_guard_end(&guard, status);
+    }
     camber_session_close(session);
     camber_report_erase_bar(session->report);
     if (guarded)

@@ -250,6 +250,10 @@ void camber_session_start(camber_session *session, camber_outlook outlook, doubl
         free(opener);
 }
 
+bool camber_session_is_opening(const camber_session *session) {
+    return session->opener && session->opener->running;
+}
+
 static void join(camber_opener *opener) {
     if (opener && opener->running)
         pthread_join(opener->thread, NULL);

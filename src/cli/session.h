@@ -53,6 +53,8 @@ typedef struct camber_session {
 /* Starts opening a renderer beside what the caller does next, and makes ready what a picture of this outlook and pitch
  * needs; camber_session_need(CAMBER_NEEDS_RENDERER) waits for it and tells how it went. */
 void camber_session_start(camber_session *session, camber_outlook outlook, double pitch_deg);
+/* Whether that has begun, and camber_session_need has not waited for it. */
+bool camber_session_is_opening(const camber_session *session);
 
 /* Opens what is needed and not open yet. Returns an exit status, its line printed. */
 int camber_session_need(camber_session *session, camber_needs needs);

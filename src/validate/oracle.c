@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 16, PLANES_MAX = 4 };
+enum { SIDE = 16, SAMPLES = SIDE * SIDE, PLANES_MAX = 4 };
 
 /* Every part of a stroke is an intersection of half-planes a x + b y <= c, and of a disc where radius > 0. */
 typedef struct shape {
@@ -35,13 +35,18 @@ void camber_oracle_close(camber_oracle_window *window) {
     window->pixels = NULL;
 }
 
+static int count_bits(uint64_t bits) {
+    bits -= bits >> 1 & 0x5555555555555555u;
+    bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
+    return (int)(((bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+}
+
 double camber_oracle_coverage(const camber_oracle_window *window, int column, int row) {
     const camber_oracle_sample_set *set = window->pixels + (size_t)row * (size_t)window->width + (size_t)column;
     int count = 0;
     for (int i = 0; i < 4; i++)
-        for (uint64_t bits = set->bits[i]; bits; bits &= bits - 1)
-            count++;
-    return count / (double)(SIDE * SIDE);
+        count += count_bits(set->bits[i]);
+    return count / (double)SAMPLES;
 }
 
 /* Sample (i, j) of a pixel lies in cell (i, j) of 16 x 16, at a place that differs from cell to cell, so that edges
@@ -51,33 +56,54 @@ static double sample_at(int i, int j) {
     return (i + (reversed[j] + 0.5) / SIDE) / SIDE;
 }
 
-static bool is_inside(const shape *s, double x, double y) {
-    for (int i = 0; i < s->plane_count; i++)
-        if (s->planes[i][0] * x + s->planes[i][1] * y > s->planes[i][2])
-            return false;
-    const double dx = x - s->x, dy = y - s->y;
-    return s->radius <= 0 || dx * dx + dy * dy <= s->radius * s->radius;
+/* How far a half-plane's edge lies from the middle of a pixel, in units of `reach`: below -1 the pixel lies inside,
+ * above 1 outside. */
+static double plane_at(const double *plane, double x, double y) {
+    const double reach = 0.5 * (fabs(plane[0]) + fabs(plane[1]));
+    return (plane[0] * x + plane[1] * y - plane[2]) / reach;
+}
+
+/* The same of a disc. */
+static double disc_at(const shape *s, double x, double y) {
+    return s->radius > 0 ? (hypot(x - s->x, y - s->y) - s->radius) / 0.7072 : -INFINITY;
 }
 
 /* -1: the pixel about x, y lies outside, +1: inside, 0: perhaps neither. Saves the samples of most pixels. */
 static int pixel_side(const shape *s, double x, double y) {
-    int side = 1;
+    double most = disc_at(s, x, y);
+    for (int i = 0; i < s->plane_count; i++)
+        most = fmax(most, plane_at(s->planes[i], x, y));
+    return most > 1 ? -1 : most <= -1 ? 1 : 0;
+}
+
+/* The places of a pixel's samples. */
+typedef struct sample_places {
+    double x[SAMPLES], y[SAMPLES];
+} sample_places;
+
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* Adds the samples of the pixel at x, y that lie in a shape. One test at a time over all of them, which compilers make
+ * vectors of, and none that the whole pixel passes. */
+static void cover_pixel(camber_oracle_sample_set *set, const sample_places *at, const shape *s, double x, double y) {
+    double outside[SAMPLES]; /* where above 0 */
+    for (int k = 0; k < SAMPLES; k++)
+        outside[k] = -1;
     for (int i = 0; i < s->plane_count; i++) {
         const double *p = s->planes[i];
-        const double value = p[0] * x + p[1] * y - p[2], reach = 0.5 * (fabs(p[0]) + fabs(p[1]));
-        if (value > reach)
-            return -1;
-        if (value > -reach)
-            side = 0;
+        if (plane_at(p, x + 0.5, y + 0.5) > -1)
+            for (int k = 0; k < SAMPLES; k++)
+                outside[k] = larger(p[0] * (x + at->x[k]) + p[1] * (y + at->y[k]) - p[2], outside[k]);
     }
-    if (s->radius > 0) {
-        const double d = hypot(x - s->x, y - s->y);
-        if (d > s->radius + 0.7072)
-            return -1;
-        if (d > s->radius - 0.7072)
-            side = 0;
-    }
-    return side;
+    if (disc_at(s, x + 0.5, y + 0.5) > -1)
+        for (int k = 0; k < SAMPLES; k++) {
+            const double dx = x + at->x[k] - s->x, dy = y + at->y[k] - s->y;
+            outside[k] = larger(dx * dx + dy * dy - s->radius * s->radius, outside[k]);
+        }
+    for (int k = 0; k < SAMPLES; k++)
+        set->bits[k / 64] |= (uint64_t)(outside[k] <= 0) << k % 64;
 }
 
 /* In a dense network most pixels are, long before the last line. */
@@ -86,6 +112,11 @@ static bool is_full(const camber_oracle_sample_set *set) {
 }
 
 static void cover(camber_oracle_window *w, const shape *s) {
+    sample_places at;
+    for (int k = 0; k < SAMPLES; k++) {
+        at.x[k] = sample_at(k % SIDE, k / SIDE);
+        at.y[k] = sample_at(k / SIDE, k % SIDE);
+    }
     const double left = fmax(s->left - w->x0, 0), right = fmin(s->right - w->x0, w->width);
     const double top = fmax(s->top - w->y0, 0), bottom = fmin(s->bottom - w->y0, w->height);
     for (int row = (int)floor(top); row < bottom; row++)
@@ -97,9 +128,8 @@ static void cover(camber_oracle_window *w, const shape *s) {
             const int side = pixel_side(s, x + 0.5, y + 0.5);
             if (side > 0)
                 memset(set, 0xff, sizeof *set);
-            for (int k = 0; side == 0 && k < SIDE * SIDE; k++)
-                if (is_inside(s, x + sample_at(k % SIDE, k / SIDE), y + sample_at(k / SIDE, k % SIDE)))
-                    set->bits[k / 64] |= (uint64_t)1 << k % 64;
+            else if (side == 0)
+                cover_pixel(set, &at, s, x, y);
         }
 }
 
@@ -290,7 +320,7 @@ static size_t cross_row(const camber_lines *rings, edge_rows *rows, double y, do
 
 /* Adds samples [first, end) of a row to the shares of its pixels, each so many times. */
 static void add_samples(float *shares, int first, int end, int times) {
-    const float one = (float)times / (SIDE * SIDE);
+    const float one = (float)times / SAMPLES;
     while (first < end) {
         const int pixel = first / SIDE, next = (pixel + 1) * SIDE < end ? (pixel + 1) * SIDE : end;
         shares[pixel] += one * (float)(next - first);

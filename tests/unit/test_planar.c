@@ -201,7 +201,8 @@ static void test_roles(void **state) {
     assert_int_equal(it->rings.ring_count, 0);
 }
 
-/* What lies in what is asked a file so often, not a relation: past that all rings without roles are outer ones. */
+/* The bound of looking for what lies in what is a file's, not a relation's: past it all rings without roles are outer
+ * ones. */
 static void test_bound(void **state) {
     fixture *it = *state;
     const uint64_t around[] = {corner(0, 0), corner(6, 0), corner(6, 6), corner(0, 6), corner(0, 0)};

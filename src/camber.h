@@ -152,7 +152,7 @@ CAMBER_API void camber_context_destroy(camber_context *context);
 
 typedef struct camber_polylines_desc {
     /* point_count pairs of x, y in pixels. Floats keep the edges of a segment whose ends lie within 30,000 px of the
-     * picture to a level of 255; at 100,000 px it is 3, at a million 21: cut such segments before. */
+     * picture to a level of 255; at 100,000 px it is 4, at a million 30: cut such segments before. */
     const float *points;
     size_t point_count;
     const uint32_t *offsets; /* polyline_count + 1 indices into points, ascending, from 0 to point_count */

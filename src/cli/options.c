@@ -417,8 +417,10 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
     options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
     options->wheres = calloc((size_t)argc + 1, sizeof *options->wheres);
     options->places = calloc((size_t)argc + 1, sizeof *options->places);
-    if (!options->inputs || !options->wheres || !options->places)
-        return camber_options_refuse(&p, "out of memory for %d arguments; give fewer", argc);
+    if (!options->inputs || !options->wheres || !options->places) {
+        (void)camber_options_refuse(&p, "out of memory for %d arguments; give fewer", argc);
+        return CAMBER_EXIT_INTERNAL;
+    }
     int status = CAMBER_EXIT_DONE;
     bool only_operands = false;
     for (int at = 1; at < argc && status == CAMBER_EXIT_DONE; at++) {

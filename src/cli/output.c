@@ -80,8 +80,12 @@ static int cannot_create(camber_output *output, int cause) {
         cure = "make its folder first";
     else if (cause == EACCES || cause == EPERM || cause == EROFS)
         cure = "name a folder that you may write to";
-    return camber_report_fail(output->report, system_refuses(cause) ? CAMBER_EXIT_IO : CAMBER_EXIT_CREATE,
-                              "%s: cannot be created (%s); %s", output->path, strerror(cause),
+    else if (cause == ENOMEM)
+        cure = "give it more memory";
+    const int status = cause == ENOMEM         ? CAMBER_EXIT_INTERNAL
+                       : system_refuses(cause) ? CAMBER_EXIT_IO
+                                               : CAMBER_EXIT_CREATE;
+    return camber_report_fail(output->report, status, "%s: cannot be created (%s); %s", output->path, strerror(cause),
                               camber_report_cure(cause, cure));
 }
 

@@ -154,9 +154,8 @@ struct camber_opener {
     bool running;
 };
 
-/* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. What
- * fails here fails there again, and is told there. */
-static void warm_up(const camber_opener *opener) {
+/* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. */
+static camber_status warm_up(const camber_opener *opener) {
     static const float lengths[] = {1, 1};
     const camber_session *session = opener->session;
     camber_context *context = opener->context;
@@ -177,9 +176,12 @@ static void warm_up(const camber_opener *opener) {
         .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session), .has_arc_length = rich};
     camber_network *network = NULL;
     camber_mesh *mesh = NULL;
-    if (camber_network_create(context, &lines, &network) == CAMBER_OK &&
-        camber_mesh_create(session->device, session->renderer, &mesh) == CAMBER_OK &&
-        camber_mesh_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK && draws) {
+    camber_status status = camber_network_create(context, &lines, &network);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(session->device, session->renderer, &mesh);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tessellate_network(mesh, network, &camera, &tessellation);
+    if (status == CAMBER_OK && draws) {
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_frame frame = {.width = 16,
                                     .height = 16,
@@ -187,10 +189,11 @@ static void warm_up(const camber_opener *opener) {
                                     .pass_count = 1,
                                     .coverage = (camber_coverage)session->options->coverage,
                                     .pitch_deg = opener->pitch_deg};
-        (void)camber_renderer_render(session->renderer, &frame, NULL, NULL, NULL);
+        status = camber_renderer_render(session->renderer, &frame, NULL, NULL, NULL);
     }
     camber_mesh_destroy(mesh);
     camber_network_destroy(network);
+    return status;
 }
 
 static void log_beside(void *user, camber_log_level level, const char *message) {
@@ -208,8 +211,10 @@ static void *open_beside(void *user) {
     opener->status = camber_context_create(&desc, &opener->context);
     if (opener->status == CAMBER_OK)
         opener->status = open_drawing(opener->session, opener->context, &opener->report, CAMBER_NEEDS_RENDERER);
-    if (opener->status == CAMBER_OK)
-        warm_up(opener);
+    const camber_status warm = opener->status == CAMBER_OK ? warm_up(opener) : CAMBER_OK;
+    /* The first frame fails in the same way, and tells it. A server must tell it before it says that it is ready. */
+    if (opener->session->options->verb == CAMBER_VERB_SERVE && warm != CAMBER_OK)
+        opener->status = warm;
     if (opener->session->surface)
         camber_surface_release(opener->session->surface);
     return NULL;

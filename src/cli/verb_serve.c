@@ -511,6 +511,8 @@ static int listen_there(camber_session *session, camber_server **server, char ur
                                      .log = tell_failure};
     const char *failed = NULL;
     const int cause = camber_server_create(&desc, server, &failed);
+    if (cause == EAGAIN)
+        failed = NULL; /* it is not the address */
     if (cause == EINVAL && failed)
         return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
                                   "%s: no address; give the number of one, as in 127.0.0.1:8080 or [::1]:8080", failed);
@@ -526,7 +528,8 @@ static int listen_there(camber_session *session, camber_server **server, char ur
                                   failed, strerror(cause));
     if (cause)
         return camber_report_fail(session->report, cause == EMFILE ? CAMBER_EXIT_IO : CAMBER_EXIT_INTERNAL,
-                                  "serve: %s; %s", strerror(cause), camber_report_cure(cause, "give it more memory"));
+                                  "serve: %s; %s", strerror(cause),
+                                  camber_report_cure(cause, "give it more memory, or threads (ulimit -u)"));
     return CAMBER_EXIT_DONE;
 }
 

@@ -130,8 +130,9 @@ static int start(camber_listener *listener, const char *address, unsigned thread
                          1, threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
     if (listener->daemon)
         return 0;
+    const int cause = errno == EMFILE ? EMFILE : EAGAIN; /* the socket listened: memory or threads are missing */
     close(listening);
-    return errno ? errno : ENOMEM;
+    return cause;
 }
 
 /* ---- Bodies that never change ---- */

@@ -1,10 +1,10 @@
 #!/bin/bash
 # Faults from outside: kernel caches that cannot be used or hold garbage, two processes filling one, runs that are killed
-# while they write; threads that cannot be had. test_faults.sh TOOL [thread_fault.so]
+# while they write; threads and first memory that cannot be had. test_faults.sh TOOL [tool_fault.so]
 # Prints what failed and exits 1 if anything did. Signals that the tool handles are test_cli.sh's.
 set -u
 tool=$(realpath "$1")
-thread_fault=${2:+$(realpath "$2")}
+tool_fault=${2:+$(realpath "$2")}
 tmp=$(mktemp -d) || exit 1
 trap 'umount "$tmp"/mount.* 2>/dev/null; rm -rf "$tmp"' EXIT
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
@@ -173,13 +173,13 @@ said "folders"
 # refused in turn, and then all.
 refuse() { # FUNCTION:N
     rm -f "$tmp/refused"
-    LD_PRELOAD=$thread_fault CAMBER_FAULT=$1 CAMBER_FAULT_TOLD=$tmp/refused draws "$1"
+    LD_PRELOAD=$tool_fault CAMBER_FAULT=$1 CAMBER_FAULT_TOLD=$tmp/refused draws "$1"
     rm -f a.png
     [ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
     [ -e "$tmp/refused" ]
 }
 
-if [ -n "$thread_fault" ]; then
+if [ -n "$tool_fault" ]; then
     for call in create join mutex_init mutex_lock mutex_unlock mutex_destroy; do
         n=1
         while refuse "pthread_$call:$n" && [ $n -lt 100 ]; do
@@ -192,7 +192,7 @@ if [ -n "$thread_fault" ]; then
     # Without the thread that waits for them, signals end a run as they end any.
     name="a signal without its watch"
     mkfifo "$tmp/wait"
-    LD_PRELOAD=$thread_fault CAMBER_FAULT=pthread_create:1+ "$tool" render - -qo a.png <"$tmp/wait" 2>/dev/null &
+    LD_PRELOAD=$tool_fault CAMBER_FAULT=pthread_create:1+ "$tool" render - -qo a.png <"$tmp/wait" 2>/dev/null &
     exec 3>"$tmp/wait"
     sleep 0.5
     kill -TERM $!
@@ -205,6 +205,12 @@ if [ -n "$thread_fault" ]; then
     rm -f a.png
     [ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
     said "threads${refused:-}"
+    for call in calloc:1 calloc:2 calloc:3 strdup:1 malloc:1; do # of the options and of OUT
+        name=$call
+        LD_PRELOAD=$tool_fault CAMBER_FAULT=$call draw a.png
+        [ "$status" = 70 ] && grep -q '^camber: .*memory' "$tmp/stderr" || fail "exit status $status: $(head -c 300 "$tmp/stderr")"
+        [ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
+    done
 else
     echo "skipped: threads that cannot be had: no library for it"
 fi

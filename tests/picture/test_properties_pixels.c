@@ -329,13 +329,46 @@ static void test_methods(void **state) {
     property_check(&(property){"methods, any joins", property_make_any, check_methods, 300, 18}, *state);
 }
 
+/* A line through the picture whose ends lie so far from its middle, or 200 px. Returns the levels between the two. */
+static int measure_far(property_canvas *e, double far_px, double angle) {
+    static property_picture far_drawn, near_drawn;
+    property_case far = {.count = 2, .stroke = {.width_px = 9, .cap = CAMBER_CAP_BUTT}}, near = far;
+    int most = 0;
+    for (int i = 0; i < 4; i++)
+        far.points[i] = (float)(64.3 + (i < 2 ? -far_px : far_px) * (i % 2 ? sin(angle) : cos(angle)));
+    for (int i = 0; i < 4; i++) {
+        const double from = (double)far.points[i % 2], to = (double)far.points[2 + i % 2];
+        near.points[i] = (float)(0.5 * (from + to) + (i < 2 ? -100 : 100) * (to - from) / far_px);
+    }
+    property_draw(e, &far, &far_drawn);
+    property_draw(e, &near, &near_drawn);
+    for (size_t i = 0; i < PROPERTY_PIXELS; i++)
+        most = (int)fmax(most, abs(far_drawn.level[i] - near_drawn.level[i]));
+    return most;
+}
+
+/* The numbers of camber_polylines_desc. */
+static void test_far_ends(void **state) {
+    static const struct {
+        double far_px;
+        int levels;
+    } all[] = {{3e4, 1}, {1e5, 4}, {1e6, 30}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        int most = 0;
+        for (int k = 0; k < 64; k++)
+            most = (int)fmax(most, measure_far(*state, all[i].far_px, 0.01 + 0.049 * k));
+        print_message("%g px: %d levels\n", all[i].far_px, most);
+        assert_in_range(most, 0, all[i].levels);
+    }
+}
+
 int main(void) {
     if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_device),  cmocka_unit_test(test_reversed), cmocka_unit_test(test_point_added),
         cmocka_unit_test(test_ring),    cmocka_unit_test(test_moved),    cmocka_unit_test(test_turned),
-        cmocka_unit_test(test_methods), cmocka_unit_test(test_truth),
+        cmocka_unit_test(test_methods), cmocka_unit_test(test_truth),    cmocka_unit_test(test_far_ends),
     };
     const int failed = cmocka_run_group_tests(tests, property_open, property_close);
     return failed;

@@ -133,14 +133,21 @@ CAMBER_KERNELS=$tmp/nothing "$tool" info --warm >"$tmp/warm.out" 2>"$tmp/warm.lo
 
 # ---- Where PoCL would end the process ----
 
-refused() { # WORDS COMMAND...: a line that has the words, status 69, and nothing left
-    local words=$1 status=0
+verbs=("render $city -o $tmp/out/x.png --size 64x64")
+"$tool" serve "$city" --listen nowhere 2>/dev/null
+[ $? = 69 ] || verbs+=("serve $city --theme light --listen 127.0.0.1:0") # 69: this build has no server
+refused() { # WORDS COMMAND...: a line that has the words, status 69, and nothing left; a server says no more before
+    local words=$1 status verb
     shift
     mkdir -p "$tmp/out" && chmod 777 "$tmp/out"
-    timeout 300 "$@" render "$city" -o "$tmp/out/x.png" --size 64x64 --draw cl >"$tmp/refused.log" 2>&1 </dev/null || status=$?
-    [ "$status" = 69 ] && [ "$(wc -l <"$tmp/refused.log")" = 1 ] && grep -q "^camber: .*$words" "$tmp/refused.log" ||
-        fail "$words: status $status: $(cat "$tmp/refused.log")"
-    [ -z "$(ls -A "$tmp/out")" ] || fail "$words: left behind: $(ls -A "$tmp/out")"
+    for verb in "${verbs[@]}"; do
+        status=0
+        # shellcheck disable=SC2086
+        timeout 300 "$@" $verb --draw cl >"$tmp/refused.log" 2>&1 </dev/null || status=$?
+        [ "$status" = 69 ] && [ "$(wc -l <"$tmp/refused.log")" = 1 ] && grep -q "^camber: .*$words" "$tmp/refused.log" ||
+            fail "${verb%% *}, $words: status $status: $(cat "$tmp/refused.log")"
+        [ -z "$(ls -A "$tmp/out")" ] || fail "$words: left behind: $(ls -A "$tmp/out")"
+    done
 }
 
 export CAMBER_KERNELS= POCL_CACHE_DIR=$tmp/mounted
@@ -156,8 +163,15 @@ POCL_CACHE_DIR=$tmp/pocl empty
 case $("$tool" info 2>/dev/null) in
 *"driver "[1-4].*) refused "binutils" env POCL_CACHE_DIR="$tmp/pocl" PATH="$tmp/no-programs" "$tool" ;;
 esac
+serve=${verbs[1]:-}
+verbs=("${verbs[0]}")
 if [ "$(id -u)" = 0 ] && [ "$(nproc)" -gt 1 ] && setpriv --reuid=61234 --clear-groups "$tool" --version >"$tmp/out.log" 2>&1; then
     refused "ulimit -u" setpriv --reuid=61234 --clear-groups bash -c 'ulimit -u 1; exec "$@"' bash "$tool"
+    for most in ${serve:+1 6}; do # no thread of its own, or none of libmicrohttpd's
+        # shellcheck disable=SC2086
+        timeout 300 setpriv --reuid=61234 --clear-groups bash -c "ulimit -u $most; exec \"\$@\"" bash "$tool" $serve >"$tmp/refused.log" 2>&1
+        [ $? = 70 ] && grep -q "^camber: serve: .*ulimit -u" "$tmp/refused.log" || fail "serve, ulimit -u $most: $(cat "$tmp/refused.log")"
+    done
 fi
 
 echo "$failures failures"

@@ -19,6 +19,7 @@ import select
 import shutil
 import signal
 import socket
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -656,6 +657,25 @@ def test_own_sources():
     server.stop()
 
 
+def test_drawn():
+    """Bounds are of what is drawn, and a map in which nothing is drawn says so."""
+    layer = {"id": "roads", "type": "line", "filter": ["has", "highway"]}
+    road, other = ({"type": "Feature", "properties": {key: "x"}, "geometry": {"type": "LineString", "coordinates": line}}
+                   for key, line in (("highway", [[5, 5], [6, 6]]), ("boundary", [[-60, -60], [60, 60]])))
+    for path, content in (("roads.json", {"version": 8, "sources": {}, "layers": [layer]}),
+                          ("map.json", {"type": "FeatureCollection", "features": [road, other]}), ("none.json", other)):
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(content, file)
+    server = Server("map.json", "--style", "roads.json")
+    about = json.loads(server.get("/tiles.json")[2])
+    expect(all(abs(one - wanted) < 1e-5 for one, wanted in zip(about["bounds"], (5, 5, 6, 6))), about)
+    expect(not any("warning" in line for line in server.errors), server.errors)
+    os.rename("none.json", "map.json")
+    server.process.send_signal(signal.SIGHUP)
+    wait_until(lambda: any("warning: nothing is drawn: 1 line of" in line for line in server.errors), lambda: server.errors)
+    server.stop()
+
+
 # ---- Tiles ----
 
 
@@ -724,6 +744,9 @@ def test_archives():
                                "--tile-size", str(size), "--name", "Archive", "--attribution", "(c) Them"], capture_output=True, text=True,
                               timeout=PATIENCE_S)
         expect(done.returncode == 0, done.stderr)
+    with sqlite3.connect("a.mbtiles") as made:  # then the first tile tells
+        made.execute("DELETE FROM metadata WHERE name = 'format'")
+    made.close()
     tile, body = f"{ZOOM}/{COLUMN}/{ROW}.png", None
     with open("a/" + tile, "rb") as file:
         body = file.read()

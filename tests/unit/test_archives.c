@@ -182,6 +182,47 @@ static void test_meshes(void **state) {
     }
 }
 
+/* Changes a bit of these bytes in a file that has them. */
+static void flip(const char *path, const unsigned char *bytes, size_t size) {
+    static unsigned char content[1 << 16];
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    const size_t count = fread(content, 1, sizeof content, file);
+    size_t at = 0;
+    while (at + size <= count && memcmp(content + at, bytes, size) != 0)
+        at++;
+    assert_true(at + size <= count);
+    assert_int_equal(fseek(file, (long)(at + size - 1), SEEK_SET), 0);
+    assert_int_equal(fputc(bytes[size - 1] ^ 1, file), bytes[size - 1] ^ 1);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A mesh that is another one, and a mesh still. */
+static void test_flipped_meshes(void **state) {
+    place *p = *state;
+    static const char *const names[] = {"f.pmtiles", "f.mbtiles", "f/"}, *const files[] = {"f.pmtiles", "f.mbtiles",
+                                                                                           "f/0/0/0.glb"};
+    static const unsigned char glb[] = "glTF\2\0\0\0\40\0\0\0of whatever numbers";
+    for (size_t i = 0; i < 3; i++) {
+        char path[128], file[128];
+        camber_archive_writer *writer = NULL;
+        camber_tiles_findings *found = NULL;
+        snprintf(path, sizeof path, "%s/%s", p->folder, names[i]);
+        snprintf(file, sizeof file, "%s/%s", p->folder, files[i]);
+        camber_archive_desc desc = {.path = path, .type = CAMBER_TILE_GLB};
+        assert_true(camber_archive_get_format(path, &desc.format));
+        assert_int_equal(camber_archive_writer_create(p->context, &desc, &writer), CAMBER_OK);
+        assert_int_equal(camber_archive_writer_add(writer, 0, (camber_tile_index){0, 0}, glb, sizeof glb), CAMBER_OK);
+        finish(writer);
+        assert_right(p, names[i]);
+        flip(file, glb, sizeof glb);
+        assert_int_equal(camber_tiles_verify(p->context, path, &found), CAMBER_OK);
+        assert_int_equal(found->count, 1);
+        assert_non_null(strstr(found->findings[0].message, "checksum"));
+        camber_tiles_findings_destroy(found);
+    }
+}
+
 static void make_meshes(place *p, const char *path) {
     static const camber_tile_index ends[] = {{0, 0}, {1, 0}, {1023, 1023}};
     static const unsigned char glb[12] = "glTF\2\0\0\0\14\0\0";
@@ -354,6 +395,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_single, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_order, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_meshes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_flipped_meshes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_tilesets, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_runs, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_empty, set_up, tear_down),

@@ -201,11 +201,35 @@ static void test_roles(void **state) {
     assert_int_equal(it->rings.ring_count, 0);
 }
 
+/* The bound of looking for what lies in what is a file's, not a relation's: past it all rings without roles are outer
+ * ones. */
+static void test_bound(void **state) {
+    fixture *it = *state;
+    const uint64_t around[] = {corner(0, 0), corner(6, 0), corner(6, 6), corner(0, 6), corner(0, 0)};
+    const uint64_t inside[] = {corner(1, 1), corner(2, 1), corner(1, 2), corner(1, 1)};
+    const camber_osm_piece pieces[] = {{around, 5, CAMBER_OSM_ROLE_UNKNOWN}, {inside, 4, CAMBER_OSM_ROLE_UNKNOWN}};
+    it->rings.steps = 0;
+    size_t relations = 0;
+    do {
+        assert_int_equal(camber_osm_assemble(&it->rings, pieces, 2, false), CAMBER_OK);
+        assert_int_equal(it->rings.ring_count, 2);
+        if (relations++ == 0) {
+            assert_true(it->rings.steps > 0 && count_role(it, CAMBER_OSM_ROLE_INNER) == 1);
+            it->rings.steps *= ((size_t)1 << 28) / it->rings.steps; /* as many relations more, all but a few */
+        }
+    } while (count_role(it, CAMBER_OSM_ROLE_INNER) == 1 && relations < 100);
+    assert_int_equal(count_role(it, CAMBER_OSM_ROLE_OUTER), 2);
+    const size_t steps = it->rings.steps;
+    assert_int_equal(camber_osm_assemble(&it->rings, pieces, 2, false), CAMBER_OK);
+    assert_int_equal(it->rings.steps, steps);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_cells, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_spikes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_roles, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_bound, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

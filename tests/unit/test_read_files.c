@@ -222,6 +222,35 @@ static void test_line(void **state) {
     assert_int_equal(it->warnings, 0);
 }
 
+/* A column that a schema has, too, without a value that a layer takes: GPX has "type". Lines, areas and points of it
+ * are plain. */
+static void test_odd_columns(void **state) {
+    static const char *const keys[] = {"type", "highway", "railway", "waterway", "bridge", "tunnel", "MTFCC", "class"};
+    static const char *const values[] = {"null", "\"x\"", "7", "\"\""};
+    static const char *const geometries[] = {"\"LineString\",\"coordinates\":[[1,1],[2,2]]",
+                                             "\"Polygon\",\"coordinates\":[[[1,1],[2,1],[2,2],[1,1]]]",
+                                             "\"Point\",\"coordinates\":[1,1]"};
+    fixture *it = *state;
+    camber_style *style = NULL;
+    assert_int_equal(camber_style_create_builtin(it->context, CAMBER_THEME_LIGHT, &style), CAMBER_OK);
+    for (size_t i = 0; i < sizeof keys / sizeof *keys * 12; i++) {
+        char text[512];
+        camber_features *features = NULL;
+        const char *key = keys[i / 12], *value = values[i / 3 % 4];
+        const int size = snprintf(text, sizeof text,
+                                  "{\"type\":\"Feature\",\"properties\":{\"%s\":%s},\"geometry\":"
+                                  "{\"type\":%s}}",
+                                  key, value, geometries[i % 3]);
+        const camber_source_desc desc = {.path = write_file(it, "one.geojson", text, (size_t)size)};
+        assert_int_equal(camber_features_create(it->context, style, &features), CAMBER_OK);
+        expect_ok(it, camber_features_read(features, &desc));
+        if (features->feature_count == 0 || count_plain(features) != features->feature_count)
+            fail_msg("%s: of %zu features %zu are plain", text, features->feature_count, count_plain(features));
+        camber_features_destroy(features);
+    }
+    camber_style_destroy(style);
+}
+
 static void test_many_kinds(void **state) {
     fixture *it = *state;
     expect_ok(it,
@@ -637,6 +666,7 @@ int main(void) {
         TEST(test_real_files),
         TEST(test_real_shapefile),
         TEST(test_line),
+        TEST(test_odd_columns),
         TEST(test_many_kinds),
         TEST(test_no_lines),
         TEST(test_not_numbers),

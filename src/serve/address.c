@@ -79,8 +79,7 @@ int camber_address_listen(const char *text, char address[CAMBER_ADDRESS_SIZE]) {
     if (made < 0)
         return -errno;
     (void)setsockopt(made, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (fcntl(made, F_SETFD, FD_CLOEXEC) != 0 || fcntl(made, F_SETFL, O_NONBLOCK) != 0 ||
-        bind(made, &wanted.any, size) != 0 || listen(made, BACKLOG) != 0 ||
+    if (fcntl(made, F_SETFD, FD_CLOEXEC) != 0 || bind(made, &wanted.any, size) != 0 || listen(made, BACKLOG) != 0 ||
         getsockname(made, &wanted.any, &size) != 0) {
         const int cause = errno;
         close(made);

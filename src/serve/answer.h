@@ -2,6 +2,7 @@
 #ifndef CAMBER_SERVE_ANSWER_H
 #define CAMBER_SERVE_ANSWER_H
 
+#include "serve/acceptor.h"
 #include "serve/address.h"
 #include "serve/clients.h"
 #include "serve/events.h"
@@ -29,7 +30,9 @@ typedef struct camber_listener {
     camber_server *server;
     bool is_for_metrics;
     struct MHD_Daemon *daemon;
-    MHD_socket quiesced; /* takes no connection any more; closed behind the daemon. MHD_INVALID_SOCKET: none */
+    camber_acceptor *acceptor;
+    unsigned most_connections;
+    atomic_uint connections;
     char address[CAMBER_ADDRESS_SIZE];
 } camber_listener;
 

@@ -7,6 +7,7 @@
 
 #include "serve/renderd.h"
 
+#include "serve/acceptor.h"
 #include "serve/metatile_file.h"
 
 #include <errno.h>
@@ -62,9 +63,7 @@ typedef struct renderd_client {
 struct camber_renderd {
     camber_renderd_desc desc;
     size_t most_clients;
-    int socket;
-    pthread_t thread;
-    bool started;
+    camber_acceptor *acceptor;
     atomic_bool stopping;
     pthread_mutex_t mutex; /* of clients' sockets */
     renderd_client clients[MOST_CLIENTS];
@@ -288,7 +287,8 @@ static renderd_client *find_room(camber_renderd *renderd) {
 }
 
 /* One more than there is room for is closed at once. */
-static void take_client(camber_renderd *renderd, int socket) {
+static void take_client(void *user, int socket) {
+    camber_renderd *renderd = user;
     renderd_client *place = find_room(renderd);
     if (place) {
         pthread_mutex_lock(&renderd->mutex);
@@ -300,23 +300,6 @@ static void take_client(camber_renderd *renderd, int socket) {
     }
     if (!place || place->socket < 0)
         close(socket);
-}
-
-static void *accept_clients(void *user) {
-    camber_renderd *renderd = user;
-    const struct timespec pause = {.tv_nsec = LOOK_MS * 1000000L};
-    while (!renderd->stopping) {
-        const int client = accept(renderd->socket, NULL, NULL);
-        if (client >= 0 && !renderd->stopping)
-            take_client(renderd, client);
-        else if (client >= 0)
-            close(client);
-        else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
-            nanosleep(&pause, NULL); /* until something is closed */
-        else if (errno != EINTR && errno != ECONNABORTED)
-            break;
-    }
-    return NULL;
 }
 
 /* ---- The socket ---- */
@@ -362,13 +345,13 @@ int camber_renderd_create(const camber_renderd_desc *desc, camber_renderd **rend
         return ENOMEM;
     made->desc = *desc;
     made->most_clients = desc->most_clients && desc->most_clients < MOST_CLIENTS ? desc->most_clients : MOST_CLIENTS;
-    made->socket = -1;
     for (size_t i = 0; i < MOST_CLIENTS; i++)
         made->clients[i] = (renderd_client){.renderd = made, .socket = -1};
     pthread_mutex_init(&made->mutex, NULL);
-    int cause = listen_at(desc->socket, &made->socket);
-    if (!cause && (cause = pthread_create(&made->thread, NULL, accept_clients, made)) == 0)
-        made->started = true;
+    camber_acceptor_desc clients = {.take = take_client, .user = made};
+    int cause = listen_at(desc->socket, &clients.socket);
+    if (!cause)
+        cause = camber_acceptor_create(&clients, &made->acceptor);
     if (cause) {
         camber_renderd_destroy(made);
         return cause;
@@ -381,14 +364,9 @@ void camber_renderd_destroy(camber_renderd *renderd) {
     if (!renderd)
         return;
     renderd->stopping = true;
-    if (renderd->socket >= 0) {
+    if (renderd->acceptor)
         (void)unlink(renderd->desc.socket);
-        (void)shutdown(renderd->socket, SHUT_RDWR); /* wakes accept */
-    }
-    if (renderd->started)
-        pthread_join(renderd->thread, NULL);
-    if (renderd->socket >= 0)
-        close(renderd->socket);
+    camber_acceptor_destroy(renderd->acceptor);
     for (size_t i = 0; i < MOST_CLIENTS; i++)
         if (renderd->clients[i].socket >= 0)
             (void)shutdown(renderd->clients[i].socket, SHUT_RD); /* its answer is sent still */

@@ -1,9 +1,12 @@
 /* The server's life: sockets, daemons, what is shown, and the end.
  *
- * A pool of threads waits for sockets by poll and answers; the drawing has threads of its own. By epoll libmicrohttpd
- * ends the process now and then, as a thread and MHD_quiesce_daemon both take the listening socket out of the set. At
- * the end no new connection is taken, requests that are here are answered, each with "Connection: close", and then all
- * is freed. */
+ * One thread accepts connections and deals them out to a pool of threads, which wait for requests by poll and answer
+ * them; the drawing has threads of its own. libmicrohttpd 0.9.75 could do more of that, but each connection would wake
+ * its whole pool; by epoll it forgets events where more than 128 come at once, and, told to stop, ends the process now
+ * and then, as a thread and MHD_quiesce_daemon both take the listening socket out of the set.
+ *
+ * At the end no new connection is taken, requests that are here are answered, each with "Connection: close", and then
+ * all is freed. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/server.h"
@@ -55,6 +58,25 @@ static void notice_connection(void *user, struct MHD_Connection *connection, voi
         camber_request_leave(listener, *context);
         camber_clients_remove(listener->server->clients, *context);
         *context = NULL;
+        listener->connections--;
+    }
+}
+
+static bool has_room(void *user) {
+    const camber_listener *listener = user;
+    return listener->connections < listener->most_connections;
+}
+
+static void take_connection(void *user, int connection) {
+    camber_listener *listener = user;
+    struct sockaddr_storage address;
+    socklen_t size = sizeof address;
+    listener->connections++;
+    if (getpeername(connection, (struct sockaddr *)&address, &size) != 0) {
+        close(connection); /* gone already */
+        listener->connections--;
+    } else if (MHD_add_connection(listener->daemon, connection, (struct sockaddr *)&address, size) != MHD_YES) {
+        listener->connections--; /* and closed */
     }
 }
 
@@ -113,26 +135,33 @@ static void write_url(camber_server *server) {
              (int)length, url, (int)length, url);
 }
 
+/* Returns 0 or an errno. */
+static int start_daemon(camber_listener *listener, unsigned threads, unsigned connections) {
+    struct MHD_OptionItem pool[] = {{MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)threads, NULL}, {MHD_OPTION_END, 0, NULL}};
+    listener->daemon = MHD_start_daemon(
+        MHD_USE_POLL_INTERNAL_THREAD | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
+        camber_request_answer, listener, MHD_OPTION_CONNECTION_LIMIT, connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)(2 * MOST_SECONDS),
+        MHD_OPTION_URI_LOG_CALLBACK, camber_request_begin, listener, MHD_OPTION_NOTIFY_COMPLETED, camber_request_end,
+        listener, MHD_OPTION_NOTIFY_CONNECTION, notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1,
+        threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
+    return listener->daemon ? 0 : errno == EMFILE ? EMFILE : EAGAIN; /* no memory, or no threads */
+}
+
 static int start(camber_listener *listener, const char *address, unsigned threads, unsigned connections) {
     const int listening = camber_address_listen(address, listener->address);
     if (listening < 0)
         return -listening;
     if (!listener->is_for_metrics)
         write_url(listener->server); /* before the first request can come */
-    struct MHD_OptionItem pool[] = {{MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)threads, NULL}, {MHD_OPTION_END, 0, NULL}};
-    listener->daemon =
-        MHD_start_daemon(MHD_USE_POLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, camber_request_answer,
-                         listener, MHD_OPTION_LISTEN_SOCKET, (MHD_socket)listening, MHD_OPTION_CONNECTION_LIMIT,
-                         connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES,
-                         MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)(2 * MOST_SECONDS), MHD_OPTION_URI_LOG_CALLBACK,
-                         camber_request_begin, listener, MHD_OPTION_NOTIFY_COMPLETED, camber_request_end, listener,
-                         MHD_OPTION_NOTIFY_CONNECTION, notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP,
-                         1, threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
-    if (listener->daemon)
-        return 0;
-    const int cause = errno == EMFILE ? EMFILE : EAGAIN; /* the socket listened: memory or threads are missing */
-    close(listening);
-    return cause;
+    listener->most_connections = connections;
+    const int cause = start_daemon(listener, threads, connections);
+    if (cause) {
+        close(listening);
+        return cause;
+    }
+    const camber_acceptor_desc desc = {listening, has_room, take_connection, listener};
+    return camber_acceptor_create(&desc, &listener->acceptor);
 }
 
 /* ---- Bodies that never change ---- */
@@ -248,8 +277,8 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
         return ENOMEM;
     made->desc = fill_in(desc);
     made->start_s = camber_server_now_s();
-    made->page = (camber_listener){.server = made, .quiesced = MHD_INVALID_SOCKET};
-    made->metrics_page = (camber_listener){.server = made, .is_for_metrics = true, .quiesced = MHD_INVALID_SOCKET};
+    made->page = (camber_listener){.server = made};
+    made->metrics_page = (camber_listener){.server = made, .is_for_metrics = true};
     pthread_mutex_init(&made->mutex, NULL);
     pthread_mutex_init(&made->reader_mutex, NULL);
     int cause = ENOMEM;
@@ -270,18 +299,11 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
 
 /* ---- The end ---- */
 
-/* No new connection is taken. The socket stays open until the daemon has ended, whose threads let go of it by and by.
- */
-static void quiesce(camber_listener *listener) {
-    if (listener->daemon && (listener->quiesced = MHD_quiesce_daemon(listener->daemon)) != MHD_INVALID_SOCKET)
-        shutdown(listener->quiesced, SHUT_RDWR);
-}
-
-static void stop(const camber_listener *listener) {
+static void stop(camber_listener *listener) {
+    camber_acceptor_destroy(listener->acceptor);
+    listener->acceptor = NULL;
     if (listener->daemon)
         MHD_stop_daemon(listener->daemon);
-    if (listener->quiesced != MHD_INVALID_SOCKET)
-        close(listener->quiesced);
 }
 
 static void wait_for_requests(const camber_server *server) {
@@ -300,7 +322,8 @@ void camber_server_destroy(camber_server *server) {
     if (!server)
         return;
     server->stopping = true;
-    quiesce(&server->page);
+    camber_acceptor_destroy(server->page.acceptor); /* no new connection */
+    server->page.acceptor = NULL;
     if (server->events)
         camber_events_end(server->events);
     camber_renderd_destroy(server->renderd);

@@ -182,20 +182,30 @@ CAMBER_FN float camber_round_dashes_drawn(CAMBER_IN(camber_extras) e, float half
     return drawn < e->period ? drawn / e->period : 1.0f;
 }
 
-/* Blends round dashes smaller than a pixel into their share of the whole line. */
+/* Blends round dashes smaller than a pixel into their share of the whole line, whose area is `whole`. */
 CAMBER_FN camber_real camber_blend_round_dashes(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
-                                                CAMBER_IN(camber_pixel) at, camber_real area) {
+                                                CAMBER_IN(camber_pixel) at, camber_real area, camber_real whole) {
     const camber_real apart = camber_clamp_to_one(camber_seen_along(at, CAMBER_REAL(e->period)) - 1.0f);
-    const camber_real side = at->y < 0.0f ? CAMBER_REAL(-1.0f) : CAMBER_REAL(1.0f);
-    camber_pixel beside = CAMBER_AT(at);
-    beside.d = CAMBER_FABS(at->y);
-    beside.side_x = -side * p->uy;
-    beside.side_y = side * p->ux;
-    const camber_real whole =
-        camber_edge_band(p, CAMBER_REF(beside), p->half_width) * camber_round_dashes_drawn(e, p->half_width);
-    return whole * (1.0f - apart) + area * apart;
+    return whole * camber_round_dashes_drawn(e, p->half_width) * (1.0f - apart) + area * apart;
 }
 #endif
+
+/* The area of round dashes. */
+CAMBER_FN camber_real camber_round_dashes_within(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
+                                                 CAMBER_INOUT(camber_pixel) at) {
+#if CAMBER_STROKE_PITCHED
+    camber_find_distance(p, at);
+    const camber_real whole = camber_edge_within(p, at);
+#endif
+    camber_go_off(at, camber_off_dash(e, at->along));
+    camber_find_distance(p, at);
+    const camber_real area = camber_edge_within(p, at);
+#if CAMBER_STROKE_PITCHED
+    return camber_blend_round_dashes(p, e, at, area, whole);
+#else
+    return area;
+#endif
+}
 
 /* ---- Beside the line ---- */
 
@@ -248,14 +258,13 @@ CAMBER_FN CAMBER_INLINE camber_real camber_stroke_area(CAMBER_IN(camber_edge) p,
         at->along = camber_extras_along(p, e, at->x);
     if (has_tips)
         tips = camber_edge_tips(p, at);
-    if (is_rounded)
-        camber_go_off(at, camber_off_dash(e, at->along));
-    camber_find_distance(p, at);
-    camber_real area = camber_edge_within(p, at);
-#if CAMBER_STROKE_PITCHED
-    if (is_rounded)
-        area = camber_blend_round_dashes(p, e, at, area);
-#endif
+    camber_real area;
+    if (is_rounded) {
+        area = camber_round_dashes_within(p, e, at);
+    } else {
+        camber_find_distance(p, at);
+        area = camber_edge_within(p, at);
+    }
     if (has_tips)
         area *= tips;
     if (sharp)

@@ -49,7 +49,6 @@ CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, CAMBER_GLOBAL
     e->drawn = 1.0f;
     if (CAMBER_HAS(e->features, CAMBER_FEATURE_DASH) && e->period < CAMBER_SMALL_PERIOD_PX)
         e->drawn = camber_dashes_drawn(e);
-    e->ends = camber_dashes_ends(e->total);
     e->stops = side_table + 4 * brush_ext->first_stop;
     e->stop_count = brush_ext->stop_count;
 }
@@ -75,13 +74,7 @@ CAMBER_FN void camber_extras_range(const camber_edge *p, const camber_extras *e,
 
 /* Whether dashes leave a cell empty, cut it, or leave all of it. */
 CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extras *e, float low, float high) {
-    const float last = e->total - e->ends, spread = e->round_dashes ? p->half_width + p->side.extent : 0.0f;
-    if (!e->round_dashes) {
-        low = low > e->ends ? low : e->ends;
-        low = low < last ? low : last;
-        high = high > e->ends ? high : e->ends;
-        high = high < last ? high : last;
-    }
+    const float spread = e->round_dashes ? p->half_width + p->side.extent : 0.0f;
     const float periods = low / e->period;
     if (!(periods >= 0.0f && periods < 8388608.0f))
         return CAMBER_CELL_NEAR_END;

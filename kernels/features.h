@@ -35,7 +35,6 @@ CAMBER_STRUCT(camber_extras) {
     float along, rate, total; /* arc length of A, px; arc length of a px; the line's whole length, px */
     float trim_from, trim_to; /* px along the line */
     float period, drawn;      /* of dashes: the period, px; the share of it that is drawn */
-    float ends;               /* how far from the line's ends dashes begin to change, px */
     camber_u32 dash_count, stop_count;
     camber_flag round_dashes;
 #ifndef CAMBER_GLSL
@@ -76,12 +75,6 @@ CAMBER_FN camber_real camber_extras_along(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
 
 /* ---- Dashes ---- */
 
-/* How far from a line's ends dashes begin to change. There the caps cut, so up to there the dashes go on as they are a
- * little before the end. */
-CAMBER_FN float camber_dashes_ends(float total) {
-    return 0.5f * total < 0.75f ? 0.5f * total : 0.75f;
-}
-
 /* Dashes of a smaller period may fade to the share that they draw. How small they are seen with a pitch differs from
  * pixel to pixel. */
 #if CAMBER_STROKE_PITCHED
@@ -101,22 +94,61 @@ CAMBER_FN float camber_dashes_drawn(CAMBER_IN(camber_extras) e) {
     return drawn / e->period;
 }
 
-/* Where in the dashes' period a pixel lies, px. */
-CAMBER_FN camber_real camber_dash_place(CAMBER_IN(camber_extras) e, camber_real along) {
-    const float last = e->total - e->ends;
-    const camber_real least = along > e->ends ? along : CAMBER_REAL(e->ends);
-    const camber_real inside = least < last ? least : CAMBER_REAL(last), at = e->round_dashes ? along : inside;
-    return at - e->period * camber_whole(at / e->period);
+/* Where in the dashes' period a pixel lies, and where in it the line begins and ends, px. */
+CAMBER_STRUCT(camber_dash_place) {
+    camber_real at, first, last;
+};
+
+CAMBER_FN void camber_find_dash_place(CAMBER_IN(camber_extras) e, camber_real along,
+                                      CAMBER_OUT(camber_dash_place) place) {
+    const camber_real before = e->period * camber_whole(along / e->period);
+    place->at = along - before;
+    place->first = -before;
+    place->last = e->total - before;
 }
 
-/* The share of a pixel that dashes leave, by where in the period it lies. A pixel that holds more than a period gets
- * the share of the period that is drawn. */
+/* The shares of a pixel that flat caps at A and B leave, and how far past them it lies along the line, px. */
+CAMBER_STRUCT(camber_own_ends) {
+    camber_real at_a, at_b, past;
+};
+
+/* aside: no end is near. */
+CAMBER_FN void camber_find_own_ends(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_flag aside,
+                                    CAMBER_OUT(camber_own_ends) ends) {
+    const camber_real none = CAMBER_REAL(0.0f);
+    ends->at_a = ends->at_b = CAMBER_REAL(1.0f);
+    ends->past = none;
+    if (aside || !p->capped)
+        return;
+    const float flat_a = camber_is_flat_join(p, -1.0f) ? CAMBER_NEVER_PX : p->flat_a;
+    const float flat_b = camber_is_flat_join(p, 1.0f) ? CAMBER_NEVER_PX : p->flat_b;
+    const camber_real past_a = CAMBER_MORE(at->past_a, none), past_b = CAMBER_MORE(at->past_b, none);
+    ends->at_a = camber_cut_along(p, at, flat_a - at->past_a);
+    ends->at_b = camber_cut_along(p, at, flat_b - at->past_b);
+    ends->past = (flat_b < CAMBER_NEVER_PX ? past_b : none) - (flat_a < CAMBER_NEVER_PX ? past_a : none);
+}
+
+/* The share of what flat caps leave of a pixel that dashes leave. A dash that reaches an end of the line is cut by the
+ * cap and by no edge of its own: both would lie in one pixel, and the product of what they leave is too little. A pixel
+ * that holds more than a period gets the share of the period that is drawn. */
 CAMBER_FN camber_real camber_dashes_cover(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
-                                          CAMBER_IN(camber_pixel) at, camber_real place) {
-    camber_real area = CAMBER_REAL(0.0f);
-    for (camber_u32 i = 0u; i < e->dash_count; i++)
-        area += camber_cut_along(p, at, place - CAMBER_DASH_FROM(e, i)) -
-                camber_cut_along(p, at, place - CAMBER_DASH_TO(e, i));
+                                          CAMBER_IN(camber_pixel) at, camber_flag aside) {
+    const camber_real none = CAMBER_REAL(0.0f), least = CAMBER_REAL(1e-6f);
+    camber_real area = none;
+    camber_dash_place place;
+    camber_own_ends ends;
+    camber_find_dash_place(e, at->along, CAMBER_REF(place));
+    camber_find_own_ends(p, at, aside, CAMBER_REF(ends));
+    for (camber_u32 i = 0u; i < e->dash_count; i++) {
+        const float from = CAMBER_DASH_FROM(e, i), to = CAMBER_DASH_TO(e, i);
+        const camber_real edge_from = camber_cut_along(p, at, place.at + ends.past - from);
+        const camber_real edge_to = camber_cut_along(p, at, place.at + ends.past - to);
+        const camber_real past_from = from <= place.first ? ends.at_a : edge_from;
+        const camber_real past_to = to >= place.last ? 1.0f - ends.at_b : edge_to;
+        area += CAMBER_BOTH(to > place.first, from < place.last) ? past_from - past_to : none;
+    }
+    const camber_real left = ends.at_a + ends.at_b - 1.0f;
+    area = camber_clamp_to_one(area / CAMBER_MORE(left, least));
 #if !CAMBER_STROKE_PITCHED
     if (e->period >= CAMBER_SMALL_PERIOD_PX)
         return area;
@@ -126,12 +158,15 @@ CAMBER_FN camber_real camber_dashes_cover(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
 }
 
 /* How far the nearest dash lies back along the line, px; below 0 if it lies ahead. */
-CAMBER_FN camber_real camber_off_dash(CAMBER_IN(camber_extras) e, camber_real place) {
+CAMBER_FN camber_real camber_off_dash(CAMBER_IN(camber_extras) e, camber_real along) {
+    camber_dash_place place;
+    camber_find_dash_place(e, along, CAMBER_REF(place));
     camber_real nearest = CAMBER_REAL(1e6f);
     for (camber_u32 i = 0u; i < e->dash_count; i++) {
         const camber_real from = CAMBER_REAL(CAMBER_DASH_FROM(e, i)), to = CAMBER_REAL(CAMBER_DASH_TO(e, i));
-        const camber_real least = place > from ? place : from, off = place - (least < to ? least : to);
-        nearest = CAMBER_FABS(off) < CAMBER_FABS(nearest) ? off : nearest;
+        const camber_real least = place.at > from ? place.at : from, off = place.at - (least < to ? least : to);
+        /* Where the line ends, no dash begins any more. */
+        nearest = CAMBER_BOTH(CAMBER_FABS(off) < CAMBER_FABS(nearest), from < place.last) ? off : nearest;
     }
     return nearest;
 }
@@ -147,20 +182,30 @@ CAMBER_FN float camber_round_dashes_drawn(CAMBER_IN(camber_extras) e, float half
     return drawn < e->period ? drawn / e->period : 1.0f;
 }
 
-/* Blends round dashes smaller than a pixel into their share of the whole line. */
+/* Blends round dashes smaller than a pixel into their share of the whole line, whose area is `whole`. */
 CAMBER_FN camber_real camber_blend_round_dashes(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
-                                                CAMBER_IN(camber_pixel) at, camber_real area) {
+                                                CAMBER_IN(camber_pixel) at, camber_real area, camber_real whole) {
     const camber_real apart = camber_clamp_to_one(camber_seen_along(at, CAMBER_REAL(e->period)) - 1.0f);
-    const camber_real side = at->y < 0.0f ? CAMBER_REAL(-1.0f) : CAMBER_REAL(1.0f);
-    camber_pixel beside = CAMBER_AT(at);
-    beside.d = CAMBER_FABS(at->y);
-    beside.side_x = -side * p->uy;
-    beside.side_y = side * p->ux;
-    const camber_real whole =
-        camber_edge_band(p, CAMBER_REF(beside), p->half_width) * camber_round_dashes_drawn(e, p->half_width);
-    return whole * (1.0f - apart) + area * apart;
+    return whole * camber_round_dashes_drawn(e, p->half_width) * (1.0f - apart) + area * apart;
 }
 #endif
+
+/* The area of round dashes. */
+CAMBER_FN camber_real camber_round_dashes_within(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
+                                                 CAMBER_INOUT(camber_pixel) at) {
+#if CAMBER_STROKE_PITCHED
+    camber_find_distance(p, at);
+    const camber_real whole = camber_edge_within(p, at);
+#endif
+    camber_go_off(at, camber_off_dash(e, at->along));
+    camber_find_distance(p, at);
+    const camber_real area = camber_edge_within(p, at);
+#if CAMBER_STROKE_PITCHED
+    return camber_blend_round_dashes(p, e, at, area, whole);
+#else
+    return area;
+#endif
+}
 
 /* ---- Beside the line ---- */
 
@@ -204,25 +249,22 @@ CAMBER_FN CAMBER_INLINE camber_real camber_stroke_area(CAMBER_IN(camber_edge) p,
                                                        camber_flag aside) {
     const camber_flag dashed = CAMBER_HAS(features, CAMBER_FEATURE_DASH), sharp = p->sharp && !aside;
     const camber_flag is_rounded = dashed && e->round_dashes, has_tips = p->tips && !aside;
-    camber_real tips = CAMBER_REAL(1.0f), place = CAMBER_REAL(0.0f);
+    camber_real tips = CAMBER_REAL(1.0f);
     at->off = CAMBER_REAL(0.0f);
     at->across = at->y;
     if (!aside)
         camber_find_nearest(p, at);
     if (CAMBER_HAS(features, CAMBER_FEATURES_ALONG))
         at->along = camber_extras_along(p, e, at->x);
-    if (dashed)
-        place = camber_dash_place(e, at->along);
     if (has_tips)
         tips = camber_edge_tips(p, at);
-    if (is_rounded)
-        camber_go_off(at, camber_off_dash(e, place));
-    camber_find_distance(p, at);
-    camber_real area = camber_edge_within(p, at);
-#if CAMBER_STROKE_PITCHED
-    if (is_rounded)
-        area = camber_blend_round_dashes(p, e, at, area);
-#endif
+    camber_real area;
+    if (is_rounded) {
+        area = camber_round_dashes_within(p, e, at);
+    } else {
+        camber_find_distance(p, at);
+        area = camber_edge_within(p, at);
+    }
     if (has_tips)
         area *= tips;
     if (sharp)
@@ -238,7 +280,7 @@ CAMBER_FN CAMBER_INLINE camber_real camber_stroke_area(CAMBER_IN(camber_edge) p,
     if (p->capped && !aside)
         area = camber_edge_caps(p, at, area);
     if (dashed && !is_rounded)
-        area *= camber_dashes_cover(p, e, at, place);
+        area *= camber_dashes_cover(p, e, at, aside);
     if (CAMBER_HAS(features, CAMBER_FEATURE_TRIM))
         area *=
             1.0f - camber_cut_along(p, at, at->along - e->trim_from) + camber_cut_along(p, at, at->along - e->trim_to);

@@ -95,7 +95,9 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
     camber_pitch_see(e, s->x, s->y, CAMBER_REF(seen_x), CAMBER_REF(seen_y));
     const camber_real sum_x = along_x + behind_x, sum_y = along_y + behind_y;
     const camber_real length = CAMBER_SQRT(sum_x * sum_x + sum_y * sum_y);
-    const camber_mask bends = length > 1e-5f;
+    /* Past a right angle the bisector runs along the line, and would halve a segment where its neighbour, which may be
+     * short, does not lie: there it is cut off at its end. */
+    const camber_mask bends = CAMBER_BOTH(length > 1e-5f, CAMBER_FABS(s->s) < s->c);
     const camber_real scale = one / (bends ? length : one);
     const camber_real x = bends ? sum_x * scale : along_x, y = bends ? sum_y * scale : along_y;
     const camber_mask is_cap = CAMBER_END_CLASS(s->end) == CAMBER_CLASS_CAP;

@@ -217,7 +217,7 @@ camber_extras extras_here() {
     e.features = 0u;
     e.round_dashes = false;
     e.dash_count = e.stop_count = 0u;
-    e.half_gap = e.blur = e.along = e.rate = e.total = e.trim_from = e.trim_to = e.ends = 0.0;
+    e.half_gap = e.blur = e.along = e.rate = e.total = e.trim_from = e.trim_to = 0.0;
     e.period = e.drawn = 1.0;
 #if GAP || BLUR
     e.half_gap = v_band.x;
@@ -235,7 +235,6 @@ camber_extras extras_here() {
     e.period = v_measure.w;
     e.dash_count = uint(v_dashes.y >> 1);
     e.round_dashes = (v_dashes.y & 1) != 0;
-    e.ends = camber_dashes_ends(e.total);
     if (e.period < CAMBER_SMALL_PERIOD_PX)
         e.drawn = camber_dashes_drawn(e);
 #endif

@@ -126,12 +126,76 @@ static void test_fine(void **state) {
     picture_free(&p);
 }
 
+/* How much of a pixel's row the dashes of a level line cover. reach: how far square caps go on past both ends, px. */
+static double covered_of_row(const drawing *d, double reach, double left) {
+    const double begin = (double)d->points[0], total = (double)d->points[2] - begin;
+    double covered = 0, at = 0;
+    for (size_t i = 0; at < total; i++) {
+        const double to = at + (double)d->dash.lengths[i % d->dash.count];
+        const double first = begin + (at > 0 ? at : -reach), last = begin + (to < total ? to : total + reach);
+        if (i % 2 == 0)
+            covered += fmax(fmin(last, left + 1) - fmax(first, left), 0);
+        at = to;
+    }
+    return covered;
+}
+
+static void check_row(fixture *s, const drawing *d, double reach) {
+    picture p = along_draw(s, d);
+    for (uint32_t x = 0; x < SIDE; x++) {
+        const double drawn = 255 * picture_value(&p, x, 20, 3), truth = 255 * covered_of_row(d, reach, x);
+        if (fabs(drawn - truth) > 2)
+            fail_msg("cap %d, method %d, from %g to %g, lengths %g %g: %.0f in place of %.1f at %u", (int)d->stroke.cap,
+                     (int)d->method, (double)d->points[0], (double)d->points[2], (double)d->dash.lengths[0],
+                     (double)d->dash.lengths[1], drawn, truth, x);
+    }
+    picture_free(&p);
+}
+
+/* Where a line begins and ends within a pixel of a dash's end, the pixel has what lies between both. */
+static void test_at_ends(void **state) {
+    static const float dashes[][2] = {{1, 10}, {0.5f, 10}, {0.1f, 3}, {1.6f, 0.7f}, {7, 2.3f}};
+    static const float begins[] = {10, 10.25f, 10.5f, 10.8f}, rests[] = {0.07f, 0.45f, 0.95f, 1.5f, 2.4f};
+    for (int i = 0; i < 5 * 4 * 5 * 6; i++) {
+        const float *dash = dashes[i % 5], begin = begins[i / 5 % 4];
+        const float points[] = {begin, 20.5f, begin + 4 * (dash[0] + dash[1]) + rests[i / 20 % 5], 20.5f};
+        const bool is_square = i / 100 % 2;
+        const drawing d = {
+            points,
+            2,
+            {10, CAMBER_JOIN_ROUND, is_square ? CAMBER_CAP_SQUARE : CAMBER_CAP_BUTT, 0},
+            (camber_method)(i / 200),
+            {.width_px = 10, .color = {1, 1, 1, 1}},
+            .dash = {dash, 2},
+        };
+        check_row(*state, &d, is_square ? 5 : 0);
+    }
+}
+
+/* The same of a line that lies askew, and of round dashes: none begins where the line has ended, however far it would
+ * reach back. */
+static void test_at_ends_askew(void **state) {
+    static const float dashes[][2] = {{1, 10}, {0.4f, 7}, {1.7f, 4}, {10, 12}};
+    for (size_t i = 0; i < 4 * 4 * 3; i++) {
+        const bool is_round = i % 4 == 3;
+        const double length = (double)(dashes[i % 4][0] + dashes[i % 4][1]) * (is_round ? 2 : 5);
+        const double angle = 0.3 + 0.9 * (double)(i / 4 % 4), rest = is_round ? -1.5 : 0.6;
+        const float points[] = {41.3f, 47.6f, (float)(41.3 + (length + rest) * cos(angle)),
+                                (float)(47.6 + (length + rest) * sin(angle))};
+        const drawing d = {points,
+                           2,
+                           {8, CAMBER_JOIN_ROUND, is_round ? CAMBER_CAP_ROUND : CAMBER_CAP_BUTT, 0},
+                           (camber_method)(i / 16),
+                           {.width_px = 8, .color = {1, 1, 1, 1}},
+                           .dash = {dashes[i % 4], 2}};
+        check(*state, &d, 3, is_round ? 30 : 24);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_straight),
-        cmocka_unit_test(test_bent),
-        cmocka_unit_test(test_round),
-        cmocka_unit_test(test_fine),
+        cmocka_unit_test(test_straight), cmocka_unit_test(test_bent),    cmocka_unit_test(test_round),
+        cmocka_unit_test(test_fine),     cmocka_unit_test(test_at_ends), cmocka_unit_test(test_at_ends_askew),
     };
     return FIXTURE_RUN(tests);
 }

@@ -233,6 +233,11 @@ static const figure FIGURES[] = {
     {"a stub to the right behind a butt cap", {70, 41.4f, 70.4f, 40.5f, 130, 60}, 3, BUTT, 12},
     {"a stub to the left behind a butt cap", {70, 39.3f, 70.4f, 40.5f, 130, 60}, 3, MITER_BUTT, 7},
     {"a stub between round joins", {20, 90, 70, 60, 70.9f, 60.8f, 130, 75}, 4, ROUND, 12},
+    {"a thin line that turns right back after a stub",
+     {99, 50.5036736f, 98.97867f, 50.5002747f, 128.0379f, 55.127f},
+     3,
+     BUTT,
+     0.6f},
     {"as wide as the picture", {80, 300, 60, 60, 80, -2000}, 3, ROUND, 150},
 };
 
@@ -477,6 +482,22 @@ static void test_far_dashes(void **state) {
     picture_free(&whole);
 }
 
+/* Round dashes too fine to be seen fill their line and nothing past its ends. */
+static void test_fine_round_dashes(void **state) {
+    const fixture *s = *state;
+    static const float fine[] = {0.4f, 0.6f};
+    const figure line = {"fine", {64, 40, 100, 71}, 2, ROUND, 30};
+    for (int i = 0; i < PITCH_COUNT; i++) {
+        picture whole = draw(s, fixture_any(s), &line, &(look){.pitch_deg = PITCHES[i]});
+        picture dashed = draw(s, fixture_any(s), &line, &(look){.pitch_deg = PITCHES[i], .dash = {fine, 2}});
+        for (uint32_t k = 0; k < WIDE * HIGH; k++)
+            assert_true(picture_value(&dashed, k % WIDE, k / WIDE, 3) <=
+                        picture_value(&whole, k % WIDE, k / WIDE, 3) + 0.01);
+        picture_free(&dashed);
+        picture_free(&whole);
+    }
+}
+
 /* ---- Networks ---- */
 
 static void walk_world(camber_made_scene *s, uint64_t *seed) {
@@ -617,8 +638,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_oracle),   cmocka_unit_test(test_nearly_flat), cmocka_unit_test(test_pieces),
         cmocka_unit_test(test_backends), cmocka_unit_test(test_horizon),     cmocka_unit_test(test_area_streaks),
-        cmocka_unit_test(test_dashes),   cmocka_unit_test(test_far_dashes),  cmocka_unit_test(test_network),
-        cmocka_unit_test(test_window),   cmocka_unit_test(test_bad_pitch),
+        cmocka_unit_test(test_dashes),   cmocka_unit_test(test_far_dashes),  cmocka_unit_test(test_fine_round_dashes),
+        cmocka_unit_test(test_network),  cmocka_unit_test(test_window),      cmocka_unit_test(test_bad_pitch),
     };
     return FIXTURE_RUN(tests);
 }

@@ -135,16 +135,18 @@ static void write_url(camber_server *server) {
              (int)length, url, (int)length, url);
 }
 
-/* Returns 0 or an errno. */
+/* Each thread of the pool may have all connections, which the acceptor counts: past its limit a thread of libmicrohttpd
+ * 0.9.75 keeps a lock for good. Returns 0 or an errno. */
 static int start_daemon(camber_listener *listener, unsigned threads, unsigned connections) {
     struct MHD_OptionItem pool[] = {{MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)threads, NULL}, {MHD_OPTION_END, 0, NULL}};
-    listener->daemon = MHD_start_daemon(
-        MHD_USE_POLL_INTERNAL_THREAD | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
-        camber_request_answer, listener, MHD_OPTION_CONNECTION_LIMIT, connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-        (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)(2 * MOST_SECONDS),
-        MHD_OPTION_URI_LOG_CALLBACK, camber_request_begin, listener, MHD_OPTION_NOTIFY_COMPLETED, camber_request_end,
-        listener, MHD_OPTION_NOTIFY_CONNECTION, notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1,
-        threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
+    listener->daemon =
+        MHD_start_daemon(MHD_USE_POLL_INTERNAL_THREAD | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL,
+                         NULL, camber_request_answer, listener, MHD_OPTION_CONNECTION_LIMIT, threads * connections,
+                         MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
+                         (unsigned)(2 * MOST_SECONDS), MHD_OPTION_URI_LOG_CALLBACK, camber_request_begin, listener,
+                         MHD_OPTION_NOTIFY_COMPLETED, camber_request_end, listener, MHD_OPTION_NOTIFY_CONNECTION,
+                         notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1,
+                         threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
     return listener->daemon ? 0 : errno == EMFILE ? EMFILE : EAGAIN; /* no memory, or no threads */
 }
 

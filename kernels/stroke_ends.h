@@ -23,9 +23,8 @@
 #define CAMBER_ALWAYS_PX (-1e30f)
 /* In lines of a smaller half width round caps get their area by camber_edge_tips, and no join opens. */
 #define CAMBER_TIPS_PX 1.85f
-#define CAMBER_WIDE_PX 4.0f    /* in lines of a larger half width, what short pieces leave open is seen most */
-#define CAMBER_TURNING_PX 0.1f /* pieces that are shorter do not know how a line turns */
-#define CAMBER_UNION_PX 0.4f   /* lines of a smaller half width have both edges in a pixel, and no one normal */
+#define CAMBER_WIDE_PX 4.0f  /* in lines of a larger half width, what short pieces leave open is seen most */
+#define CAMBER_UNION_PX 0.4f /* lines of a smaller half width have both edges in a pixel, and no one normal */
 
 /* The 13 bits of an end: 0-2 camber_end, 3-4 class, 5-10 where a join is flat (camber_flat_join), 11 free, 12 the line
  * ends with the next segment. */
@@ -109,17 +108,6 @@ CAMBER_FN camber_mask camber_owner_side(camber_mask alone, camber_mask butt, cam
     return half_width * CAMBER_FABS(s) > bound * c;
 }
 
-/* Whether a line with butt caps turns within half its width: a stub is shorter than its inner side is long, which is
- * turned over and lies past the centre. Each join of such a curve would give up a little, and all of them that whole
- * side. Other caps cover it, and in thin lines it is too little to be seen. Still shorter stubs turn by as much where
- * only their coordinates are rounded. */
-CAMBER_FN camber_mask camber_turns_in(camber_words join, camber_real c, camber_real s, camber_real half_width) {
-    const camber_real length = CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) * CAMBER_STUB_UNIT_PX;
-    const camber_mask stub = CAMBER_BOTH(CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST, length > CAMBER_TURNING_PX);
-    const camber_mask wide = CAMBER_BOTH(CAMBER_HAS(join, CAMBER_JOIN_BUTT), half_width > CAMBER_TIPS_PX);
-    return CAMBER_BOTH(CAMBER_BOTH(stub, wide), half_width * CAMBER_FABS(s) > 0.5f * length * c);
-}
-
 /* The bits of an end that say where a join is flat: camber_cut_end. Before a butt cap the next segment may be too short
  * to cover what lies past the body on its inner side, and so where the join opens. A segment that is no longer than the
  * stub does not know the other one's length: it is taken for a long one. butt: the line ends with the next segment, in
@@ -142,8 +130,7 @@ CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber
     const camber_mask opens = camber_opens(join, length, half_width);
     const camber_mask keeps = CAMBER_BOTH(half_width > CAMBER_WIDE_PX, camber_is_longer(join, length));
     const camber_mask more = camber_owner_side(CAMBER_EITHER(soon, keeps), butt, c, s, half_width);
-    const camber_mask all = CAMBER_EITHER(more, camber_turns_in(join, c, s, half_width));
-    const camber_mask owns = CAMBER_BOTH(CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT, all);
+    const camber_mask owns = CAMBER_BOTH(CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT, more);
     CAMBER_AT(own) = owns;
     return end | camber_flat_join(join, butt, owns, opens, length) | (soon ? last : none);
 }

@@ -288,9 +288,10 @@ static camber_status sniff_tile(void *user, const camber_archive_tile *tile) {
     camber_archive *archive = self->archive;
     camber_bytes bytes = {.context = archive->context};
     const char *why = NULL;
-    camber_status status = CAMBER_OK;
-    if (tile->size_bytes <= CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
-        status = camber_archive_read(archive, tile, &bytes, &why);
+    self->done = tile->size_bytes > CAMBER_ARCHIVE_LARGEST_TILE_BYTES;
+    if (self->done)
+        return CAMBER_ERROR_LIMIT;
+    const camber_status status = camber_archive_read(archive, tile, &bytes, &why);
     self->done = status == CAMBER_OK;
     if (self->done && !why) {
         archive->type = camber_tile_sniff(bytes.data, bytes.size_bytes);

@@ -45,7 +45,7 @@ static int run_guarded(void *user) {
     session->guard = &guard;
     const int status = run(session);
     if (guarded && status != CAMBER_EXIT_DONE && camber_session_is_opening(session)) {
-        /* What has failed needs no device: nobody waits until it is open. */
+        /* A run that has failed needs no device, and does not wait until one is open. */
         fflush(NULL);
         camber_guard_lock(&guard);
         camber_guard_end(&guard, status);

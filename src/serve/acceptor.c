@@ -1,5 +1,5 @@
 /* A thread that accepts the connections of a socket, and ends as the socket is shut down. */
-#define _XOPEN_SOURCE 700
+#define _GNU_SOURCE /* accept4 */
 
 #include "serve/acceptor.h"
 
@@ -32,7 +32,7 @@ static void *accept_all(void *user) {
             nanosleep(&pause, NULL);
             continue;
         }
-        const int connection = accept(desc->socket, NULL, NULL), cause = errno;
+        const int connection = accept4(desc->socket, NULL, NULL, SOCK_CLOEXEC), cause = errno;
         if (connection >= 0 && acceptor->stopping)
             close(connection);
         else if (connection >= 0)

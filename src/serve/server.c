@@ -301,9 +301,13 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
 
 /* ---- The end ---- */
 
-static void stop(camber_listener *listener) {
+static void stop_accepting(camber_listener *listener) {
     camber_acceptor_destroy(listener->acceptor);
     listener->acceptor = NULL;
+}
+
+static void stop(camber_listener *listener) {
+    stop_accepting(listener);
     if (listener->daemon)
         MHD_stop_daemon(listener->daemon);
 }
@@ -324,8 +328,7 @@ void camber_server_destroy(camber_server *server) {
     if (!server)
         return;
     server->stopping = true;
-    camber_acceptor_destroy(server->page.acceptor); /* no new connection */
-    server->page.acceptor = NULL;
+    stop_accepting(&server->page);
     if (server->events)
         camber_events_end(server->events);
     camber_renderd_destroy(server->renderd);

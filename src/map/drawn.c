@@ -69,12 +69,17 @@ camber_status camber_plan_drawn_box(const camber_features *features, double min_
     return CAMBER_OK;
 }
 
+bool camber_plan_unproject_box(const camber_box *box, double bounds[4]) {
+    if (box->x0 > box->x1)
+        return false;
+    camber_mercator_unproject(box->x0, box->y1, &bounds[0], &bounds[1]);
+    camber_mercator_unproject(box->x1 > 1.0 ? box->x1 - 1.0 : box->x1, box->y0, &bounds[2], &bounds[3]);
+    return true;
+}
+
 bool camber_features_get_drawn_bounds(const camber_features *features, double min_zoom, double max_zoom,
                                       double bounds[4]) {
     camber_box box;
-    if (camber_plan_drawn_box(features, min_zoom, max_zoom, &box) != CAMBER_OK || box.x0 > box.x1)
-        return false;
-    camber_mercator_unproject(box.x0, box.y1, &bounds[0], &bounds[1]);
-    camber_mercator_unproject(box.x1 > 1.0 ? box.x1 - 1.0 : box.x1, box.y0, &bounds[2], &bounds[3]);
-    return true;
+    return camber_plan_drawn_box(features, min_zoom, max_zoom, &box) == CAMBER_OK &&
+           camber_plan_unproject_box(&box, bounds);
 }

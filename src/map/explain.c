@@ -119,25 +119,35 @@ static void say_hidden(sentence *s, const camber_features *features, double min_
     }
 }
 
-static void say_elsewhere(sentence *s, const camber_features *features, double min_zoom, double max_zoom) {
+static camber_status say_elsewhere(sentence *s, const camber_features *features, double min_zoom, double max_zoom) {
+    camber_box box = CAMBER_BOX_EMPTY;
     double bounds[4];
-    if (features->points && camber_features_get_drawn_bounds(features, min_zoom, max_zoom, bounds))
+    const camber_status status = camber_plan_drawn_box(features, min_zoom, max_zoom, &box);
+    if (camber_plan_unproject_box(&box, bounds))
         say(s, ", but none of it lies in the view; --bbox %.6g,%.6g,%.6g,%.6g shows it", bounds[0], bounds[1],
             bounds[2], bounds[3]);
     else
         say(s, ", but none of it lies in the view; without --bbox and --center all of it is shown");
+    return status;
+}
+
+camber_status camber_plan_explain_nothing(const camber_features *features, double min_zoom, double max_zoom, char *text,
+                                          size_t size, bool *draws) {
+    sentence s = {text, size, 0};
+    *draws = any_between(features, min_zoom, max_zoom);
+    say_read(&s, features);
+    if (features->feature_count == 0)
+        say_unread(&s, features);
+    else if (!*draws)
+        say_hidden(&s, features, min_zoom, max_zoom);
+    else
+        return say_elsewhere(&s, features, min_zoom, max_zoom);
+    return CAMBER_OK;
 }
 
 bool camber_features_explain_nothing(const camber_features *features, double min_zoom, double max_zoom, char *text,
                                      size_t size) {
-    sentence s = {text, size, 0};
-    const bool draws = any_between(features, min_zoom, max_zoom);
-    say_read(&s, features);
-    if (features->feature_count == 0)
-        say_unread(&s, features);
-    else if (!draws)
-        say_hidden(&s, features, min_zoom, max_zoom);
-    else
-        say_elsewhere(&s, features, min_zoom, max_zoom);
+    bool draws;
+    (void)camber_plan_explain_nothing(features, min_zoom, max_zoom, text, size, &draws);
     return draws;
 }

@@ -121,6 +121,11 @@ bool camber_plan_draws(const camber_features *features, const camber_feature_cla
 /* The box of all that is drawn at one of the zooms, in world coordinates; beyond x = 1 where it is smaller across the
  * antimeridian; CAMBER_BOX_EMPTY: nothing is. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom, camber_box *box);
+/* Writes such a box in degrees: west, south, east, north. false: it is empty. */
+bool camber_plan_unproject_box(const camber_box *box, double bounds[4]);
+/* camber_features_explain_nothing, and whether it draws any at these zooms (explain.c). Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_plan_explain_nothing(const camber_features *features, double min_zoom, double max_zoom, char *text,
+                                          size_t size, bool *draws);
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
 void camber_plan_destroy(camber_plan *plan);
 

@@ -223,17 +223,21 @@ static bool has_patterns(const camber_plan *plan) {
 
 /* Warns where a style draws nothing at all; what else it leaves out is its own business. Images of patterns that are
  * not there were warned of already. */
-static void tell_undrawn(const camber_scene *scene) {
+static camber_status tell_undrawn(const camber_scene *scene) {
     const size_t undrawn = scene->plan.undrawn, all = scene->features->feature_count;
+    const double zoom = scene->view.zoom;
     char why[1024];
+    bool draws;
     if (has_patterns(&scene->plan))
-        return;
+        return CAMBER_OK;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: draws nothing of %zu of %zu features", undrawn, all);
     if (!undrawn || undrawn < all)
-        return;
-    (void)camber_features_explain_nothing(scene->features, scene->view.zoom, scene->view.zoom, why, sizeof why);
-    camber_log(scene->context, CAMBER_LOG_WARNING, "nothing is drawn: %s", why);
+        return CAMBER_OK;
+    const camber_status status = camber_plan_explain_nothing(scene->features, zoom, zoom, why, sizeof why, &draws);
+    if (status == CAMBER_OK)
+        camber_log(scene->context, CAMBER_LOG_WARNING, "nothing is drawn: %s", why);
+    return status;
 }
 
 camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
@@ -253,11 +257,12 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     camber_status status = look(made, &desc->view, &none);
     if (status == CAMBER_OK && !desc->on_device)
         status = camber_scene_project(made);
+    if (status == CAMBER_OK)
+        status = tell_undrawn(made);
     if (status != CAMBER_OK) {
         camber_scene_destroy(made);
         return status;
     }
-    tell_undrawn(made);
     if (made->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
                    "style: its patterns are left out, for its sprites are not read; read them with the features");

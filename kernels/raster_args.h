@@ -13,24 +13,24 @@ typedef struct camber_tile_grid {
 
 /* setup: the records of a range, and where their segments go. Ranges of one part are set up together. */
 typedef struct camber_setup_args {
-    camber_u32 first, end, record_count; /* the range's records [first, end), and how many the part has */
-    camber_u32 stride, strips, linear;   /* stride: 2 where records have arc lengths behind them */
-    camber_u32 makes;                    /* CAMBER_MAKES_... */
+    camber_u32 first, end, slot_count; /* the range's slots [first, end), and how many the part has */
+    camber_u32 has_arc_length, linear; /* has_arc_length: the part's slots have arc lengths */
+    camber_u32 makes, among_edges;     /* CAMBER_MAKES_...; whether there are edges of rings before and after them */
     camber_u32 base, first_row; /* where the range's segments begin, a multiple of 16, and its table among all rows */
     float left, top;            /* where the area begins in the picture, px */
     camber_u32 columns, rows;   /* tiles */
     float horizon;              /* rows of pixels at the picture's top in which no segment is drawn */
     camber_eye eye;
-    /* The range's records at which the brush changes, and how many changes of the same input lie before the part. */
+    /* The range's slots at which the brush changes, and how many changes of the same input lie before the part. */
     camber_u32 first_change, change_count, changes_before;
     camber_u32 first_item; /* of the work-items that take it; each range begins one */
 } camber_setup_args;
 
-/* So many records a work-item of setup takes: some, as a work-group takes a while to begin. */
-#define CAMBER_SETUP_RECORDS(lanes) ((lanes) == 1u ? 16u : 128u)
+/* So many slots a work-item of setup takes: some, as a work-group takes a while to begin. */
+#define CAMBER_SETUP_SLOTS(lanes) ((lanes) == 1u ? 16u : 128u)
 #define CAMBER_MAKES_SEGMENTS 0u
 #define CAMBER_MAKES_EDGES 1u
-#define CAMBER_MAKES_SEGMENTS_AMONG_EDGES 2u
+#define CAMBER_MAKES_FILL 2u /* one segment that covers every tile, of no points */
 
 /* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
 typedef struct camber_bin_args {

@@ -17,7 +17,9 @@
 #define CAMBER_TILES_MAX 256              /* along each side of an area: a box has a byte for each */
 #define CAMBER_LOOK_EVERY 16              /* a cell is checked for being full after so many segments */
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* where less than this shows through, what lies below is not drawn */
-#define CAMBER_FILL_PX 1e6f /* a fill is a line along y = 0 that is this long to either side, and this half width */
+/* A fill is a line along y = 0 that is this long to either side, and this half width; the join word of its ends. */
+#define CAMBER_FILL_PX 1e6f
+#define CAMBER_FILL_JOIN (CAMBER_KIND_CAP << CAMBER_JOIN_KIND_SHIFT | CAMBER_ENDS_BUTT << CAMBER_JOIN_END_SHIFT)
 
 /* The box of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu
@@ -46,13 +48,12 @@ typedef struct camber_brush {
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
-/* How many of the changes of brush, ascending records, lie at a record or before it. */
-CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *changes, camber_u32 count,
-                                          camber_u32 record) {
+/* How many of the changes of brush, ascending slots, lie at a slot or before it. */
+CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *changes, camber_u32 count, camber_u32 slot) {
     camber_u32 low = 0u, high = count;
     while (low < high) {
         const camber_u32 middle = low + (high - low) / 2u;
-        if (changes[middle] <= record)
+        if (changes[middle] <= slot)
             low = middle + 1u;
         else
             high = middle;

@@ -1,53 +1,41 @@
-/* setup: makes a segment, or the edge of a ring, of each record that ends one, and finds the box of tiles around it. A
- * work-item takes 128 records of a range, and on a GPU 16.
+/* setup: makes a segment, or the edge of a ring, of each point that ends one, and finds the box of tiles around it. A
+ * work-item takes 128 slots of a range, and on a GPU 16.
  *
- * Reads ranges[range_count] of one part, records[CAMBER_RECORD_WORDS * stride * record_count],
- * rows[CAMBER_RASTER_ROW_WORDS * row count], changes[first_change + change_count]. For the n records of a range,
- * rounded up to sixteens, it writes from element `base` on:
+ * Reads ranges[range_count] of one part, x, y, info, joins[slot_count + 2] of the part (one sentinel before and after
+ * its slots), rows[CAMBER_RASTER_ROW_WORDS * row count], changes[first_change + change_count]. For the n slots of a
+ * range, rounded up to sixteens, it writes from element `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
- *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, of records that belong to rings of areas
- *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
- *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH; 0 if the records have none
+ *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, of slots that belong to rings of areas
+ *     boxes[n]; CAMBER_NO_BOX for a slot that ends no segment, or one that is not drawn
+ *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH, from slot_arc_lengths[2 * slot_count];
+ *         0 if the part has none
  *     planes[CAMBER_PLANE_WORDS * n], only with CAMBER_RASTER_PITCHED: the segments in their plane */
 #include "brush_ext.h"
 #include "cells.h"
 #include "pitch_segment.h"
 #include "transpose.cl"
 
-/* Flags of records that begin a polyline or a strip: no segment ends with them. */
-#define STARTS (CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START)
+/* The points of a part: a word of each slot, in arrays. */
+typedef struct part_points {
+    global const camber_u32 *x, *y, *info, *joins;
+} part_points;
 
-/* Reads record i. A number outside the part stands for its nearest record. */
-static inline uint4 record_at(global const camber_u32 *records, int i, const camber_setup_args *r) {
-    const int last = (int)r->record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
-    return vload4((size_t)at * r->stride, records);
-}
-
-/* The words of consecutive records, a vector for each word. */
-typedef struct lane_records {
+/* The words of consecutive points, a vector for each word. */
+typedef struct lane_points {
     camber_words x, y, join, info;
-} lane_records;
+} lane_points;
 
-/* Reads a vector of records from `first` on. Numbers outside the part stand for its nearest record. */
-static inline void take_records(global const camber_u32 *records, int first, const camber_setup_args *r,
-                                lane_records *taken) {
-    camber_words v[4];
-    if (r->stride == 1 && first >= 0 && first + CAMBER_LANES <= (int)r->record_count) {
-        for (size_t i = 0; i < 4; i++)
-            v[i] = CAMBER_LOAD(i, records + CAMBER_RECORD_WORDS * (size_t)first);
-    } else {
-        uint of_lanes[4 * CAMBER_LANES];
-        for (int k = 0; k < CAMBER_LANES; k++)
-            vstore4(record_at(records, first + k, r), (size_t)k, of_lanes);
-        for (size_t i = 0; i < 4; i++)
-            v[i] = CAMBER_LOAD(i, of_lanes);
+/* Reads a vector of words from index `first` on. Indices outside the part stand for its nearest word. */
+static inline camber_words take_words(global const camber_u32 *words, int first, const camber_setup_args *r) {
+    const int last = (int)r->slot_count + 1;
+    if (first >= 0 && first + CAMBER_LANES <= last + 1)
+        return CAMBER_LOAD(0, words + first);
+    uint taken[CAMBER_LANES];
+    for (int k = 0; k < CAMBER_LANES; k++) {
+        const int i = first + k;
+        taken[k] = words[i < 0 ? 0 : i > last ? last : i];
     }
-    camber_words words[4];
-    turn_fours_over(v, words);
-    taken->x = words[0];
-    taken->y = words[1];
-    taken->join = words[2];
-    taken->info = words[3];
+    return CAMBER_LOAD(0, taken);
 }
 
 /* Reads the rows of a vector of segments. Mostly they all have the same one. */
@@ -77,7 +65,7 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
         row[k] = CAMBER_LOAD(0, words[k]);
 }
 
-/* The brushes of a vector of edges that end with the records from `first` on, by those of their rows. */
+/* The brushes of a vector of edges that end in the slots from `first` on, by those of their rows. */
 static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, const camber_setup_args *r,
                                         camber_real of_rows) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -93,19 +81,20 @@ static inline camber_words take_brushes(global const camber_u32 *changes, camber
 }
 
 #if CAMBER_RASTER_RICH
-static inline float2 arc_length_at(global const camber_u32 *records, int i, const camber_setup_args *r) {
-    const int last = (int)r->record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
-    return r->stride == 2 ? as_float2(vload2(4 * (size_t)at + 2, records)) : (float2)(0.0f);
+static inline float2 arc_length_at(global const float *slot_arc_lengths, int slot, const camber_setup_args *r) {
+    const int last = (int)r->slot_count - 1, at = slot < 0 ? 0 : slot > last ? last : slot;
+    return r->has_arc_length ? vload2((size_t)at, slot_arc_lengths) : (float2)(0.0f);
 }
 
-static inline void put_arc_lengths(global const camber_u32 *records, int first, const camber_setup_args *r,
-                                   const camber_segment *s, global float *arc_lengths) {
+/* The lanes that are dots lie as far along their line as their point. */
+static inline void put_arc_lengths(global const float *slot_arc_lengths, int first, camber_mask is_dot,
+                                   const camber_setup_args *r, const camber_segment *s, global float *arc_lengths) {
     float from[CAMBER_LANES], to[CAMBER_LANES], total[CAMBER_LANES], rates[CAMBER_LANES];
     for (int k = 0; k < CAMBER_LANES; k++) {
-        const int is_dot = record_at(records, first + k, r).s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_DOT;
-        const float2 a = arc_length_at(records, is_dot ? first + k : first + k - 1, r);
+        const int slot = first + k;
+        const float2 a = arc_length_at(slot_arc_lengths, camber_integer_of(&is_dot, k) ? slot : slot - 1, r);
         from[k] = a.s0;
-        to[k] = arc_length_at(records, first + k, r).s0;
+        to[k] = arc_length_at(slot_arc_lengths, slot, r).s0;
         total[k] = a.s1;
     }
     CAMBER_STORE(camber_segment_rate(s, CAMBER_LOAD(0, from), CAMBER_LOAD(0, to)), 0, rates);
@@ -139,7 +128,7 @@ static inline void put_planes(const camber_segment *s, const camber_plane *p, gl
 }
 #endif
 
-/* Where the segments or edges of a vector of records go. */
+/* Where the segments or edges of a vector of slots go. */
 typedef struct outputs {
     global float *segments;
     global camber_u32 *boxes;
@@ -147,25 +136,15 @@ typedef struct outputs {
     global camber_u32 *brushes; /* of edges */
 } outputs;
 
-/* A vector of records that may end segments, and those before them. */
+/* A vector of points that may end segments, and those before them. */
 typedef struct ends {
-    lane_records b, before;
+    lane_points b, before;
     camber_real row[CAMBER_RASTER_ROW_WORDS], x, y; /* x, y: the translation */
     camber_mask is_dot, is_drawn;
 } ends;
 
-/* Takes the records from `first` on. */
-static inline void take_ends(global const camber_u32 *records, global const float *rows, int first,
-                             const camber_setup_args *r, ends *e) {
-    const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    take_records(records, first, r, &e->b);
-    take_records(records, first - 1, r, &e->before);
-    const camber_words kind = e->b.join >> CAMBER_JOIN_KIND_SHIFT;
-    const camber_mask is_real = ((e->b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
-                                (CAMBER_LOAD(0, numbers) < (int)r->end - first);
-    const camber_mask goes_on = (e->b.info & (r->strips ? STARTS : CAMBER_POINT_FIRST)) == 0u;
-    e->is_dot = kind == CAMBER_KIND_DOT;
-    e->is_drawn = is_real & (r->strips ? goes_on : goes_on | e->is_dot);
+/* Takes the rows of the points that end segments, and leaves out those that their row does not draw. */
+static inline void look_up_rows(global const float *rows, const camber_setup_args *r, ends *e) {
     take_rows(rows, r->first_row, e->b.info >> CAMBER_POINT_ROW_SHIFT, e->is_drawn, e->row);
     e->is_drawn &= e->row[0] >= 0.0f;
 #if CAMBER_RASTER_PITCHED
@@ -175,6 +154,39 @@ static inline void take_ends(global const camber_u32 *records, global const floa
     e->x = e->row[1];
     e->y = e->row[2];
 #endif
+}
+
+/* Takes the points of the slots from `first` on. The word of a slot follows that of the sentinel. */
+static inline void take_ends(part_points from, global const float *rows, int first, const camber_setup_args *r,
+                             ends *e) {
+    const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const int at = first + 1;
+    e->b.x = take_words(from.x, at, r);
+    e->b.y = take_words(from.y, at, r);
+    e->b.join = take_words(from.joins, at, r);
+    e->b.info = take_words(from.info, at, r);
+    e->before.x = take_words(from.x, at - 1, r);
+    e->before.y = take_words(from.y, at - 1, r);
+    e->before.join = take_words(from.joins, at - 1, r);
+    const camber_words kind = e->b.join >> CAMBER_JOIN_KIND_SHIFT;
+    const camber_mask is_real = ((e->b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
+                                (CAMBER_LOAD(0, numbers) < (int)r->end - first);
+    e->is_dot = kind == CAMBER_KIND_DOT;
+    e->is_drawn = is_real & (((e->b.info & CAMBER_POINT_FIRST) == 0u) | e->is_dot);
+    look_up_rows(rows, r, e);
+}
+
+/* Takes the ends of a fill, whose segment ends in slot 0. */
+static inline void take_fill(global const float *rows, int first, const camber_setup_args *r, ends *e) {
+    const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const camber_words none = (camber_words)(0u), join = (camber_words)(CAMBER_FILL_JOIN);
+    e->b.x = CAMBER_AS_WORDS(CAMBER_REAL(CAMBER_FILL_PX));
+    e->before.x = CAMBER_AS_WORDS(CAMBER_REAL(-CAMBER_FILL_PX));
+    e->b.y = e->before.y = e->b.info = none;
+    e->b.join = e->before.join = join;
+    e->is_dot = join == none;
+    e->is_drawn = CAMBER_LOAD(0, numbers) == -first;
+    look_up_rows(rows, r, e);
 }
 
 /* Where a segment begins and ends. */
@@ -189,21 +201,20 @@ static inline void place_ends(const ends *e, lane_ends *l) {
     l->by = CAMBER_AS_REAL(e->b.y) + e->y;
 }
 
-/* Makes the segments of the records from `first` on, and writes them. */
-static inline void make_segments(global const camber_u32 *records, global const float *rows, int first,
-                                 const camber_setup_args *r, outputs to) {
+/* Makes the segments that end in the slots from `first` on, and writes them. */
+static inline void make_segments(part_points from, global const float *rows, global const float *slot_arc_lengths,
+                                 int first, const camber_setup_args *r, outputs to) {
     ends e;
-    lane_records second, third;
     lane_ends l;
     camber_segment s;
-    take_ends(records, rows, first, r, &e);
-    take_records(records, first - 2, r, &second);
-    take_records(records, first - 3, r, &third);
+    if (r->makes == CAMBER_MAKES_FILL)
+        take_fill(rows, first, r, &e);
+    else
+        take_ends(from, rows, first, r, &e);
     place_ends(&e, &l);
-    const camber_mask from_third =
-        ((e.before.info & CAMBER_RECORD_START) != 0u) & (e.before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
-    camber_segment_of(CAMBER_AS_REAL(from_third ? third.x : second.x) + e.x,
-                      CAMBER_AS_REAL(from_third ? third.y : second.y) + e.y, l.ax, l.ay, l.bx, l.by,
+    /* The segment before begins at the point before the last; that of a cap does not matter. */
+    const camber_words px = take_words(from.x, first - 1, r), py = take_words(from.y, first - 1, r);
+    camber_segment_of(CAMBER_AS_REAL(px) + e.x, CAMBER_AS_REAL(py) + e.y, l.ax, l.ay, l.bx, l.by,
                       e.is_dot ? e.b.join : e.before.join, e.b.join, e.row[0], r->linear, &s);
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
@@ -217,26 +228,26 @@ static inline void make_segments(global const camber_u32 *records, global const 
         return;
 #if CAMBER_RASTER_PITCHED
     put_planes(&flat, &plane, to.planes);
-    put_arc_lengths(records, first, r, &flat, to.arc_lengths);
+    put_arc_lengths(slot_arc_lengths, first, e.is_dot, r, &flat, to.arc_lengths);
 #elif CAMBER_RASTER_RICH
-    put_arc_lengths(records, first, r, &s, to.arc_lengths);
+    put_arc_lengths(slot_arc_lengths, first, e.is_dot, r, &s, to.arc_lengths);
 #endif
     camber_real words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
                              s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
                              s.half_width, s.reach, s.slope, s.curve, CAMBER_AS_REAL(s.flags),
                              e.row[3]};
     put_segments(words, to.segments, CAMBER_SEGMENT_WORDS);
-    if (r->makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES)
+    if (r->among_edges)
         CAMBER_STORE((camber_words)(CAMBER_NO_EDGE), 0, to.brushes);
 }
 
 /* The same of edges. */
-static inline void make_edges(global const camber_u32 *records, global const float *rows,
-                              global const camber_u32 *changes, int first, const camber_setup_args *r, outputs to) {
+static inline void make_edges(part_points from, global const float *rows, global const camber_u32 *changes, int first,
+                              const camber_setup_args *r, outputs to) {
     ends e;
     lane_ends l;
     camber_segment s;
-    take_ends(records, rows, first, r, &e);
+    take_ends(from, rows, first, r, &e);
     place_ends(&e, &l);
     camber_edge_segment(l.ax, l.ay, l.bx, l.by, &s);
 #if CAMBER_RASTER_PITCHED
@@ -256,7 +267,7 @@ static inline void make_edges(global const camber_u32 *records, global const flo
     CAMBER_STORE(take_brushes(changes, (camber_u32)first, r, e.row[3]), 0, to.brushes);
 }
 
-/* The range whose records a work-item takes. */
+/* The range whose slots a work-item takes. */
 static inline uint range_of(global const camber_setup_args *ranges, uint count, uint item) {
     uint first = 0;
     while (count > 1) {
@@ -269,16 +280,20 @@ static inline uint range_of(global const camber_setup_args *ranges, uint count, 
 }
 
 CAMBER_KERNEL(1, setup,
-              (global const camber_u32 *restrict records, global const float *restrict rows,
+              (global const camber_u32 *restrict x, global const camber_u32 *restrict y,
+               global const camber_u32 *restrict info, global const camber_u32 *restrict joins,
+               global const float *restrict slot_arc_lengths, global const float *restrict rows,
                global float *restrict segments, global camber_u32 *restrict boxes,
                global const camber_setup_args *restrict ranges, const uint range_count,
                global float *restrict arc_lengths, global float *restrict planes,
                global const camber_u32 *restrict changes, global float *restrict edges),
-              (records, rows, segments, boxes, ranges, range_count, arc_lengths, planes, changes, edges)) {
+              (x, y, info, joins, slot_arc_lengths, rows, segments, boxes, ranges, range_count, arc_lengths, planes,
+               changes, edges)) {
     const camber_setup_args r = ranges[range_of(ranges, range_count, (uint)CAMBER_WORK_ITEM)];
-    const uint most = CAMBER_SETUP_RECORDS(CAMBER_LANES), from = most * ((uint)CAMBER_WORK_ITEM - r.first_item),
+    const uint most = CAMBER_SETUP_SLOTS(CAMBER_LANES), from = most * ((uint)CAMBER_WORK_ITEM - r.first_item),
                left = (r.end - r.first - from + 15) / 16 * 16;
     const uint count = left < most ? left : most;
+    const part_points points = {x, y, info, joins};
     for (uint i = from; i < from + count; i += CAMBER_LANES) {
         const size_t at = (size_t)r.base + i;
         const int first = (int)(r.first + i);
@@ -289,8 +304,8 @@ CAMBER_KERNEL(1, setup,
                             edges + camber_edge_ends(at),
                             (global camber_u32 *)edges + camber_edge_brush(at)};
         if (r.makes == CAMBER_MAKES_EDGES)
-            make_edges(records, rows, changes, first, &r, to);
+            make_edges(points, rows, changes, first, &r, to);
         else
-            make_segments(records, rows, first, &r, to);
+            make_segments(points, rows, slot_arc_lengths, first, &r, to);
     }
 }

@@ -482,10 +482,12 @@ typedef struct camber_mesh_info {
     camber_method method;
     bool strips;              /* triangle strips; else triangles */
     bool has_arc_length;      /* as the tessellation was asked for */
+    /* The next three are 0 until camber_mesh_count_joins if a renderer that draws with OpenCL draws the mesh: it needs
+     * points alone. */
     size_t record_count;      /* camber_record */
     size_t vertex_count;      /* of strips two a record, those between strips too */
     size_t index_count;       /* of strips one a vertex, though none is kept */
-    size_t bytes;             /* all that is kept to draw from: records, and indices of kite and fan */
+    size_t bytes;             /* all that is kept to draw from: points, or records, and indices of kite and fan */
     size_t triangle_count;    /* not degenerate; this and the following are 0 until camber_mesh_count_joins */
     size_t joins;             /* points with a join, by kind: */
     size_t tight_joins;       /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
@@ -514,10 +516,10 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * points. */
 CAMBER_API camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                                 const camber_tessellation_desc *desc);
-/* Returns what the last tessellation made. Joins and triangles are 0 until they have been counted. */
+/* Returns what the last tessellation made. Some counts are 0 until camber_mesh_count_joins: camber_mesh_info. */
 CAMBER_API camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh);
-/* Counts the joins and triangles of the last tessellation, unless that is done already. camber_mesh_read counts them,
- * too.
+/* Counts the joins and triangles of the last tessellation, and its records, vertices and indices, unless that is done
+ * already. camber_mesh_read counts them, too.
  * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE, and what tessellating a part again can return.
  * Cost: one pass over the points. */
 CAMBER_API camber_status camber_mesh_count_joins(camber_mesh *mesh);

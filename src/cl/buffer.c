@@ -89,4 +89,4 @@ static void plain_release(void *user, camber_buffer *buffer) {
     *buffer = (camber_buffer){0};
 }
 
-const camber_buffer_ops camber_buffer_plain = {plain_reserve, plain_begin, plain_finish, plain_release, true};
+const camber_buffer_ops camber_buffer_plain = {plain_reserve, plain_begin, plain_finish, plain_release};

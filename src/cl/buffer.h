@@ -35,7 +35,6 @@ typedef struct camber_buffer_ops {
     camber_status (*begin)(void *user, camber_buffer *buffers, size_t count);
     camber_status (*finish)(void *user, camber_buffer *buffers, size_t count, bool written);
     void (*release)(void *user, camber_buffer *buffer);
-    bool is_copied; /* GL has copies, or nothing: kernels may read the buffers without begin and finish */
 } camber_buffer_ops;
 
 /* Buffers in OpenCL's memory alone, for meshes that GL does not draw. Their user is the device. */

@@ -230,7 +230,7 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
             range.end = range.end < part_end ? range.end : part_end;
             if (range.first >= range.end || part->index_count == 0)
                 continue;
-            if (part != starts.part) {
+            if (part != starts.finder.part) {
                 draw_strips(renderer, area); /* their part is bound, and may have to go */
                 camber_slot_starts_unmap(&starts);
                 status = camber_part_ensure_made(mesh, part);

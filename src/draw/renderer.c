@@ -115,17 +115,17 @@ static void current_release(void *user, camber_buffer *buffer) {
     renderer->path->ops.release(&renderer->share, buffer);
 }
 
-static const camber_buffer_ops current_ops = {current_reserve, current_begin, current_finish, current_release, false};
-static const camber_buffer_ops copied_ops = {current_reserve, current_begin, current_finish, current_release, true};
+static const camber_buffer_ops current_ops = {current_reserve, current_begin, current_finish, current_release};
 
 camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh) {
     assert(!renderer || renderer->share.device == device);
     const bool in_gl = renderer && !renderer->raster;
-    const camber_buffer_ops *ops = in_gl && renderer->path->ops.is_copied ? &copied_ops : &current_ops;
-    const camber_status status = camber_mesh_create_on(device, in_gl ? ops : NULL, renderer, mesh);
-    if (status == CAMBER_OK)
-        (*mesh)->owner = renderer;
-    if (status == CAMBER_OK && in_gl && renderer->path->sharing == CAMBER_SHARING_COPY)
+    const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, mesh);
+    if (status != CAMBER_OK)
+        return status;
+    (*mesh)->owner = renderer;
+    (*mesh)->draws_points = renderer && renderer->raster;
+    if (in_gl && renderer->path->sharing == CAMBER_SHARING_COPY)
         (*mesh)->buffer_copies = 2;
-    return status;
+    return CAMBER_OK;
 }

@@ -56,4 +56,4 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
 }
 
 const camber_share_path camber_share_copy = {
-    CAMBER_SHARING_COPY, is_possible, {reserve, begin, finish, camber_share_release, true}};
+    CAMBER_SHARING_COPY, is_possible, {reserve, begin, finish, camber_share_release}};

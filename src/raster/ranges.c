@@ -1,19 +1,10 @@
-/* Lists which records of which parts are drawn. Device and twin both begin with this list. */
+/* Lists which slots of which parts are drawn. Device and twin both begin with this list. */
 #include "raster/raster.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define BUTT_CAP                                                                                                       \
-    ((uint32_t)CAMBER_KIND_CAP << CAMBER_JOIN_KIND_SHIFT | (uint32_t)CAMBER_END_BUTT << CAMBER_JOIN_END_SHIFT)
-
-/* A line that covers every tile. A fill is drawn as this line, in its order among the segments. */
-const camber_record camber_fill_records[CAMBER_FILL_RECORDS] = {
-    {-CAMBER_FILL_PX, 0.0f, BUTT_CAP, CAMBER_POINT_REAL | CAMBER_POINT_FIRST},
-    {CAMBER_FILL_PX, 0.0f, BUTT_CAP, CAMBER_POINT_REAL | CAMBER_POINT_LAST},
-};
-
-static camber_status add_range(camber_range_list *list, camber_record_range range) {
+static camber_status add_range(camber_range_list *list, camber_slot_range range) {
     if (!camber_grow(list->context, &list->ranges, &list->capacity, list->count + 1, sizeof *list->ranges))
         return CAMBER_ERROR_MEMORY;
     range.base = list->segment_count;
@@ -26,8 +17,8 @@ static camber_status add_range(camber_range_list *list, camber_record_range rang
     return CAMBER_OK;
 }
 
-/* Lists the records at which the brush changes within a range. polylines: NULL where it does not. */
-static camber_status add_changes(camber_range_list *list, const camber_record_range *range, const size_t *polylines) {
+/* Lists the slots at which the brush changes within a range. polylines: NULL where it does not. */
+static camber_status add_changes(camber_range_list *list, const camber_slot_range *range, const size_t *polylines) {
     camber_status status = CAMBER_OK;
     if (!polylines)
         return CAMBER_OK;
@@ -35,27 +26,27 @@ static camber_status add_changes(camber_range_list *list, const camber_record_ra
                      sizeof *list->changes))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < range->change_count && status == CAMBER_OK; i++) {
-        size_t record = 0;
-        status = camber_slot_starts_record(&list->starts, polylines[i], &record);
-        list->changes[list->change_count++] = (uint32_t)record;
+        size_t slot = 0;
+        status = camber_slot_finder_find(&list->finder, polylines[i], &slot);
+        list->changes[list->change_count++] = (uint32_t)slot;
     }
     return status;
 }
 
 /* Adds the polylines [from, to) of a part. range: what is known of it. polylines: where the brush changes within. */
-static camber_status add_polylines(camber_range_list *list, camber_record_range range, size_t from, size_t to,
+static camber_status add_polylines(camber_range_list *list, camber_slot_range range, size_t from, size_t to,
                                    const size_t *polylines) {
     camber_mesh_part *part = range.mesh->parts + range.part;
     const bool whole = from == part->first_polyline && to == part->first_polyline + part->polyline_count;
-    if (list->starts.part != part) {
-        camber_slot_starts_unmap(&list->starts); /* its part may have to go */
-        list->starts = camber_slot_starts_of(range.mesh, part);
+    if (list->finder.part != part) {
+        camber_slot_finder_close(&list->finder); /* its part may have to go */
+        list->finder = (camber_slot_finder){.mesh = range.mesh, .part = part};
     }
     camber_status status = whole && range.change_count == 0 ? CAMBER_OK : camber_part_ensure_made(range.mesh, part);
     if (status == CAMBER_OK)
-        status = camber_slot_starts_record(&list->starts, from, &range.first);
+        status = camber_slot_finder_find(&list->finder, from, &range.first);
     if (status == CAMBER_OK)
-        status = camber_slot_starts_record(&list->starts, to, &range.end);
+        status = camber_slot_finder_find(&list->finder, to, &range.end);
     if (status != CAMBER_OK || range.first >= range.end)
         return status;
     status = add_changes(list, &range, polylines);
@@ -68,26 +59,26 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
     size_t change = 0;
     camber_status status = CAMBER_OK;
     if (!input->mesh)
-        return add_range(list, (camber_record_range){.end = CAMBER_FILL_RECORDS, .first_row = input->first_row});
+        return add_range(list, (camber_slot_range){.end = 1, .first_row = input->first_row});
     for (size_t i = 0; i < input->mesh->part_count && status == CAMBER_OK; i++) {
         const camber_mesh_part *part = input->mesh->parts + i;
         const size_t end = part->first_polyline + part->polyline_count;
         const size_t from = input->first > part->first_polyline ? input->first : part->first_polyline;
         const size_t to = input->end < end ? input->end : end;
-        if (from >= to || part->index_count == 0)
+        if (from >= to || part->slot_count == 0)
             continue;
         while (change < input->change_count && changes[change] <= from)
             change++;
         const size_t before = change;
         while (change < input->change_count && changes[change] < to)
             change++;
-        const camber_record_range range = {.mesh = input->mesh,
-                                           .part = i,
-                                           .first_row = input->first_row,
-                                           .is_area = input->is_area,
-                                           .first_change = list->change_count,
-                                           .change_count = change - before,
-                                           .changes_before = before};
+        const camber_slot_range range = {.mesh = input->mesh,
+                                         .part = i,
+                                         .first_row = input->first_row,
+                                         .is_area = input->is_area,
+                                         .first_change = list->change_count,
+                                         .change_count = change - before,
+                                         .changes_before = before};
         status = add_polylines(list, range, from, to, range.change_count ? changes + before : NULL);
     }
     return status;
@@ -95,7 +86,7 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
 
 /* By their part, and each part's in the order in which they are drawn. */
 static int compare_ranges(const void *left, const void *right) {
-    const camber_record_range *a = left, *b = right;
+    const camber_slot_range *a = left, *b = right;
     const uintptr_t meshes[2] = {(uintptr_t)a->mesh, (uintptr_t)b->mesh};
     if (meshes[0] != meshes[1])
         return meshes[0] < meshes[1] ? -1 : 1;
@@ -110,7 +101,7 @@ camber_status camber_raster_list_ranges(camber_context *context, const camber_ra
     *list = (camber_range_list){.context = context};
     for (size_t r = 0; r < scene->input_count && status == CAMBER_OK; r++)
         status = add_input(list, scene, scene->inputs + r);
-    camber_slot_starts_unmap(&list->starts);
+    camber_slot_finder_close(&list->finder);
     for (size_t i = 0; i < list->count; i++)
         list->ranges[i].among_edges = list->ranges[i].base >= list->first_edge && list->ranges[i].base < list->end_edge;
     if (list->count > 1)
@@ -127,23 +118,20 @@ unsigned camber_raster_variant(const camber_raster_scene *scene) {
     return (scene->brush_ext ? CAMBER_RASTER_RICH : 0u) | (scene->pitched ? CAMBER_RASTER_PITCHED : 0u);
 }
 
-camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
+camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_slot_range *range,
                                            const camber_raster_area *area) {
     const camber_mesh *mesh = range->mesh;
     const camber_mesh_part *part = mesh ? mesh->parts + range->part : NULL;
-    const bool strips = !mesh || mesh->mesh_info.strips;
     return (camber_setup_args){
         .first = (uint32_t)range->first,
         .end = (uint32_t)range->end,
-        .record_count = (uint32_t)(!mesh    ? CAMBER_FILL_RECORDS
-                                   : strips ? part->record_count
-                                            : part->slot_count),
-        .stride = mesh && mesh->mesh_info.has_arc_length ? 2 : 1,
-        .strips = strips,
+        .slot_count = part ? (uint32_t)part->slot_count : 0,
+        .has_arc_length = mesh && mesh->mesh_info.has_arc_length,
         .linear = scene->linear,
-        .makes = range->is_area       ? CAMBER_MAKES_EDGES
-                 : range->among_edges ? CAMBER_MAKES_SEGMENTS_AMONG_EDGES
-                                      : CAMBER_MAKES_SEGMENTS,
+        .makes = !mesh            ? CAMBER_MAKES_FILL
+                 : range->is_area ? CAMBER_MAKES_EDGES
+                                  : CAMBER_MAKES_SEGMENTS,
+        .among_edges = range->among_edges,
         .base = (uint32_t)range->base,
         .first_row = (uint32_t)range->first_row,
         .left = (float)area->x,

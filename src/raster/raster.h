@@ -1,4 +1,4 @@
-/* The OpenCL rasterizer: it draws the records of meshes by the stages setup -> bin_count -> bin_scan -> bin_scatter ->
+/* The OpenCL rasterizer: it draws the points of meshes by the stages setup -> bin_count -> bin_scan -> bin_scatter ->
  * wind (where there are areas) -> rasterize. The CPU twin makes the same bytes.
  *
  * Input: a scene, which lists polylines of meshes with tables of rows and brushes. Output: the pixels of an area. The
@@ -108,33 +108,33 @@ typedef struct camber_raster_stages {
 
 /* Reads the stages of the area that was drawn last: the last slice of its last band. */
 camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_stages *stages);
-/* Runs the CPU twin on the meshes' records. */
+/* Runs the CPU twin on the meshes' points. */
 camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,
                                     const camber_raster_area *area, camber_raster_stages *stages);
 void camber_raster_stages_free(camber_context *context, camber_raster_stages *stages);
 
 /* ---- Shared by device and twin ---- */
 
-/* Records of one part that are drawn by one table of rows. */
-typedef struct camber_record_range {
-    camber_mesh *mesh; /* NULL: the records of a fill */
+/* Slots of one part that are drawn by one table of rows. */
+typedef struct camber_slot_range {
+    camber_mesh *mesh; /* NULL: a fill, which has one slot */
     size_t part;
-    size_t first, end; /* the records [first, end) of the part */
+    size_t first, end; /* the slots [first, end) of the part */
     size_t base;       /* where its segments begin, a multiple of 16 */
     size_t first_row;
     bool is_area;
     bool among_edges;                  /* there are edges of rings before and behind: see segment.h */
     size_t first_change, change_count; /* of the list; those of the same part */
     size_t changes_before;             /* of the same input */
-} camber_record_range;
+} camber_slot_range;
 
 /* The ranges of a scene, and how many segments they take. */
 typedef struct camber_range_list {
     camber_context *context;
-    camber_record_range *ranges;
-    uint32_t *changes; /* of brushes: records of a part, those of a range ascending */
+    camber_slot_range *ranges;
+    uint32_t *changes; /* of brushes: slots of a part, those of a range ascending */
     size_t count, capacity, segment_count, change_count, change_capacity;
-    camber_slot_starts starts;   /* of the part that was looked into last */
+    camber_slot_finder finder;   /* of the part that was looked into last */
     size_t first_edge, end_edge; /* no edge of a ring lies outside these segments; 0 and 0: there are no areas */
 } camber_range_list;
 
@@ -145,10 +145,8 @@ void camber_raster_free_ranges(camber_range_list *list);
 /* Moves the edges, [first_edge, end_edge) at most, to the segments, and frees what held them. */
 void camber_raster_stages_show_edges(camber_context *context, camber_raster_stages *stages, size_t first_edge,
                                      size_t end_edge);
-camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
+camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_slot_range *range,
                                            const camber_raster_area *area);
-enum { CAMBER_FILL_RECORDS = 2 };
-extern const camber_record camber_fill_records[CAMBER_FILL_RECORDS];
 static inline uint32_t camber_raster_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
 }

@@ -71,8 +71,8 @@ static bool is_pitched(const camber_raster *raster) {
     return raster->variant & CAMBER_RASTER_PITCHED;
 }
 
-/* Cuts a range to its records in the slice. The first of them begins a work-item, as the range's first does. */
-static bool cut_range(const camber_raster *raster, camber_record_range *range) {
+/* Cuts a range to its slots in the slice. The first of them begins a work-item, as the range's first does. */
+static bool cut_range(const camber_raster *raster, camber_slot_range *range) {
     const size_t from = raster->first_segment, to = from + raster->segment_count, base = range->base;
     const size_t before = from > base ? from - base : 0, past = to > base ? to - base : 0;
     if (range->end - range->first > past)
@@ -82,32 +82,32 @@ static bool cut_range(const camber_raster *raster, camber_record_range *range) {
     return range->first < range->end;
 }
 
-/* Starts setup for ranges whose records lie in one buffer, by so many work-items. */
+/* Starts setup for ranges of one part by so many work-items. part: NULL for fills, which have no points. */
 static camber_status set_up(camber_raster *raster, const camber_setup_args *args, cl_uint count, size_t items,
-                            cl_mem records) {
+                            const camber_mesh_part *part) {
     const camber_status status = camber_raster_put(raster, BUFFER_SETUPS, args, count * sizeof *args);
-    const camber_kernel_arg arguments[] = {CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),   BUFFER(BUFFER_SEGMENTS),
-                                           BUFFER(BUFFER_BOXES),       BUFFER(BUFFER_SETUPS), CAMBER_ARG_VALUE(count),
-                                           BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES), BUFFER(BUFFER_CHANGES),
+    cl_mem nothing = raster->buffers[BUFFER_ROWS];
+    const camber_kernel_arg arguments[] = {CAMBER_ARG_BUFFER(part ? part->x : nothing),
+                                           CAMBER_ARG_BUFFER(part ? part->y : nothing),
+                                           CAMBER_ARG_BUFFER(part ? part->info : nothing),
+                                           CAMBER_ARG_BUFFER(part ? part->joins : nothing),
+                                           CAMBER_ARG_BUFFER(part ? part->arc_lengths : nothing),
+                                           BUFFER(BUFFER_ROWS),
+                                           BUFFER(BUFFER_SEGMENTS),
+                                           BUFFER(BUFFER_BOXES),
+                                           BUFFER(BUFFER_SETUPS),
+                                           CAMBER_ARG_VALUE(count),
+                                           BUFFER(BUFFER_ARC_LENGTHS),
+                                           BUFFER(BUFFER_PLANES),
+                                           BUFFER(BUFFER_CHANGES),
                                            BUFFER(BUFFER_EDGES)};
     return status == CAMBER_OK ? run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments, items)
                                : status;
 }
 
-/* The same for a part of a mesh that GL draws, too: it has the buffers back when setup is done. */
-static camber_status set_up_shared(camber_raster *raster, const camber_setup_args *args, cl_uint count, size_t items,
-                                   camber_mesh *mesh, camber_mesh_part *part) {
-    camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh));
-    if (status != CAMBER_OK)
-        return status;
-    status = set_up(raster, args, count, items, part->buffers[CAMBER_BUFFER_RECORDS].mem);
-    const camber_status settled = settle(raster);
-    return camber_part_finish(mesh, part, false, status == CAMBER_OK ? settled : status);
-}
-
 /* Makes the segments that ranges of one part have in the slice, all at once, as each launch costs time. */
 static camber_status set_up_part(camber_raster *raster, const listed_scene *p, size_t first, size_t end) {
-    const size_t an_item = CAMBER_SETUP_RECORDS(raster->device->lanes);
+    const size_t an_item = CAMBER_SETUP_SLOTS(raster->device->lanes);
     camber_mesh *mesh = p->list.ranges[first].mesh;
     camber_mesh_part *part = mesh ? mesh->parts + p->list.ranges[first].part : NULL;
     camber_setup_args *args = raster->setups + first;
@@ -115,25 +115,22 @@ static camber_status set_up_part(camber_raster *raster, const listed_scene *p, s
     size_t items = 0;
     cl_uint count = 0;
     for (size_t i = first; i < end && status == CAMBER_OK; i++) {
-        camber_record_range range = p->list.ranges[i];
+        camber_slot_range range = p->list.ranges[i];
         if (!cut_range(raster, &range))
             continue;
         if (count == 0 && part)
-            status = camber_part_ensure_made(mesh, part);
+            status = camber_part_ensure_points(mesh, part);
         args[count] = camber_raster_setup_args(p->scene, &range, &raster->band);
         args[count++].first_item = (uint32_t)items;
         items += (range.end - range.first + an_item - 1) / an_item;
     }
     if (status != CAMBER_OK || count == 0)
         return status;
-    if (part && !mesh->ops->is_copied)
-        return set_up_shared(raster, args, count, items, mesh, part);
-    return set_up(raster, args, count, items,
-                  part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL]);
+    return set_up(raster, args, count, items, part);
 }
 
 static camber_status make_segments(camber_raster *raster, const listed_scene *p) {
-    const camber_record_range *ranges = p->list.ranges;
+    const camber_slot_range *ranges = p->list.ranges;
     camber_status status = camber_grow(raster->device->context, &raster->setups, &raster->setup_capacity, p->list.count,
                                        sizeof *raster->setups)
                                ? CAMBER_OK
@@ -452,8 +449,6 @@ static camber_status prepare(camber_raster *raster, const listed_scene *p) {
     const size_t segments = wanted < most ? wanted : most;
     camber_status status = camber_raster_put(raster, BUFFER_ROWS, scene->rows,
                                              scene->row_count * CAMBER_RASTER_ROW_WORDS * sizeof *scene->rows);
-    if (status == CAMBER_OK)
-        status = camber_raster_put(raster, BUFFER_FILL, camber_fill_records, sizeof camber_fill_records);
     if (status == CAMBER_OK)
         status = camber_raster_put(raster, BUFFER_BRUSHES, scene->brushes, scene->brush_count * sizeof *scene->brushes);
     if (status == CAMBER_OK && list->change_count)

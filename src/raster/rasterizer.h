@@ -5,12 +5,11 @@
 #include "raster/raster.h"
 
 enum {
-    BUFFER_FILL, /* camber_fill_records */
     BUFFER_ROWS,
     BUFFER_BRUSHES,
     BUFFER_BRUSH_EXT,
     BUFFER_SIDE_TABLE,
-    BUFFER_CHANGES, /* of brushes, as records */
+    BUFFER_CHANGES, /* of brushes, as slots */
     BUFFER_SETUPS,  /* of the ranges of a part */
     BUFFER_SEGMENTS,
     BUFFER_EDGES, /* of rings */

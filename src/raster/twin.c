@@ -10,27 +10,52 @@
 
 /* ---- Segments ---- */
 
-/* The records of a part, as the device has them: padding is sentinels. */
-typedef struct part_records {
-    camber_record *records;
-    camber_arc_length *arc_lengths; /* NULL: none */
-} part_records;
-
-/* A record's number; outside the part, that of its nearest record. */
-static size_t record_number(int64_t i, const camber_setup_args *r) {
-    const int64_t last = (int64_t)r->record_count - 1;
+/* A word's index; outside the part, that of its nearest word. */
+static size_t word_at(int64_t i, const camber_setup_args *r) {
+    const int64_t last = (int64_t)r->slot_count + 1;
     return (size_t)(i < 0 ? 0 : i > last ? last : i);
 }
 
-static bool ends_segment(const camber_record *b, const camber_setup_args *r) {
-    const uint32_t starts = CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START;
-    const uint32_t kind = camber_join_kind(b->join);
-    if (!(b->last & CAMBER_POINT_REAL) || kind == CAMBER_KIND_SENTINEL)
-        return false;
-    return r->strips ? !(b->last & starts) : !(b->last & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT;
+/* A slot's number; outside the part, that of its nearest slot. */
+static size_t slot_at(int64_t slot, const camber_setup_args *r) {
+    const int64_t last = (int64_t)r->slot_count - 1;
+    return (size_t)(slot < 0 ? 0 : slot > last ? last : slot);
 }
 
-/* Writes how far along its line a segment lies, by the arc lengths of its two records. */
+/* A point with its join word and its info, as setup reads it. */
+typedef struct point {
+    float x, y;
+    uint32_t join, info;
+} point;
+
+static point point_at(const camber_part_points *part, int64_t word, const camber_setup_args *r) {
+    const size_t i = word_at(word, r);
+    return (point){part->x[i], part->y[i], part->joins[i], part->info[i]};
+}
+
+static bool ends_segment(const point *b) {
+    const uint32_t kind = camber_join_kind(b->join);
+    return b->info & CAMBER_POINT_REAL && kind != CAMBER_KIND_SENTINEL &&
+           (!(b->info & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT);
+}
+
+/* The point that may end a segment in a slot, and the two before it. */
+typedef struct three_points {
+    point b, before, first;
+    bool ends; /* b ends one */
+} three_points;
+
+static three_points points_of(const camber_part_points *part, const camber_setup_args *r, int64_t slot) {
+    if (!part->x) /* a fill has no points */
+        return (three_points){.b = {CAMBER_FILL_PX, 0.0f, CAMBER_FILL_JOIN, 0},
+                              .before = {-CAMBER_FILL_PX, 0.0f, CAMBER_FILL_JOIN, 0},
+                              .ends = slot == 0};
+    three_points p = {point_at(part, slot + 1, r), point_at(part, slot, r), point_at(part, slot - 1, r), false};
+    p.ends = slot < r->end && ends_segment(&p.b);
+    return p;
+}
+
+/* Writes how far along its line a segment lies, by the arc lengths of its two points. */
 static void put_arc_length(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_segment *s,
                            float arc_length[CAMBER_SEGMENT_ARC_LENGTHS]) {
     memset(arc_length, 0, CAMBER_SEGMENT_ARC_LENGTHS * sizeof *arc_length);
@@ -59,10 +84,10 @@ static void put_plane(const camber_segment *s, const camber_plane *p, float *mad
     memcpy(made, words, sizeof words);
 }
 
-/* The brush of the edge that ends with a record, by that of its row. */
-static float brush_of(const camber_twin *t, const camber_setup_args *r, int64_t i, float of_row) {
+/* The brush of the edge that ends in a slot, by that of its row. */
+static float brush_of(const camber_twin *t, const camber_setup_args *r, int64_t slot, float of_row) {
     const uint32_t *changes = r->change_count ? t->changes + r->first_change : NULL;
-    const uint32_t passed = r->changes_before + camber_changes_until(changes, r->change_count, (uint32_t)i);
+    const uint32_t passed = r->changes_before + camber_changes_until(changes, r->change_count, (uint32_t)slot);
     return camber_float_of(camber_bits_of(of_row) + passed);
 }
 
@@ -72,18 +97,15 @@ static void put_edge(const camber_segment *s, float brush, float *edges, size_t 
     edges[camber_edge_brush(which)] = brush;
 }
 
-/* Writes the words of the segment, or the edge, that ends with a record. Its box says whether there is one. */
-static void put_segment(const camber_twin *t, const part_records *part, const camber_setup_args *r, int64_t i,
+/* Writes the words of the segment, or the edge, that ends in a slot. Its box says whether there is one. */
+static void put_segment(const camber_twin *t, const camber_part_points *part, const camber_setup_args *r, int64_t slot,
                         size_t segment) {
-    const camber_record *records = part->records ? part->records : camber_fill_records;
-    const camber_record b = records[record_number(i, r)], before = records[record_number(i - 1, r)];
-    const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
-    const bool ends = i < r->end && ends_segment(&b, r);
-    const camber_record a = is_dot ? b : before;
-    const bool again = before.last & CAMBER_RECORD_START && camber_join_kind(before.join) == CAMBER_KIND_TIGHT;
-    const camber_record p = records[record_number(again ? i - 3 : i - 2, r)];
+    const three_points points = points_of(part, r, slot);
+    const point b = points.b, p = points.first;
+    const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT, ends = points.ends;
+    const point a = is_dot ? b : points.before;
     const float *row =
-        t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
+        t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.info >> CAMBER_POINT_ROW_SHIFT : 0));
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
     camber_segment s;
     bool drawn = ends && row[0] >= 0.0f;
@@ -91,13 +113,13 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
         camber_edge_segment(a.x + x, a.y + y, b.x + x, b.y + y, &s);
         const camber_segment flat = s;
         drawn = drawn && (!t->scene->pitched || camber_pitch_edge_of(r->eye, &flat, &s));
-        put_edge(&s, brush_of(t, r, i, row[3]), t->stages->edges, segment);
+        put_edge(&s, brush_of(t, r, slot, row[3]), t->stages->edges, segment);
         t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
         return;
     }
     camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear, &s);
     if (t->stages->arc_lengths)
-        put_arc_length(part->arc_lengths, record_number(is_dot ? i : i - 1, r), record_number(i, r), &s,
+        put_arc_length(part->arc_lengths, slot_at(is_dot ? slot : slot - 1, r), slot_at(slot, r), &s,
                        t->stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * segment);
     if (t->stages->planes) {
         camber_segment footprint;
@@ -109,49 +131,23 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
         }
     }
     put_words(&s, row[3], t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
-    if (r->makes == CAMBER_MAKES_SEGMENTS_AMONG_EDGES && t->stages->edges)
+    if (r->among_edges && t->stages->edges)
         t->stages->edges[camber_edge_brush(segment)] = camber_float_of(CAMBER_NO_EDGE);
     t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
 }
 
-static void free_part(camber_context *context, part_records *part) {
-    camber_free(context, part->records);
-    camber_free(context, part->arc_lengths);
-}
-
-/* Reads the records of a part from the device. */
-static camber_status read_part(camber_mesh *mesh, size_t which, part_records *part) {
-    camber_context *context = mesh->device->context;
-    camber_mesh_data data;
-    const camber_status status = camber_mesh_read(mesh, &data);
-    if (status != CAMBER_OK)
-        return status;
-    const camber_mesh_part *from = mesh->parts + which;
-    const size_t count = mesh->mesh_info.strips ? from->record_count : from->slot_count;
-    const size_t kept = from->record_count < count ? from->record_count : count;
-    const bool has_arc_length = mesh->mesh_info.has_arc_length;
-    part_records made = {camber_alloc_zero(context, count, sizeof *made.records),
-                         has_arc_length ? camber_alloc_zero(context, count, sizeof *made.arc_lengths) : NULL};
-    if (made.records)
-        memcpy(made.records, data.records + from->first_record, kept * sizeof *made.records);
-    if (made.arc_lengths)
-        memcpy(made.arc_lengths, data.arc_lengths + from->first_record, kept * sizeof *made.arc_lengths);
-    camber_mesh_data_destroy(&data);
-    *part = made;
-    return made.records && (made.arc_lengths || !has_arc_length) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
-}
-
 static camber_status make_segments(const camber_twin *t, const camber_range_list *list) {
-    const camber_record_range *ranges = list->ranges;
+    const camber_slot_range *ranges = list->ranges;
     camber_status status = CAMBER_OK;
     for (size_t p = 0; p < list->count && status == CAMBER_OK; p++) {
         const camber_setup_args r = camber_raster_setup_args(t->scene, ranges + p, t->area);
-        part_records part = {0};
-        status = ranges[p].mesh ? read_part(ranges[p].mesh, ranges[p].part, &part) : CAMBER_OK;
+        camber_part_points part = {0};
+        if (ranges[p].mesh)
+            status = camber_part_read_points(ranges[p].mesh, ranges[p].mesh->parts + ranges[p].part, &part);
         const size_t count = (ranges[p].end - ranges[p].first + 15) / 16 * 16;
         for (size_t i = 0; i < count && status == CAMBER_OK; i++)
             put_segment(t, &part, &r, (int64_t)(ranges[p].first + i), ranges[p].base + i);
-        free_part(t->context, &part);
+        camber_part_points_free(t->context, &part);
     }
     return status;
 }

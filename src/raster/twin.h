@@ -9,7 +9,7 @@ typedef struct camber_twin {
     const camber_raster_scene *scene;
     const camber_raster_area *area;
     camber_raster_stages *stages;
-    const uint32_t *changes;     /* of brushes: records */
+    const uint32_t *changes;     /* of brushes: slots */
     uint32_t columns, rows;      /* tiles */
     size_t first_edge, end_edge; /* no edge of a ring lies outside these segments */
 } camber_twin;

@@ -91,7 +91,9 @@ camber_status camber_mesh_count_joins(camber_mesh *mesh) {
     camber_status status = camber_check_process(mesh->device->context);
     size_t segments = 0;
     for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++) {
-        status = camber_part_ensure_made(mesh, mesh->parts + i);
+        status = camber_part_ensure_counted(mesh, mesh->parts + i);
+        if (status == CAMBER_OK && mesh->draws_points)
+            status = camber_part_number(mesh, mesh->parts + i, &counts);
         if (status == CAMBER_OK)
             status = camber_part_count_joins(mesh, mesh->parts + i, &counts, &segments);
     }
@@ -110,7 +112,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
         i++;
     uint64_t first = 0;
     camber_slot_starts starts = camber_slot_starts_of(mesh, mesh->parts + i);
-    camber_status status = mesh->part_count ? camber_part_ensure_made(mesh, mesh->parts + i) : CAMBER_OK;
+    camber_status status = mesh->part_count ? camber_part_ensure_counted(mesh, mesh->parts + i) : CAMBER_OK;
     if (status == CAMBER_OK && mesh->part_count)
         status = camber_slot_starts_index(&starts, polyline, &first);
     camber_slot_starts_unmap(&starts);
@@ -162,7 +164,7 @@ static camber_status read_records(const camber_mesh *mesh, const camber_mesh_par
 /* Reads a part's records and corners behind those of the parts before, and numbers the corners' records on. */
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
-    camber_status status = camber_part_ensure_made(mesh, part);
+    camber_status status = camber_part_ensure_output(mesh, part);
     if (status == CAMBER_OK)
         status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
     if (status != CAMBER_OK)

@@ -2,12 +2,14 @@
  * file.
  *
  *     polylines ------------- camber_part_upload ---+
- *                                                   +-> slots --[offset]--> classify -> scan -> emit -> output buffers
- *     network -- sections -- camber_part_project ---+
+ *                                                   +-> slots --[offset]--> classify -> points
+ *     network -- sections -- camber_part_project ---+                                    |  for GL, and for readers
+ *                                                                                        +-> scan -> emit -> output
  *
- * A mesh is a list of parts, tessellated one after the other (tessellate.c). A part has input buffers (slots and what
- * stages find out about them) and output buffers (records, and indices unless it is strips). Where memory is bounded, a
- * part may lose its buffers at any time (memory.c), and is made again when somebody needs it. */
+ * A mesh is a list of parts, tessellated one after the other (tessellate.c). A part has input buffers (points, which
+ * are slots with their join words, and what stages find out about them) and output buffers (records, and indices unless
+ * it is strips). If memory is bounded, a part may lose its buffers at any time (memory.c), and is made again when
+ * somebody needs it. */
 #ifndef CAMBER_TESS_MESH_H
 #define CAMBER_TESS_MESH_H
 
@@ -27,7 +29,6 @@ typedef struct camber_source_line_buffers {
     cl_mem x, y, info, clips, counts, places;
     cl_mem lengths, arc_lengths; /* only with arc lengths */
     size_t slot_capacity;
-    size_t made_count; /* slots of the offset lines, without padding */
 } camber_source_line_buffers;
 
 /* Consecutive polylines that are tessellated by themselves, with vertices numbered from 0. Most meshes have one part.
@@ -38,6 +39,7 @@ typedef struct camber_mesh_part {
     size_t first_polyline, polyline_count;
     size_t first_slot, given_count; /* slots before the offset stages; given_count is padded to whole blocks */
     size_t slot_count;              /* slots that classify reads: those given, or those of the offset lines */
+    size_t used_slots;              /* of those, without the padding; kept while the part has no buffers */
     /* For a network: the part's section, its points, and how many slots come before each chunk of these. */
     size_t section, first_point, end_point;
     uint32_t *chunk_bases; /* one for each chunk, and one behind the last */
@@ -50,7 +52,10 @@ typedef struct camber_mesh_part {
     camber_source_line_buffers source_line;
     uint64_t *host_bases; /* first vertex and first index of each block, then the totals */
     size_t base_capacity;
-    bool made; /* its buffers hold the output of the last tessellation */
+    bool made; /* its buffers hold the points of the last tessellation, and the output if the mesh is drawn from it */
+    /* Which method's join words joins has, whether they were scanned, and whether the output was emitted. */
+    camber_method classified;
+    bool scanned, emitted;
     uint64_t held_bytes;
     size_t record_count, vertex_count, index_count;
     /* How many the parts before have: where this one begins in the mesh. */
@@ -66,6 +71,7 @@ struct camber_mesh {
     camber_mesh *next;      /* in the device's list */
     uint64_t held_bytes;    /* without its parts and sections */
     size_t remade_parts;    /* since the last tessellation */
+    bool draws_points;      /* its renderer reads points: output is made only if somebody asks for it */
     bool is_full; /* since the last tessellation a part was evicted, or could not be made for lack of memory */
 
     /* The source of the parts; NULL for a network. The mesh holds it where parts may have to be made again, or
@@ -105,8 +111,17 @@ enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
-/* Makes a part again unless its buffers hold its output. part points into mesh->parts. Other parts may be evicted. */
+/* Makes a part again unless its buffers hold what the mesh is drawn from. part points into mesh->parts. Other parts may
+ * be evicted. */
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
+/* Makes sure, too, that its join words are those of strips, which the rasterizer reads whatever the method. */
+camber_status camber_part_ensure_points(camber_mesh *mesh, camber_mesh_part *part);
+/* Makes sure, too, that they are those of the method, and that they are scanned: the part's counts are known. */
+camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *part);
+/* Makes sure, too, that its output is in its buffers. */
+camber_status camber_part_ensure_output(camber_mesh *mesh, camber_mesh_part *part);
+/* Numbers the output of a part that was counted after that of the parts before it, which counts has, and adds it. */
+camber_status camber_part_number(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_info *counts);
 /* The first slot of a polyline in its part. One just behind the part's last gives the end of its slots. places: those
  * of the slots of offset lines, mapped; not read where the mesh has no offsets, nor for an end. */
 size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places, size_t polyline);
@@ -121,21 +136,37 @@ static inline size_t camber_buffer_count(const camber_mesh *mesh) {
 static inline size_t camber_record_bytes(const camber_mesh_info *info) {
     return (info->has_arc_length ? 2 : 1) * sizeof(camber_record);
 }
+/* The size of a point on the device, and of its arc length. */
+static inline size_t camber_slot_bytes(const camber_mesh_info *info) {
+    return 4 * sizeof(uint32_t) + (info->has_arc_length ? sizeof(camber_arc_length) : 0);
+}
 /* Finds the first index of a polyline among those of the whole mesh, as camber_mesh_read gives them. Makes the
  * polyline's part if it is gone. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
-/* slot_starts.c: where the slots and the output of a part's polylines begin, from what classify and scan left. */
-typedef struct camber_slot_starts {
+/* slot_starts.c: where the slots of a part's polylines begin. Opened by naming mesh and part. */
+typedef struct camber_slot_finder {
     const camber_mesh *mesh;
-    const camber_mesh_part *part;             /* which has been scanned */
-    cl_uint *joins, *info, *offsets, *places; /* mapped; NULL: nobody asked yet */
-    size_t at;                                /* the slot that was asked for last, and sum for it */
+    const camber_mesh_part *part; /* which is made */
+    cl_uint *places;              /* mapped; NULL: nobody asked yet, or the mesh has no offsets */
+} camber_slot_finder;
+
+/* The first slot of a polyline. One just after the part's last gives the end. Offset lines make it wait for the device,
+ * but for the part's first polyline and its end; then the part must not lose its buffers until the finder is closed. */
+camber_status camber_slot_finder_find(camber_slot_finder *finder, size_t polyline, size_t *slot);
+/* Forgets the part. May be called of none. */
+void camber_slot_finder_close(camber_slot_finder *finder);
+
+/* Where the output of a part's polylines begins, too, from what classify and scan left. */
+typedef struct camber_slot_starts {
+    camber_slot_finder finder;       /* its part has been scanned */
+    cl_uint *joins, *info, *offsets; /* mapped; NULL: nobody asked yet */
+    size_t at;                       /* the slot that was asked for last, and sum for it */
     uint32_t sum;
 } camber_slot_starts;
 
 static inline camber_slot_starts camber_slot_starts_of(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return (camber_slot_starts){.mesh = mesh, .part = part};
+    return (camber_slot_starts){.finder = {.mesh = mesh, .part = part}};
 }
 /* Maps the whole part, unless it is mapped: that waits for the device, and is for many questions. Until it is unmapped
  * the part must not lose its buffers. */
@@ -151,6 +182,17 @@ size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline
  * for its first polyline, nor for its end. */
 camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyline, uint64_t *index);
 camber_status camber_slot_starts_record(camber_slot_starts *starts, size_t polyline, size_t *record);
+
+/* stages.c: a part's points in host memory: words of its slots, and of a sentinel before and after them. */
+typedef struct camber_part_points {
+    float *x, *y;
+    uint32_t *info, *joins;
+    camber_arc_length *arc_lengths; /* a slot. NULL: the mesh has none */
+} camber_part_points;
+
+/* Makes the part, and reads its points. camber_part_points_free frees them. */
+camber_status camber_part_read_points(camber_mesh *mesh, camber_mesh_part *part, camber_part_points *points);
+void camber_part_points_free(camber_context *context, camber_part_points *points);
 
 /* Adds the time that a command took to the stage's time in the mesh's info, and releases its event. */
 void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event);

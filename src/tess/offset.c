@@ -211,8 +211,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     camber_program *program = NULL;
     uint64_t slots = 0;
     /* The part's last output is invalid from here on, also where no slot comes out now. */
-    part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
-    part->source_line.made_count = 0;
+    part->slot_count = part->used_slots = part->record_count = part->vertex_count = part->index_count = 0;
     camber_status status = camber_device_offset_program(mesh->device, mesh->mesh_info.has_arc_length, &program);
     if (status == CAMBER_OK)
         status = camber_launch_kernel(
@@ -228,7 +227,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     if (status == CAMBER_OK)
         status = camber_part_check_slots(mesh, part, padded, fits);
     if (status == CAMBER_OK && *fits && slots > 0) {
-        part->source_line.made_count = (size_t)slots;
+        part->used_slots = (size_t)slots;
         status = camber_part_reserve_with_spare(mesh, part, (size_t)padded);
         if (status == CAMBER_OK)
             status = run_emit(mesh, part, program, events + 2);

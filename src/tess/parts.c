@@ -213,6 +213,7 @@ static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_
     part->polyline_count = end - first;
     part->first_slot = mesh->held ? 0 : mesh->first_slots[first];
     part->given_count = part->slot_count = (slots + block - 1) / block * block;
+    part->used_slots = slots;
     part->record_count = part->vertex_count = part->index_count = 0;
     part->uploaded = part->made = false;
     if (mesh->held)
@@ -228,7 +229,7 @@ size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, c
     if (!mesh->has_offsets)
         return given;
     const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
-    return is_behind ? part->source_line.made_count : places[given];
+    return is_behind ? part->used_slots : places[given];
 }
 
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
@@ -385,6 +386,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_polylines *polylines = mesh->polylines;
     part->slot_count = part->given_count;
+    part->used_slots = mesh->first_slots[part->first_polyline + part->polyline_count] - part->first_slot;
     if (part->given_count == 0 || (part->uploaded && has_upload_buffers(mesh, part)))
         return CAMBER_OK;
     const camber_source_line_buffers *source_line = &part->source_line;
@@ -515,13 +517,13 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
 
 /* Finds how much a part has before a polyline, from what the scan left. */
 static camber_status size_before(camber_slot_starts *starts, size_t polyline, part_size *size) {
-    const camber_mesh *mesh = starts->mesh;
+    const camber_mesh *mesh = starts->finder.mesh;
     uint64_t indices = 0;
     const camber_status status = camber_slot_starts_index(starts, polyline, &indices);
     if (status != CAMBER_OK)
         return status;
     const size_t slot = camber_slot_starts_slot(starts, polyline);
-    const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, starts->part, polyline) : 0;
+    const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, starts->finder.part, polyline) : 0;
     *size = (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
     return CAMBER_OK;
 }

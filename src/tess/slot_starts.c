@@ -20,9 +20,44 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, cl_uint *words) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, words, 0, NULL, NULL);
 }
 
+static camber_status map_places(camber_slot_finder *finder) {
+    const camber_mesh *mesh = finder->mesh;
+    camber_status status = CAMBER_OK;
+    if (mesh->has_offsets && !finder->places)
+        finder->places = map(mesh, finder->part->source_line.places, finder->part->given_count, &status);
+    return status;
+}
+
+/* Whether a polyline begins where its part does. */
+static bool is_first(const camber_slot_finder *finder, size_t polyline) {
+    return polyline <= finder->part->first_polyline || finder->part->slot_count == 0;
+}
+
+/* Whether it is the one after the part's last. */
+static bool is_end(const camber_slot_finder *finder, size_t polyline) {
+    return polyline >= finder->part->first_polyline + finder->part->polyline_count;
+}
+
+camber_status camber_slot_finder_find(camber_slot_finder *finder, size_t polyline, size_t *slot) {
+    if (is_first(finder, polyline) || is_end(finder, polyline)) {
+        *slot = is_first(finder, polyline) ? 0 : finder->part->used_slots;
+        return CAMBER_OK;
+    }
+    const camber_status status = map_places(finder);
+    if (status == CAMBER_OK)
+        *slot = camber_part_slot(finder->mesh, finder->part, finder->places, polyline);
+    return status;
+}
+
+void camber_slot_finder_close(camber_slot_finder *finder) {
+    if (finder->part)
+        unmap(finder->mesh, finder->part->source_line.places, finder->places);
+    *finder = (camber_slot_finder){0};
+}
+
 camber_status camber_slot_starts_map(camber_slot_starts *starts) {
-    const camber_mesh *mesh = starts->mesh;
-    const camber_mesh_part *part = starts->part;
+    const camber_mesh *mesh = starts->finder.mesh;
+    const camber_mesh_part *part = starts->finder.part;
     const size_t slots = part->slot_count, chunk_slots = mesh->device->point_chunk;
     camber_status status = CAMBER_OK;
     if (slots == 0 || starts->joins)
@@ -31,26 +66,26 @@ camber_status camber_slot_starts_map(camber_slot_starts *starts) {
     starts->joins = map(mesh, part->joins, slots + 1, &status);
     starts->info = map(mesh, part->info, slots + 1, &status);
     starts->offsets = map(mesh, part->offsets, (slots - 1) / chunk_slots + 1, &status);
-    if (mesh->has_offsets)
-        starts->places = map(mesh, part->source_line.places, part->given_count, &status);
+    if (status == CAMBER_OK)
+        status = map_places(&starts->finder);
     if (status != CAMBER_OK)
         camber_slot_starts_unmap(starts);
     return status;
 }
 
 void camber_slot_starts_unmap(camber_slot_starts *starts) {
-    const camber_mesh_part *part = starts->part;
+    const camber_mesh_part *part = starts->finder.part;
     if (!part)
         return;
-    unmap(starts->mesh, part->source_line.places, starts->places);
-    unmap(starts->mesh, part->offsets, starts->offsets);
-    unmap(starts->mesh, part->info, starts->info);
-    unmap(starts->mesh, part->joins, starts->joins);
+    unmap(starts->finder.mesh, part->offsets, starts->offsets);
+    unmap(starts->finder.mesh, part->info, starts->info);
+    unmap(starts->finder.mesh, part->joins, starts->joins);
+    camber_slot_finder_close(&starts->finder);
     *starts = (camber_slot_starts){0};
 }
 
 uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot) {
-    const size_t chunk_slots = starts->mesh->device->point_chunk, chunk = slot / chunk_slots;
+    const size_t chunk_slots = starts->finder.mesh->device->point_chunk, chunk = slot / chunk_slots;
     if (slot < starts->at || chunk * chunk_slots > starts->at) {
         starts->at = chunk * chunk_slots;
         starts->sum = starts->offsets[chunk];
@@ -58,28 +93,19 @@ uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot) {
     for (; starts->at < slot; starts->at++) {
         const size_t word = starts->at + 1;
         starts->sum += camber_join_counts(starts->joins[word], starts->joins[word - 1], starts->info[word],
-                                          (camber_u32)starts->mesh->mesh_info.method);
+                                          (camber_u32)starts->finder.mesh->mesh_info.method);
     }
     return starts->sum;
 }
 
 size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline) {
-    return camber_part_slot(starts->mesh, starts->part, starts->places, polyline);
-}
-
-/* Whether a polyline begins where its part does, or is the one behind its last. */
-static bool is_first(const camber_slot_starts *starts, size_t polyline) {
-    return polyline <= starts->part->first_polyline || starts->part->slot_count == 0;
-}
-
-static bool is_end(const camber_slot_starts *starts, size_t polyline) {
-    return polyline >= starts->part->first_polyline + starts->part->polyline_count;
+    return camber_part_slot(starts->finder.mesh, starts->finder.part, starts->finder.places, polyline);
 }
 
 camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyline, uint64_t *index) {
-    const camber_mesh_part *part = starts->part;
-    if (is_first(starts, polyline) || is_end(starts, polyline)) {
-        *index = is_first(starts, polyline) ? 0 : part->index_count;
+    const camber_mesh_part *part = starts->finder.part;
+    if (is_first(&starts->finder, polyline) || is_end(&starts->finder, polyline)) {
+        *index = is_first(&starts->finder, polyline) ? 0 : part->index_count;
         return CAMBER_OK;
     }
     const camber_status status = camber_slot_starts_map(starts);
@@ -87,15 +113,15 @@ camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyli
         return status;
     const size_t slot = camber_slot_starts_slot(starts, polyline);
     const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
-    *index = part->host_bases[2 * (slot / starts->mesh->device->block) + 1] + (packed >> 16);
+    *index = part->host_bases[2 * (slot / starts->finder.mesh->device->block) + 1] + (packed >> 16);
     return CAMBER_OK;
 }
 
 camber_status camber_slot_starts_record(camber_slot_starts *starts, size_t polyline, size_t *record) {
-    const camber_mesh *mesh = starts->mesh;
+    const camber_mesh *mesh = starts->finder.mesh;
     uint64_t index = 0;
-    if (is_first(starts, polyline) || is_end(starts, polyline)) {
-        *record = is_first(starts, polyline) ? 0 : starts->part->record_count;
+    if (is_first(&starts->finder, polyline) || is_end(&starts->finder, polyline)) {
+        *record = is_first(&starts->finder, polyline) ? 0 : starts->finder.part->record_count;
         return CAMBER_OK;
     }
     camber_status status = camber_slot_starts_index(starts, polyline, &index);

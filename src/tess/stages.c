@@ -72,7 +72,7 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         camber_mesh_part *part = mesh->parts + i;
         if (part->slot_count == 0)
             continue;
-        status = camber_part_ensure_made(mesh, part);
+        status = camber_part_ensure_counted(mesh, part);
         const size_t words = part->slot_count + 2;
         arrays seen = {
             .x = map(mesh, part->x, words, &status),
@@ -93,6 +93,47 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
     }
     *stages = made;
     return CAMBER_OK;
+}
+
+/* Reads words of a buffer into an array that is made for them. Does nothing after an earlier failure. */
+static void read_words(const camber_mesh *mesh, cl_mem mem, size_t words, void *array, camber_status *status) {
+    const camber_device *device = mesh->device;
+    void **made = array;
+    if (*status != CAMBER_OK)
+        return;
+    if (!(*made = camber_alloc(device->context, words, 4))) {
+        *status = CAMBER_ERROR_MEMORY;
+        return;
+    }
+    const cl_int code = clEnqueueReadBuffer(device->queue, mem, CL_TRUE, 0, 4 * words, *made, 0, NULL, NULL);
+    if (code != CL_SUCCESS)
+        *status = camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
+}
+
+camber_status camber_part_read_points(camber_mesh *mesh, camber_mesh_part *part, camber_part_points *points) {
+    camber_part_points made = {0};
+    camber_status status = camber_part_ensure_points(mesh, part);
+    const size_t words = part->slot_count + 2;
+    read_words(mesh, part->x, words, &made.x, &status);
+    read_words(mesh, part->y, words, &made.y, &status);
+    read_words(mesh, part->info, words, &made.info, &status);
+    read_words(mesh, part->joins, words, &made.joins, &status);
+    if (mesh->mesh_info.has_arc_length)
+        read_words(mesh, part->arc_lengths, 2 * part->slot_count, &made.arc_lengths, &status);
+    if (status == CAMBER_OK)
+        *points = made;
+    else
+        camber_part_points_free(mesh->device->context, &made);
+    return status;
+}
+
+void camber_part_points_free(camber_context *context, camber_part_points *points) {
+    camber_free(context, points->x);
+    camber_free(context, points->y);
+    camber_free(context, points->info);
+    camber_free(context, points->joins);
+    camber_free(context, points->arc_lengths);
+    *points = (camber_part_points){0};
 }
 
 void camber_stages_destroy(camber_stages *stages) {

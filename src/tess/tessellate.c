@@ -1,18 +1,20 @@
 /* Tessellates a mesh on a device, a part at a time.
  *
- * Input: polylines, or a network and a camera; and strokes. Output: each part's records and indices in its buffers, and
- * the mesh's counts. Main idea: first the sizes, then the output. So buffers are exact, no kernel needs an atomic, and
- * the same input gives the same bytes.
+ * Input: polylines, or a network and a camera; and strokes. Output: each part's points, and for GL its records and
+ * indices, in its buffers, and the mesh's counts. Main idea: first the sizes, then the output. So buffers are exact, no
+ * kernel needs an atomic, and the same input gives the same bytes.
  *
  *     slots of the part   uploaded, or the polylines' own; or projected from a network; or made beside source lines
- *        |  classify      a slot: its join word, from its neighbours and its row
+ *        v  classify      a slot: its join word, from its neighbours and its row
+ *     points              the rasterizer draws them
  *        |  scan          a chunk: vertices and indices before it in its block; a block: its sum
- *        |  the host adds the blocks' sums up, and checks that the part fits: else it is cut, and done again
+ *        |  the host adds the blocks' sums up, and checks that the part fits: else it is cut, and made again
  *        v  emit          a slot: its records and indices, where the sums say
- *     output buffers
+ *     output buffers      GL draws them
  *
- * Where memory is bounded and full, the parts that come last are counted but not emitted; camber_part_ensure_made emits
- * them when they are needed. */
+ * Meshes that GL does not draw are scanned and emitted when somebody asks for their counts or reads them. If memory is
+ * bounded and full, the parts that come last are counted only; camber_part_ensure_made makes them when they are needed.
+ */
 #include "cl/launch.h"
 #include "kernels/stroke_ends.h"
 #include "tess/arc_length.h"
@@ -70,28 +72,53 @@ void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event eve
         camber_stage_times_add(&mesh->mesh_info.times, stage, ms);
 }
 
-/* Runs classify and scan: finds how much output the part has. */
-static camber_status classify_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+static camber_program_desc program_of(const camber_mesh *mesh, camber_method method) {
+    return (camber_program_desc){method, mesh->mesh_info.has_arc_length, mesh->round_limits};
+}
+
+/* Runs a kernel of a method's program over a part's points, and waits for it: from then on nothing reads arrays of the
+ * host that were written to the device later. */
+static camber_status run_over_points(camber_mesh *mesh, const camber_mesh_part *part, camber_launch launch,
+                                     camber_stage_id stage) {
     const camber_device *device = mesh->device;
-    cl_event events[2] = {NULL, NULL};
-    const camber_kernel_arg classify[] = {
+    cl_event event = NULL;
+    launch.work_items = part->slot_count / device->point_chunk;
+    launch.group_size = device->block / device->point_chunk;
+    const camber_status status = camber_launch_kernel(device, &launch, &event);
+    const cl_int code = event ? clWaitForEvents(1, &event) : CL_SUCCESS;
+    camber_mesh_add_time(mesh, stage, event);
+    return code == CL_SUCCESS ? status : camber_fail_stage(device, "clWaitForEvents", launch.name, code);
+}
+
+/* Finds the join words of the part's points, as a method has them. */
+static camber_status classify(camber_mesh *mesh, camber_mesh_part *part, camber_method method) {
+    camber_program *program = NULL;
+    camber_status status = camber_device_program(mesh->device, program_of(mesh, method), &program);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_kernel_arg args[] = {
         CAMBER_ARG_BUFFER(part->x),    CAMBER_ARG_BUFFER(part->y),    CAMBER_ARG_BUFFER(part->x),
         CAMBER_ARG_BUFFER(part->y),    CAMBER_ARG_BUFFER(part->x),    CAMBER_ARG_BUFFER(part->y),
         CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->info),
         CAMBER_ARG_BUFFER(mesh->rows), CAMBER_ARG_BUFFER(part->joins)};
-    const camber_kernel_arg scan[] = {CAMBER_ARG_BUFFER(part->joins), CAMBER_ARG_BUFFER(part->joins),
+    status = run_over_points(
+        mesh, part, (camber_launch){.name = "classify", .kernel = program->classify, .args = args, .arg_count = 11},
+        CAMBER_STAGE_CLASSIFY);
+    part->classified = method;
+    return status;
+}
+
+/* Finds how much output the part has. */
+static camber_status scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(part->joins), CAMBER_ARG_BUFFER(part->joins),
                                       CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->offsets),
                                       CAMBER_ARG_BUFFER(part->sums)};
-    const size_t work_items = part->slot_count / device->point_chunk, group = device->block / device->point_chunk;
-    const camber_launch launches[] = {{"classify", program->classify, classify, 11, work_items, group},
-                                      {"scan", program->scan, scan, 5, work_items, group}};
-    camber_status status = camber_launch_kernel(device, launches, events);
-    if (status == CAMBER_OK)
-        status = camber_launch_kernel(device, launches + 1, events + 1);
+    camber_status status = run_over_points(
+        mesh, part, (camber_launch){.name = "scan", .kernel = program->scan, .args = args, .arg_count = 5},
+        CAMBER_STAGE_SCAN);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
-    camber_mesh_add_time(mesh, CAMBER_STAGE_CLASSIFY, events[0]);
-    camber_mesh_add_time(mesh, CAMBER_STAGE_SCAN, events[1]);
+    part->scanned = status == CAMBER_OK;
     return status;
 }
 
@@ -193,15 +220,16 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     return camber_write_buffer_later(device, mesh->rows, 0, count * sizeof *rows, mesh->host_rows);
 }
 
-/* Makes a part's slots, then finds how much output it has. *fits is false, and there are no slots, where they are too
- * many. The steps, each only where the mesh has such a thing:
+/* Makes a part's points. *fits is false, and there are none, if they are too many. The steps, each only if the mesh has
+ * such a thing:
  *
  *     1  slots: project them from the network, or upload them
  *     2  arc lengths of polylines; a network's slots come with theirs
  *     3  offset lines in place of their source lines
- *     4  classify and scan */
-static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
-                                         bool *fits) {
+ *     4  classify: their join words */
+static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
+    const camber_method method = mesh->draws_points ? CAMBER_METHOD_STRIP : mesh->mesh_info.method;
+    part->scanned = part->emitted = false;
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
                                       : camber_part_check_source_lines(mesh, part, part->given_count, fits);
     if (status == CAMBER_OK && *fits && !mesh->held)
@@ -211,7 +239,7 @@ static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *pa
     if (status == CAMBER_OK && *fits && mesh->has_offsets && part->given_count > 0)
         status = camber_part_offset(mesh, part, fits);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
-        status = classify_and_scan(mesh, part, program);
+        status = classify(mesh, part, method);
     if (mesh->held) {
         camber_mesh_add_time(mesh, CAMBER_STAGE_CULL_EMIT, mesh->held->projected);
         mesh->held->projected = NULL;
@@ -219,69 +247,103 @@ static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *pa
     return status;
 }
 
-/* Emits a part that has been counted; from then on it is made. */
-static camber_status emit_unless_empty(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
-    const camber_status status = part->record_count > 0 ? emit(mesh, part, program) : CAMBER_OK;
+/* Scans a part's points, unless there are none. */
+static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
+    camber_program *program = NULL;
+    if (part->slot_count == 0)
+        return CAMBER_OK;
+    const camber_status status =
+        camber_device_program(mesh->device, program_of(mesh, mesh->mesh_info.method), &program);
+    return status == CAMBER_OK ? scan(mesh, part, program) : status;
+}
+
+/* Emits a part that has been counted. */
+static camber_status emit_unless_empty(camber_mesh *mesh, camber_mesh_part *part) {
+    camber_program *program = NULL;
+    camber_status status = CAMBER_OK;
+    if (part->record_count > 0) {
+        status = camber_device_program(mesh->device, program_of(mesh, mesh->mesh_info.method), &program);
+        if (status == CAMBER_OK)
+            status = emit(mesh, part, program);
+    }
+    part->emitted = status == CAMBER_OK;
+    return status;
+}
+
+camber_status camber_part_number(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_info *counts) {
+    part->first_record = counts->record_count;
+    part->first_vertex = counts->vertex_count;
+    part->first_index = counts->index_count;
+    counts->record_count += part->record_count;
+    counts->vertex_count += part->vertex_count;
+    counts->index_count += part->index_count;
+    return counts->record_count > camber_records_max(counts->method)
+               ? camber_fail_records(mesh->device->context, counts->method)
+               : CAMBER_OK;
+}
+
+/* Counts a part's output, and numbers it. *fits is false if it is too large: then the part is cut where the scan says
+ * that the output fits. Joins are counted while the part is there, if parts may be evicted later. */
+static camber_status count_part(camber_mesh *mesh, size_t which, size_t *segments, bool *fits) {
+    camber_mesh_part *part = mesh->parts + which;
+    camber_status status = count_output(mesh, part);
+    *fits = status != CAMBER_OK || camber_part_fits(mesh, part);
+    if (!*fits)
+        return camber_mesh_split(mesh, which);
+    if (status == CAMBER_OK)
+        status = camber_part_number(mesh, part, &mesh->mesh_info);
+    if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
+        status = camber_part_count_joins(mesh, part, &mesh->mesh_info, segments);
+    return status;
+}
+
+/* Keeps what was made of a part, and emits it if the mesh is drawn from its output; unless memory is full. */
+static camber_status keep_part(camber_mesh *mesh, camber_mesh_part *part) {
+    const uint64_t missing = mesh->draws_points ? 0 : camber_part_missing_output_bytes(mesh, part);
+    if (!mesh->is_full && !camber_mesh_evict_for(mesh, part, missing, true))
+        mesh->is_full = true;
+    if (mesh->is_full)
+        return CAMBER_OK;
+    const camber_status status = mesh->draws_points ? CAMBER_OK : emit_unless_empty(mesh, part);
     part->made = status == CAMBER_OK;
     return status;
 }
 
-/* Numbers a part's output behind that of the parts before it. */
-static camber_status number_part(camber_mesh *mesh, camber_mesh_part *part) {
-    camber_mesh_info *info = &mesh->mesh_info;
-    part->first_record = info->record_count;
-    part->first_vertex = info->vertex_count;
-    part->first_index = info->index_count;
-    info->record_count += part->record_count;
-    info->vertex_count += part->vertex_count;
-    info->index_count += part->index_count;
-    return info->record_count > camber_records_max(info->method)
-               ? camber_fail_records(mesh->device->context, info->method)
-               : CAMBER_OK;
-}
-
 /* Goes through the parts. i stays where a part is cut, so that the first of the new parts is next.
  *
- *     slots do not fit    -> cut the part in two at the middle of its polylines
- *     output does not fit -> cut it where the scan says that the output fits
- *     else                -> number it; emit it unless memory is full
+ *     points do not fit   -> cut the part in two at the middle of its polylines
+ *     output does not fit -> cut it again
+ *     else                -> number it; keep it, and its output, unless memory is full
  *
- * Once memory is full, parts are only counted. The first ones stay, as they are drawn first. Joins are counted while
- * each part is there, if parts may be evicted later. */
-static camber_status tessellate_parts(camber_mesh *mesh, const camber_program *program) {
+ * Once memory is full, parts are only counted. The first ones stay, as they are drawn first. */
+static camber_status tessellate_parts(camber_mesh *mesh) {
     camber_status status = CAMBER_OK;
     size_t segments = 0;
     mesh->is_full = false;
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
-        camber_mesh_part *part = mesh->parts + i;
         bool fits = true;
-        camber_part_recycle_buffers(mesh, part, camber_device_share(mesh->device, 1));
-        status = make_slots_and_scan(mesh, part, program, &fits);
+        camber_part_recycle_buffers(mesh, mesh->parts + i, camber_device_share(mesh->device, 1));
+        status = make_points(mesh, mesh->parts + i, &fits);
         if (status == CAMBER_OK && !fits) {
             status = camber_mesh_halve(mesh, i);
             continue;
         }
-        if (status == CAMBER_OK && !camber_part_fits(mesh, part)) {
-            status = camber_mesh_split(mesh, i);
-            continue;
-        }
-        if (status == CAMBER_OK)
-            status = number_part(mesh, part);
-        if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
-            status = camber_part_count_joins(mesh, part, &mesh->mesh_info, &segments);
-        if (!mesh->is_full && !camber_mesh_evict_for(mesh, part, camber_part_missing_output_bytes(mesh, part), true))
-            mesh->is_full = true;
-        if (status == CAMBER_OK && !mesh->is_full)
-            status = emit_unless_empty(mesh, part, program);
-        i++;
+        if (status == CAMBER_OK && !mesh->draws_points)
+            status = count_part(mesh, i, &segments, &fits);
+        if (status == CAMBER_OK && fits)
+            status = keep_part(mesh, mesh->parts + i);
+        i += fits;
     }
-    if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
+    if (status == CAMBER_OK && !mesh->draws_points && mesh->part_count > 1 && mesh->device->memory_bytes)
         camber_mesh_set_counts(mesh, mesh->mesh_info, segments);
     return status;
 }
 
-static camber_program_desc program_of(const camber_mesh *mesh) {
-    return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.has_arc_length, mesh->round_limits};
+/* Makes a part again, and as much of it as the mesh is drawn from. *fits as make_points has it. */
+static camber_status make_again(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
+    camber_part_recycle_buffers(mesh, part, camber_part_needed_bytes(mesh, part));
+    const camber_status status = make_points(mesh, part, fits);
+    return status == CAMBER_OK && *fits && !mesh->draws_points ? count_output(mesh, part) : status;
 }
 
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part) {
@@ -289,22 +351,20 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
     const camber_mesh_info told = mesh->mesh_info;
     const size_t slots = part->slot_count, records = part->record_count, vertices = part->vertex_count,
                  indices = part->index_count;
-    camber_program *program = NULL;
     bool fits = true;
     if (part->made || part->slot_count == 0)
         return CAMBER_OK;
-    camber_status status = camber_device_program(mesh->device, program_of(mesh), &program);
-    if (status == CAMBER_OK) {
-        camber_part_recycle_buffers(mesh, part, camber_part_needed_bytes(mesh, part));
-        status = make_slots_and_scan(mesh, part, program, &fits);
-    }
-    if (status == CAMBER_OK && (!fits || part->record_count != records || part->index_count != indices))
+    camber_status status = make_again(mesh, part, &fits);
+    const bool is_same =
+        mesh->draws_points ? part->slot_count == slots : part->record_count == records && part->index_count == indices;
+    if (status == CAMBER_OK && (!fits || !is_same))
         status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                             "%s: a part of a mesh has %zu records and now %zu; update the driver or try another "
-                             "device",
-                             device->info.name, records, part->record_count);
-    if (status == CAMBER_OK)
-        status = emit_unless_empty(mesh, part, program);
+                             "%s: a part of a mesh has %zu points and %zu records, and now %zu and %zu; update the "
+                             "driver or try another device",
+                             device->info.name, slots, records, part->slot_count, part->record_count);
+    if (status == CAMBER_OK && !mesh->draws_points)
+        status = emit_unless_empty(mesh, part);
+    part->made = status == CAMBER_OK;
     if (status != CAMBER_OK)
         clFinish(device->queue); /* what is written later is read from the host's arrays */
     part->slot_count = slots;
@@ -316,6 +376,27 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
     return status;
 }
 
+/* Makes the part, with the join words of a method. */
+static camber_status ensure_classified(camber_mesh *mesh, camber_mesh_part *part, camber_method method) {
+    const camber_status status = camber_part_ensure_made(mesh, part);
+    return status == CAMBER_OK && part->slot_count > 0 && part->classified != method ? classify(mesh, part, method)
+                                                                                     : status;
+}
+
+camber_status camber_part_ensure_points(camber_mesh *mesh, camber_mesh_part *part) {
+    return ensure_classified(mesh, part, CAMBER_METHOD_STRIP);
+}
+
+camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_status status = ensure_classified(mesh, part, mesh->mesh_info.method);
+    return status == CAMBER_OK && !part->scanned ? count_output(mesh, part) : status;
+}
+
+camber_status camber_part_ensure_output(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_status status = camber_part_ensure_counted(mesh, part);
+    return status == CAMBER_OK && !part->emitted ? emit_unless_empty(mesh, part) : status;
+}
+
 /* The source of a tessellation: polylines, or else a network as a camera sees it. */
 typedef struct source {
     const camber_polylines *polylines;
@@ -323,6 +404,14 @@ typedef struct source {
     const camber_camera *camera;
     uint32_t row_count;
 } source;
+
+/* Adds up what the mesh is drawn from: its points, or its output. */
+static void set_bytes(camber_mesh *mesh) {
+    camber_mesh_info *info = &mesh->mesh_info;
+    info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
+    for (size_t i = 0; i < mesh->part_count && mesh->draws_points; i++)
+        info->bytes += mesh->parts[i].slot_count * camber_slot_bytes(info);
+}
 
 /* Divides the source into parts, and aims the camera at a network. */
 static camber_status plan_parts(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
@@ -339,7 +428,6 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
-    camber_program *program = NULL;
     camber_status status = camber_check_process(context);
     if (status != CAMBER_OK)
         return status;
@@ -366,13 +454,10 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         status = plan_parts(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
         mesh->joins_counted = false;
-        status = camber_device_program(mesh->device, program_of(mesh), &program);
+        status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
-            status = upload_rows(mesh, rows, desc->stroke_count);
-        if (status == CAMBER_OK)
-            status = tessellate_parts(mesh, program);
-        camber_mesh_info *info = &mesh->mesh_info;
-        info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
+            status = tessellate_parts(mesh);
+        set_bytes(mesh);
         mesh->joins_counted |= status != CAMBER_OK;
     }
     if (status != CAMBER_OK) {
@@ -381,7 +466,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     }
     camber_mesh_let_go(mesh);
     mesh->done = status == CAMBER_OK;
-    mesh->empty = mesh->mesh_info.vertex_count == 0;
+    mesh->empty = mesh->mesh_info.bytes == 0;
     camber_free(context, rows);
     return status;
 }

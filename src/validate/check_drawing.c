@@ -184,8 +184,14 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
     return status;
 }
 
-static bool is_long(const camber_mesh *mesh) {
-    return camber_mesh_get_info(mesh).record_count > RECORDS_MAX;
+/* How many records a mesh has, or would have if it is drawn from its points. */
+static size_t count_records(camber_mesh *mesh) {
+    (void)camber_mesh_count_joins(mesh); /* a failure is logged, and the count is 0 */
+    return camber_mesh_get_info(mesh).record_count;
+}
+
+static bool is_long(camber_mesh *mesh) {
+    return count_records(mesh) > RECORDS_MAX;
 }
 
 /* Takes a check that was made. What would take larger buffers, or has no stages to compare, is skipped. */
@@ -273,8 +279,8 @@ static camber_status check_lanes(camber_validation *v, const camber_subject *s, 
 enum { SEGMENT_BYTES = 64, TILE_BYTES = 160 * 1024 };
 
 /* A bound for buffers under which the frame takes slices; three, where a tile's spill fits. 0: for lack of segments. */
-static uint64_t slice_bytes(const camber_mesh *mesh) {
-    const uint64_t all = PASSES * (uint64_t)camber_mesh_get_info(mesh).record_count * SEGMENT_BYTES;
+static uint64_t slice_bytes(camber_mesh *mesh) {
+    const uint64_t all = PASSES * (uint64_t)count_records(mesh) * SEGMENT_BYTES;
     const uint64_t wanted = all / 3 > TILE_BYTES ? all / 3 : TILE_BYTES;
     return wanted < all ? wanted : 0;
 }

@@ -360,12 +360,12 @@ level=()
 group=pictures
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
-mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &e->before)' 'first, r, &e->before)'
-mutant strip kernels/setup.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
-    'first - 1, r, &second)'
+mutant strip kernels/setup.cl "a segment from its end to its end" 'take_words(from.x, at - 1, r)' 'take_words(from.x, at, r)'
+mutant strip kernels/setup.cl "a direction that is not that of the segment before" 'take_words(from.x, first - 1, r)' \
+    'take_words(from.x, first, r)'
 mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r->first_row,' 'take_rows(rows, 0u * r->first_row,'
-mutant kite kernels/setup.cl "lines that go on to the next" 'r->strips ? STARTS : CAMBER_POINT_FIRST' \
-    'r->strips ? STARTS : 0u'
+mutant strip kernels/setup.cl "lines that go on to the next" '((e->b.info & CAMBER_POINT_FIRST) == 0u)' \
+    '((e->b.info & CAMBER_POINT_FIRST) != 99u)'
 mutant strip kernels/setup.cl "a pitch: a cut in the place of the other" 'p->cut_b.owner, p->cut_a.x' \
     'p->cut_a.owner, p->cut_a.x'
 mutant strip kernels/setup.cl "areas: all by the first fill" 'brushes += next;' 'brushes += 0u * next;'

@@ -421,7 +421,7 @@ static void test_steps(void **state) {
  * the twin's, and the same picture, in slices too. */
 static void compare_lanes(const fixture *e, uint32_t lanes) {
     fixture other = {.context = e->context};
-    const camber_device_desc desc = {.lanes = lanes}, small = {.lanes = lanes, .largest_buffer_bytes = 300 * 1024};
+    const camber_device_desc desc = {.lanes = lanes}, small = {.lanes = lanes, .largest_buffer_bytes = 200 * 1024};
     assert_int_equal(camber_device_create(e->context, &desc, &other.on.device), CAMBER_OK);
     assert_int_equal(other.on.device->lanes, lanes);
     assert_int_equal(camber_renderer_create(other.on.device, NULL, NULL, &other.on.renderer[CAMBER_FIXTURE_OPENCL]),

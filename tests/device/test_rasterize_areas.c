@@ -479,7 +479,7 @@ static void test_order(void **state) {
         picture_free(&p);
         camber_mesh_destroy(mesh);
     }
-    const camber_device_desc desc = {.largest_buffer_bytes = 300 * 1024};
+    const camber_device_desc desc = {.largest_buffer_bytes = 300 * 1024, .memory_bytes = 8 << 20};
     fixture small = open_other(f, &desc);
     mesh = many_rows(&small, drawer(&small), &r, CAMBER_METHOD_STRIP, 0);
     picture p = draw_passes(drawer(&small), mesh, paints, 0, 0);

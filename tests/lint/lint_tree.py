@@ -19,8 +19,7 @@ import sys
 
 LINE_LENGTH = 120
 HEAD_LINES = 100  # a longer file starts with a comment
-SIZES_KB = {"README.md": 8, "ARCHITECTURE.md": 12, "CHANGELOG.md": 3, "CONTRIBUTING.md": 3}
-DOCS_KB = 10  # each document of docs/
+MOST_WORDS = {"README.md": 1300, "ARCHITECTURE.md": 1900}  # other documents are as long as they need
 
 CODE = ("src", "kernels", "shaders", "tests", "bench", "python")
 TYPED = ("src/", "kernels/", "tests/fixtures/", "bench/")  # where the name of a type is unique
@@ -451,15 +450,15 @@ def check_comments(tree):
 
 
 def list_documents(root):
-    """(path, most KB or None)"""
+    """(path, most words or None)"""
     for name in sorted(os.listdir(root)):
         if name.endswith(".md"):
-            yield name, SIZES_KB.get(name)
+            yield name, MOST_WORDS.get(name)
     docs = os.path.join(root, "docs")
     for folder, _, names in sorted(os.walk(docs)):
         for name in sorted(names):
             if name.endswith(".md"):
-                yield os.path.relpath(os.path.join(folder, name), root), DOCS_KB
+                yield os.path.relpath(os.path.join(folder, name), root), None
     for page in ("src/cli/camber.1", "src/camber.3"):
         if os.path.isfile(os.path.join(root, page)):
             yield page, None
@@ -471,12 +470,12 @@ def is_breakable(line):
 
 
 def check_documents(tree):
-    for path, most_kb in list_documents(tree.root):
+    for path, most_words in list_documents(tree.root):
         with open(os.path.join(tree.root, path), encoding="utf-8") as file:
             text = file.read()
-        size = len(text.encode())
-        if most_kb and size > most_kb * 1024:
-            yield Finding(path, 1, "%.1f KB, and %d are allowed" % (size / 1024, most_kb),
+        words = len(text.split())
+        if most_words and words > most_words:
+            yield Finding(path, 1, "%d words, and %d are allowed" % (words, most_words),
                           "leave out what another document has, or move it to docs/")
         for number, line in enumerate(text.split("\n"), 1):
             if len(line) > LINE_LENGTH and is_breakable(line):

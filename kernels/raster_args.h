@@ -11,7 +11,7 @@ typedef struct camber_tile_grid {
     camber_u32 columns, rows;
 } camber_tile_grid;
 
-/* setup: the records of a range, and where their segments go. Ranges of one part are set up together. */
+/* setup: the slots of a range, and where their segments go. Ranges of one part are set up together. */
 typedef struct camber_setup_args {
     camber_u32 first, end, slot_count; /* the range's slots [first, end), and how many the part has */
     camber_u32 has_arc_length, linear; /* has_arc_length: the part's slots have arc lengths */

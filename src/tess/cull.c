@@ -135,7 +135,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     const camber_projection p = projection_of(mesh, part);
     const size_t block = device->block;
     uint64_t slots = 0;
-    part->given_count = part->slot_count = part->used_slots = part->record_count = part->vertex_count = part->index_count = 0;
+    part->given_count = part->slot_count = part->used_slots = part->record_count = part->vertex_count =
+        part->index_count = 0;
     if (p.begin == p.end)
         return CAMBER_OK;
     camber_status status = camber_part_upload_section(mesh, part);

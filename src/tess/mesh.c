@@ -97,6 +97,7 @@ camber_status camber_mesh_count_joins(camber_mesh *mesh) {
         if (status == CAMBER_OK)
             status = camber_part_count_joins(mesh, mesh->parts + i, &counts, &segments);
     }
+    counts.times = mesh->mesh_info.times;
     if (status == CAMBER_OK && !mesh->joins_counted)
         camber_mesh_set_counts(mesh, counts, segments);
     return status;
@@ -112,7 +113,9 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
         i++;
     uint64_t first = 0;
     camber_slot_starts starts = camber_slot_starts_of(mesh, mesh->parts + i);
-    camber_status status = mesh->part_count ? camber_part_ensure_counted(mesh, mesh->parts + i) : CAMBER_OK;
+    camber_status status = mesh->draws_points ? camber_mesh_count_joins(mesh) : CAMBER_OK;
+    if (status == CAMBER_OK && mesh->part_count)
+        status = camber_part_ensure_counted(mesh, mesh->parts + i);
     if (status == CAMBER_OK && mesh->part_count)
         status = camber_slot_starts_index(&starts, polyline, &first);
     camber_slot_starts_unmap(&starts);

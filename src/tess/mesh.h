@@ -104,7 +104,7 @@ struct camber_mesh {
     bool done;          /* the last tessellation succeeded */
     bool has_camera;    /* the last tessellation was of a network; pitch_deg is its camera's */
     double pitch_deg;
-    bool empty; /* nothing to draw: not tessellated yet, failed, or no vertex came out */
+    bool empty; /* nothing to draw: not tessellated yet, failed, or no point or vertex came out */
 };
 
 enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };

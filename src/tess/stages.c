@@ -68,6 +68,8 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
 camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) {
     camber_stages made = {.context = mesh->device->context};
     camber_status status = camber_check_process(made.context);
+    if (status == CAMBER_OK && mesh->draws_points)
+        status = camber_mesh_count_joins(mesh);
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
         camber_mesh_part *part = mesh->parts + i;
         if (part->slot_count == 0)

@@ -104,7 +104,10 @@ static camber_status classify(camber_mesh *mesh, camber_mesh_part *part, camber_
     status = run_over_points(
         mesh, part, (camber_launch){.name = "classify", .kernel = program->classify, .args = args, .arg_count = 11},
         CAMBER_STAGE_CLASSIFY);
-    part->classified = method;
+    if (status == CAMBER_OK)
+        part->classified = method;
+    else
+        part->made = false;
     return status;
 }
 
@@ -315,7 +318,7 @@ static camber_status keep_part(camber_mesh *mesh, camber_mesh_part *part) {
  *     output does not fit -> cut it again
  *     else                -> number it; keep it, and its output, unless memory is full
  *
- * Once memory is full, parts are only counted. The first ones stay, as they are drawn first. */
+ * Once memory is full, parts are only made and counted. The first ones stay, as they are drawn first. */
 static camber_status tessellate_parts(camber_mesh *mesh) {
     camber_status status = CAMBER_OK;
     size_t segments = 0;
@@ -346,11 +349,18 @@ static camber_status make_again(camber_mesh *mesh, camber_mesh_part *part, bool 
     return status == CAMBER_OK && *fits && !mesh->draws_points ? count_output(mesh, part) : status;
 }
 
+static camber_status fail_remade(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, size_t records) {
+    return camber_fail(mesh->device->context, CAMBER_ERROR_DEVICE,
+                       "%s: a part of a mesh has %zu points and %zu records, and now %zu and %zu; update the driver or "
+                       "try another device",
+                       mesh->device->info.name, slots, records, part->slot_count, part->record_count);
+}
+
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_mesh_info told = mesh->mesh_info;
-    const size_t slots = part->slot_count, records = part->record_count, vertices = part->vertex_count,
-                 indices = part->index_count;
+    const size_t slots = part->slot_count, used = part->used_slots, records = part->record_count,
+                 vertices = part->vertex_count, indices = part->index_count;
     bool fits = true;
     if (part->made || part->slot_count == 0)
         return CAMBER_OK;
@@ -358,16 +368,14 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
     const bool is_same =
         mesh->draws_points ? part->slot_count == slots : part->record_count == records && part->index_count == indices;
     if (status == CAMBER_OK && (!fits || !is_same))
-        status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                             "%s: a part of a mesh has %zu points and %zu records, and now %zu and %zu; update the "
-                             "driver or try another device",
-                             device->info.name, slots, records, part->slot_count, part->record_count);
+        status = fail_remade(mesh, part, slots, records);
     if (status == CAMBER_OK && !mesh->draws_points)
         status = emit_unless_empty(mesh, part);
     part->made = status == CAMBER_OK;
     if (status != CAMBER_OK)
         clFinish(device->queue); /* what is written later is read from the host's arrays */
     part->slot_count = slots;
+    part->used_slots = used;
     part->record_count = records;
     part->vertex_count = vertices;
     part->index_count = indices;
@@ -388,8 +396,17 @@ camber_status camber_part_ensure_points(camber_mesh *mesh, camber_mesh_part *par
 }
 
 camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *part) {
-    const camber_status status = ensure_classified(mesh, part, mesh->mesh_info.method);
-    return status == CAMBER_OK && !part->scanned ? count_output(mesh, part) : status;
+    const size_t records = part->record_count, indices = part->index_count;
+    camber_status status = ensure_classified(mesh, part, mesh->mesh_info.method);
+    if (status != CAMBER_OK || part->scanned)
+        return status;
+    status = count_output(mesh, part);
+    /* Whoever reads the mesh has made room for what was counted before. */
+    if (status == CAMBER_OK && mesh->joins_counted && (part->record_count != records || part->index_count != indices))
+        status = fail_remade(mesh, part, part->slot_count, records);
+    if (status != CAMBER_OK)
+        part->scanned = false;
+    return status;
 }
 
 camber_status camber_part_ensure_output(camber_mesh *mesh, camber_mesh_part *part) {

@@ -12,8 +12,8 @@
  *        v  emit          a slot: its records and indices, where the sums say
  *     output buffers      GL draws them
  *
- * Meshes that GL does not draw are scanned and emitted when somebody asks for their counts or reads them. If memory is
- * bounded and full, the parts that come last are counted only; camber_part_ensure_made makes them when they are needed.
+ * Meshes that OpenCL draws are scanned and emitted when somebody asks for their counts or reads them. If memory is
+ * bounded and full, the parts that come last are not kept; camber_part_ensure_made makes them when they are needed.
  */
 #include "cl/launch.h"
 #include "kernels/stroke_ends.h"
@@ -111,14 +111,20 @@ static camber_status classify(camber_mesh *mesh, camber_mesh_part *part, camber_
     return status;
 }
 
-/* Finds how much output the part has. */
-static camber_status scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+/* Finds how much output the part has; one without points has none. */
+static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
+    camber_program *program = NULL;
+    if (part->slot_count == 0)
+        return CAMBER_OK;
+    camber_status status = camber_device_program(mesh->device, program_of(mesh, mesh->mesh_info.method), &program);
+    if (status != CAMBER_OK)
+        return status;
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(part->joins), CAMBER_ARG_BUFFER(part->joins),
                                       CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->offsets),
                                       CAMBER_ARG_BUFFER(part->sums)};
-    camber_status status = run_over_points(
-        mesh, part, (camber_launch){.name = "scan", .kernel = program->scan, .args = args, .arg_count = 5},
-        CAMBER_STAGE_SCAN);
+    status = run_over_points(mesh, part,
+                             (camber_launch){.name = "scan", .kernel = program->scan, .args = args, .arg_count = 5},
+                             CAMBER_STAGE_SCAN);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
     part->scanned = status == CAMBER_OK;
@@ -248,16 +254,6 @@ static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool
         mesh->held->projected = NULL;
     }
     return status;
-}
-
-/* Scans a part's points, unless there are none. */
-static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
-    camber_program *program = NULL;
-    if (part->slot_count == 0)
-        return CAMBER_OK;
-    const camber_status status =
-        camber_device_program(mesh->device, program_of(mesh, mesh->mesh_info.method), &program);
-    return status == CAMBER_OK ? scan(mesh, part, program) : status;
 }
 
 /* Emits a part that has been counted. */

@@ -480,8 +480,8 @@ typedef struct camber_tessellation_desc {
 
 typedef struct camber_mesh_info {
     camber_method method;
-    bool strips;              /* triangle strips; else triangles */
-    bool has_arc_length;      /* as the tessellation was asked for */
+    bool strips;         /* triangle strips; else triangles */
+    bool has_arc_length; /* as the tessellation was asked for */
     /* The next three are 0 until camber_mesh_count_joins if a renderer that draws with OpenCL draws the mesh: it needs
      * points alone. */
     size_t record_count;      /* camber_record */

@@ -5,6 +5,7 @@
 #include "bench.h"
 
 #include "base/base.h"
+#include "gpu/opencl/opencl.h"
 #include "tess/mesh.h"
 
 #include <math.h>
@@ -85,11 +86,13 @@ static double copy_on_host(const bench *b) {
 
 /* Wall time: a copy's event may begin before it does. */
 static double copy_on_device(const bench *b) {
-    cl_command_queue queue = b->device->queue;
+    cl_command_queue queue = opencl_of(b->device)->queue;
     const size_t size_bytes = DEVICE_BLOCK_BYTES;
     cl_int code = CL_SUCCESS;
-    cl_mem from = clCreateBuffer(b->device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
-    cl_mem to = code == CL_SUCCESS ? clCreateBuffer(b->device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code) : NULL;
+    cl_mem from = clCreateBuffer(opencl_of(b->device)->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
+    cl_mem to = code == CL_SUCCESS
+                    ? clCreateBuffer(opencl_of(b->device)->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code)
+                    : NULL;
     double best = 0;
     for (int i = 0; i < RUNS && code == CL_SUCCESS; i++) {
         code = clFinish(queue);

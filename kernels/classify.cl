@@ -1,6 +1,6 @@
 /* classify: per point, which join it is.
  * Reads x, y, info[n + 2] (one sentinel before and after the n points), rows; writes joins[n + 2], of which the first
- * and the last stay 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are set by the build. A
+ * and the last stay 0. Points of areas get 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are set by the build. A
  * work-group's items take its points by turns; where one takes them all, its loops are vectorised.
  *
  *     rows    mostly all points have one, which is read once: gathers are slow, and AVX2's are taken apart
@@ -45,17 +45,26 @@ static inline camber_row row_of(const point_rows *from, size_t n) {
     return row;
 }
 
-/* Reads the rows of the points first, first + LANES and so on. */
-static inline void read_rows(global const camber_u32 *info, global const camber_row *rows, size_t first,
-                             point_rows *to) {
-    camber_u32 any = 0, all = ~0u; /* the bits that any point has, and that all have; sentinels have no row */
+/* The bits that any point has, and those that all have. Sentinels have neither row nor flags. */
+typedef struct point_bits {
+    camber_u32 any, all;
+} point_bits;
+
+static inline point_bits read_bits(global const camber_u32 *info, size_t first) {
+    point_bits bits = {0u, ~0u};
     for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
         const camber_u32 point = info[first + n * LANES];
-        any |= point;
-        all &= point & CAMBER_POINT_REAL ? point : ~0u;
+        bits.any |= point;
+        bits.all &= point & CAMBER_POINT_REAL ? point : ~0u;
     }
-    if (((any ^ all) & CAMBER_ROW_BITS) == 0u) {
-        const camber_row row = rows[any >> CAMBER_POINT_ROW_SHIFT];
+    return bits;
+}
+
+/* Reads the rows of the points first, first + LANES and so on. */
+static inline void read_rows(global const camber_u32 *info, global const camber_row *rows, size_t first,
+                             point_bits bits, point_rows *to) {
+    if (((bits.any ^ bits.all) & CAMBER_ROW_BITS) == 0u) {
+        const camber_row row = rows[bits.any >> CAMBER_POINT_ROW_SHIFT];
         for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++)
             put_row(to, n, row);
         return;
@@ -73,8 +82,14 @@ CAMBER_KERNEL(LANES, classify,
                global const camber_row *restrict rows, global camber_u32 *restrict joins),
               (x, y, x_before, y_before, x_after, y_after, info, info_before, info_after, rows, joins)) {
     const size_t first = CAMBER_WORK_ITEM / LANES * CAMBER_BLOCK + CAMBER_WORK_ITEM % LANES + 1;
+    const point_bits bits = read_bits(info, first);
     point_rows r;
-    read_rows(info, rows, first, &r);
+    if (bits.all & CAMBER_POINT_AREA) { /* so it is if there are only sentinels */
+        for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++)
+            joins[first + n * LANES] = 0u;
+        return;
+    }
+    read_rows(info, rows, first, bits, &r);
     float c[CAMBER_POINT_CHUNK], s[CAMBER_POINT_CHUNK], dot[CAMBER_POINT_CHUNK], half_shorter[CAMBER_POINT_CHUNK];
 #pragma clang loop vectorize_width(16)
     for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++) {
@@ -99,6 +114,6 @@ CAMBER_KERNEL(LANES, classify,
         const camber_u32 stub = CAMBER_METHOD == CAMBER_STRIP ? camber_stub_pack(row.cap, half_shorter[n]) : 0u;
         const camber_u32 join = camber_join_word(turn, &row, CAMBER_METHOD) | line_ends | stub;
         const camber_u32 word = is_cap ? camber_cap_word(row.cap, is_dot) : join;
-        joins[i] = point & CAMBER_POINT_REAL ? word : 0u;
+        joins[i] = (point & (CAMBER_POINT_REAL | CAMBER_POINT_AREA)) == CAMBER_POINT_REAL ? word : 0u;
     }
 }

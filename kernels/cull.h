@@ -43,7 +43,7 @@
 #endif
 /* Flags of a stretch's word, which also holds the row at CAMBER_POINT_ROW_SHIFT. An area is a ring that is filled. */
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
-#define CAMBER_STRETCH_AREA 16u
+#define CAMBER_STRETCH_AREA CAMBER_POINT_AREA
 
 /* Points of a polyline without invalid ones between them. A last stretch begins at the number of all points. */
 typedef struct camber_stretch {
@@ -341,7 +341,7 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
  *       A0        |                 A0'  |     the window change nothing there but this.
  */
 CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
-    const camber_u32 real = (w->word & ~0xffu) | CAMBER_POINT_REAL;
+    const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     float from = a.y, to = b.y;
     if (!(a.beyond & b.beyond & 1u)) {
         const camber_kept_point near_a = camber_pull(w, p, a, b), near_b = camber_pull(w, p, b, a);
@@ -362,7 +362,7 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 
 /* The slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
 CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
-    const camber_u32 real = (w->word & ~0xffu) | CAMBER_POINT_REAL;
+    const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
     if (!a.beyond) {
         const camber_u32 begins = a.point == w->first ? 1u : 0u;

@@ -45,12 +45,13 @@
 /* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a sentinel: a neighbour to look at, or padding,
  * that emits nothing. A ring is stored as sentinel of its last but one point, its points with the first repeated
  * at the end, sentinel of its second point: so neighbours are always i - 1 and i + 1. A first or last point that is CUT
- * is no end: the line goes on outside the window. */
+ * is no end: the line goes on outside the window. A point of an AREA's ring has no join: only edges are made of it. */
 #define CAMBER_POINT_REAL 1u
 #define CAMBER_POINT_FIRST 2u
 #define CAMBER_POINT_LAST 4u
 #define CAMBER_POINT_RING 8u
 #define CAMBER_POINT_CUT 64u
+#define CAMBER_POINT_AREA 128u
 #define CAMBER_POINT_ROW_SHIFT 8
 #define CAMBER_ROW_BITS 0xffffff00u
 

@@ -157,22 +157,34 @@ static inline void look_up_rows(global const float *rows, const camber_setup_arg
 }
 
 /* Takes the points of the slots from `first` on. The word of a slot follows that of the sentinel. */
-static inline void take_ends(part_points from, global const float *rows, int first, const camber_setup_args *r,
-                             ends *e) {
+static inline void take_points(part_points from, int first, const camber_setup_args *r, ends *e) {
     const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const int at = first + 1;
     e->b.x = take_words(from.x, at, r);
     e->b.y = take_words(from.y, at, r);
-    e->b.join = take_words(from.joins, at, r);
     e->b.info = take_words(from.info, at, r);
     e->before.x = take_words(from.x, at - 1, r);
     e->before.y = take_words(from.y, at - 1, r);
-    e->before.join = take_words(from.joins, at - 1, r);
+    e->is_drawn = ((e->b.info & CAMBER_POINT_REAL) != 0u) & (CAMBER_LOAD(0, numbers) < (int)r->end - first);
+}
+
+static inline void take_ends(part_points from, global const float *rows, int first, const camber_setup_args *r,
+                             ends *e) {
+    take_points(from, first, r, e);
+    e->b.join = take_words(from.joins, first + 1, r);
+    e->before.join = take_words(from.joins, first, r);
     const camber_words kind = e->b.join >> CAMBER_JOIN_KIND_SHIFT;
-    const camber_mask is_real = ((e->b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_SENTINEL) &
-                                (CAMBER_LOAD(0, numbers) < (int)r->end - first);
     e->is_dot = kind == CAMBER_KIND_DOT;
-    e->is_drawn = is_real & (((e->b.info & CAMBER_POINT_FIRST) == 0u) | e->is_dot);
+    e->is_drawn &= (kind != CAMBER_KIND_SENTINEL) & (((e->b.info & CAMBER_POINT_FIRST) == 0u) | e->is_dot);
+    look_up_rows(rows, r, e);
+}
+
+/* Edges have no joins. */
+static inline void take_edge_ends(part_points from, global const float *rows, int first, const camber_setup_args *r,
+                                  ends *e) {
+    take_points(from, first, r, e);
+    e->is_dot = e->b.x != e->b.x;
+    e->is_drawn &= (e->b.info & CAMBER_POINT_FIRST) == 0u;
     look_up_rows(rows, r, e);
 }
 
@@ -247,7 +259,7 @@ static inline void make_edges(part_points from, global const float *rows, global
     ends e;
     lane_ends l;
     camber_segment s;
-    take_ends(from, rows, first, r, &e);
+    take_edge_ends(from, rows, first, r, &e);
     place_ends(&e, &l);
     camber_edge_segment(l.ax, l.ay, l.bx, l.by, &s);
 #if CAMBER_RASTER_PITCHED

@@ -3,7 +3,7 @@
 cmake_policy(VERSION 3.22)
 string(REPLACE "|" ";" reach "${REACH};kernels")
 get_filename_component(layer ${FOLDER} NAME)
-file(GLOB files ${FOLDER}/*.c ${FOLDER}/*.h)
+file(GLOB_RECURSE files ${FOLDER}/*.c ${FOLDER}/*.h)
 set(wrong)
 foreach(file IN LISTS files)
   file(STRINGS ${file} includes REGEX "^#include \"")

@@ -270,10 +270,12 @@ CAMBER_API camber_status camber_device_list(camber_context *context, size_t n, c
 /* Returns whether match names the device. match is as in camber_device_desc. */
 CAMBER_API bool camber_device_info_matches(const camber_device_info *info, const char *match);
 
+typedef enum camber_gl_display { CAMBER_GL_DISPLAY_EGL, CAMBER_GL_DISPLAY_GLX } camber_gl_display;
+
 /* A GL context that a device can share buffers with, as camber_surface_get_handles gives it. Zero: there is none. */
 typedef struct camber_gl_handles {
     intptr_t context, display;
-    intptr_t display_kind;         /* the name that OpenCL has for such displays: CL_EGL_DISPLAY_KHR, ... */
+    camber_gl_display display_kind;
     uint64_t largest_buffer_bytes; /* that the context's shaders can read. 0: no bound */
 } camber_gl_handles;
 

@@ -120,14 +120,16 @@ typedef struct camber_point_stages {
     uint32_t point;        /* of the polyline's kept points */
     float x, y;            /* px */
     uint32_t join;         /* classify's word; its bits: CAMBER_JOIN_* in kernels/layout.h */
-    uint32_t first_vertex; /* of the mesh: where emit puts this point's vertices */
+    uint32_t info;         /* flags, and the row above them: CAMBER_POINT_* in kernels/layout.h */
+    uint64_t first_vertex; /* of the mesh: where emit puts this point's vertices */
     uint64_t first_index;  /* and its indices */
 } camber_point_stages;
 
 /* The points of a tessellation. camber_stages_destroy frees them. */
 typedef struct camber_stages {
-    camber_context *context;     /* which allocated the array. NULL: nothing is there */
-    camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
+    camber_context *context;        /* which allocated the arrays. NULL: nothing is there */
+    camber_point_stages *points;    /* point_count, in input order; rings have their first point again at the end */
+    camber_arc_length *arc_lengths; /* as many. NULL: the tessellation has none */
     size_t point_count;
 } camber_stages;
 

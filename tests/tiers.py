@@ -98,7 +98,7 @@ class Arrows:
             with open(os.path.join(folder, name), encoding="utf-8", errors="replace") as file:
                 kernels[name] = set(re.findall(r'#\s*include\s+"(?:kernels/)?([\w.]+)"', file.read()))
         users = {layer: self._includes("src/" + layer) for layer in self.layers.links}
-        users.setdefault("cl", set()).update(kernels)  # embeds the programs
+        users.setdefault("gpu", set()).update(kernels)  # embeds the programs
         users.setdefault("gl", set()).update(self._includes("shaders"))  # and the shaders
         for included in users.values():
             waiting = list(included)

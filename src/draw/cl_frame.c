@@ -58,18 +58,17 @@ static camber_status draw_in_place(camber_renderer *renderer, const camber_raste
                                    const camber_raster_area *area, const destination *to) {
     const camber_device *device = renderer->share.device;
     camber_raster_pixels pixels;
-    cl_mem mem = NULL;
-    camber_status status =
-        camber_make_buffer(device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, camber_raster_bytes(area),
-                           to->place + 4 * (size_t)to->width * area->y, &mem);
+    camber_buffer *buffer = NULL;
+    camber_status status = camber_buffer_create(device, CAMBER_BUFFER_BORROWED, camber_raster_bytes(area),
+                                                to->place + 4 * (size_t)to->width * area->y, &buffer);
     if (status == CAMBER_OK)
-        status = camber_raster_draw_into(renderer->raster, scene, area, mem);
+        status = camber_raster_draw_into(renderer->raster, scene, area, buffer);
     if (status == CAMBER_OK)
         status = camber_raster_map(renderer->raster, &pixels); /* after which the host sees what kernels wrote */
     if (status == CAMBER_OK)
         camber_raster_unmap(renderer->raster, pixels);
-    clFinish(device->queue); /* the memory is the caller's alone again */
-    camber_release_buffer(device, &mem);
+    camber_device_settle(device); /* the memory is the caller's alone again */
+    camber_buffer_release(device, &buffer);
     return status;
 }
 

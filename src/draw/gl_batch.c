@@ -233,7 +233,7 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
             if (part != starts.finder.part) {
                 draw_strips(renderer, area); /* their part is bound, and may have to go */
                 camber_slot_starts_unmap(&starts);
-                status = camber_part_ensure_made(mesh, part);
+                status = camber_part_ensure_output(mesh, part);
                 if (status != CAMBER_OK)
                     break;
                 starts = camber_slot_starts_of(mesh, part);

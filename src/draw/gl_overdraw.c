@@ -72,7 +72,7 @@ static void draw_range(counting *c, camber_index_range range) {
         uint64_t count = range.index_count < INDICES_MAX ? range.index_count : INDICES_MAX;
         count = count < left ? count : left;
         if (part != c->bound) {
-            c->status = camber_part_ensure_made(mesh, part);
+            c->status = camber_part_ensure_output(mesh, part);
             if (c->status != CAMBER_OK)
                 return;
             camber_gl_bind_part(c->renderer, part);

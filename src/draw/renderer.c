@@ -89,33 +89,33 @@ const char *camber_rasterizer_get_name(camber_rasterizer draw) {
 
 /* ---- Meshes that a renderer draws: the GL context is current before GL buffers are touched ---- */
 
-static camber_status current_reserve(void *user, camber_buffer *buffer, size_t size_bytes) {
+static camber_status current_reserve(void *user, camber_shared_buffer *buffer, size_t size_bytes) {
     camber_renderer *renderer = user;
     const camber_status status = camber_surface_make_current(renderer->share.surface);
     return status == CAMBER_OK ? renderer->path->ops.reserve(&renderer->share, buffer, size_bytes) : status;
 }
 
-static camber_status current_begin(void *user, camber_buffer *buffers, size_t count) {
+static camber_status current_begin(void *user, camber_shared_buffer *buffers, size_t count) {
     camber_renderer *renderer = user;
     const camber_status status = camber_surface_make_current(renderer->share.surface);
     return status == CAMBER_OK ? renderer->path->ops.begin(&renderer->share, buffers, count) : status;
 }
 
-static camber_status current_finish(void *user, camber_buffer *buffers, size_t count, bool written) {
+static camber_status current_finish(void *user, camber_shared_buffer *buffers, size_t count, bool written) {
     camber_renderer *renderer = user;
     return renderer->path->ops.finish(&renderer->share, buffers, count, written);
 }
 
-static void current_release(void *user, camber_buffer *buffer) {
+static void current_release(void *user, camber_shared_buffer *buffer) {
     camber_renderer *renderer = user;
-    if (!buffer->mem && !buffer->gl_name)
+    if (!buffer->buffer && !buffer->gl_name)
         return;
     if (!camber_surface_try_current(renderer->share.surface))
         buffer->gl_name = 0; /* it goes with its context */
     renderer->path->ops.release(&renderer->share, buffer);
 }
 
-static const camber_buffer_ops current_ops = {current_reserve, current_begin, current_finish, current_release};
+static const camber_shared_buffer_ops current_ops = {current_reserve, current_begin, current_finish, current_release};
 
 camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh) {
     assert(!renderer || renderer->share.device == device);

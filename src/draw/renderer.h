@@ -40,7 +40,7 @@ struct camber_renderer {
     /* Draws in OpenCL; GL only brings its pixels into textures then. NULL: GL draws. */
     struct camber_raster *raster;
     struct camber_raster *areas; /* fills areas where GL draws the rest. NULL: none so far */
-    camber_buffer pixels;        /* that the rasterizer writes and GL reads */
+    camber_shared_buffer pixels; /* that the rasterizer writes and GL reads */
     camber_gl_drawing gl;        /* what GL draws with. Without a surface nothing */
     camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];
     size_t first_flight, flight_count; /* a ring */

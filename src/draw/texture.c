@@ -61,8 +61,8 @@ static camber_status upload(camber_renderer *renderer, const camber_raster_area 
 
 static camber_status draw_area(camber_renderer *renderer, const camber_raster_scene *scene,
                                const camber_raster_area *area, void *user) {
-    const camber_buffer_ops *ops = &renderer->path->ops;
-    camber_buffer *pixels = &renderer->pixels;
+    const camber_shared_buffer_ops *ops = &renderer->path->ops;
+    camber_shared_buffer *pixels = &renderer->pixels;
     (void)user;
     camber_status status = ops->reserve(&renderer->share, pixels, camber_raster_bytes(area));
     if (status != CAMBER_OK)
@@ -71,7 +71,7 @@ static camber_status draw_area(camber_renderer *renderer, const camber_raster_sc
     status = ops->begin(&renderer->share, pixels, 1);
     if (status != CAMBER_OK)
         return status;
-    status = camber_raster_draw_into(renderer->raster, scene, area, pixels->mem);
+    status = camber_raster_draw_into(renderer->raster, scene, area, pixels->buffer);
     camber_soft_log kept = {0};
     const bool told = status != CAMBER_OK; /* another error would be a second message */
     if (told)

@@ -13,17 +13,17 @@ const char *camber_sharing_get_name(camber_sharing sharing) {
     return "unknown";
 }
 
-void camber_share_release(void *user, camber_buffer *buffer) {
+void camber_share_release(void *user, camber_shared_buffer *output) {
     const camber_share *share = user;
-    camber_release_buffer(share->device, &buffer->mem);
-    if (buffer->gl_name)
-        share->surface->gl.DeleteBuffers(1, &buffer->gl_name);
-    *buffer = (camber_buffer){0};
+    camber_buffer_release(share->device, &output->buffer);
+    if (output->gl_name)
+        share->surface->gl.DeleteBuffers(1, &output->gl_name);
+    *output = (camber_shared_buffer){0};
 }
 
-void camber_share_await(camber_share *share, const camber_buffer *buffers, size_t count) {
+void camber_share_await(camber_share *share, const camber_shared_buffer *outputs, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (buffers[i].drawn_frame > share->frames_done) {
+        if (outputs[i].drawn_frame > share->frames_done) {
             share->surface->gl.Finish();
             share->frames_done = share->frames_begun;
         }
@@ -33,14 +33,14 @@ enum { PROBE_BYTES = 4096 };
 
 /* Whether GL reads this word from a buffer. GL makes a copy first, since a map of the buffer itself may be the very
  * memory that OpenCL wrote. */
-static bool gl_sees(const camber_gl *gl, GLuint buffer, cl_uint word) {
+static bool gl_sees(const camber_gl *gl, GLuint buffer, uint32_t word) {
     GLuint copy = 0;
     gl->GenBuffers(1, &copy);
     gl->BindBuffer(GL_COPY_READ_BUFFER, buffer);
     gl->BindBuffer(GL_COPY_WRITE_BUFFER, copy);
     gl->BufferData(GL_COPY_WRITE_BUFFER, PROBE_BYTES, NULL, GL_STREAM_READ);
     gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, PROBE_BYTES);
-    const cl_uint *seen = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, PROBE_BYTES, GL_MAP_READ_BIT);
+    const uint32_t *seen = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, PROBE_BYTES, GL_MAP_READ_BIT);
     const bool same = seen && seen[0] == word && seen[PROBE_BYTES / 4 - 1] == word;
     if (seen)
         gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
@@ -50,30 +50,33 @@ static bool gl_sees(const camber_gl *gl, GLuint buffer, cl_uint word) {
     return same;
 }
 
-/* Writes a word with OpenCL and reads it with GL. */
+/* Writes words from the device, and reads them with GL. */
 static camber_status try_path(camber_share *share, const camber_share_path *path) {
-    const cl_uint word = 0x63616d62u;
-    cl_command_queue queue = share->device->queue;
-    camber_buffer buffer = {0};
+    const camber_device *device = share->device;
+    const uint32_t word = 0x63616d62u;
+    uint32_t words[PROBE_BYTES / 4];
+    camber_shared_buffer output = {0};
     if (!path->is_possible(share))
         return CAMBER_ERROR_DEVICE;
-    camber_status status = path->ops.reserve(share, &buffer, PROBE_BYTES);
-    buffer.used_bytes = PROBE_BYTES;
+    camber_status status = path->ops.reserve(share, &output, PROBE_BYTES);
+    output.used_bytes = PROBE_BYTES;
     if (status == CAMBER_OK)
-        status = path->ops.begin(share, &buffer, 1);
+        status = path->ops.begin(share, &output, 1);
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        words[i] = word;
     if (status == CAMBER_OK) {
-        cl_int code = clEnqueueFillBuffer(queue, buffer.mem, &word, sizeof word, 0, PROBE_BYTES, 0, NULL, NULL);
-        if (code == CL_SUCCESS)
-            code = clFinish(queue);
-        status = path->ops.finish(share, &buffer, 1, true);
+        camber_status written = camber_buffer_write(device, output.buffer, 0, PROBE_BYTES, words);
+        if (written == CAMBER_OK)
+            written = camber_device_finish(device);
+        status = path->ops.finish(share, &output, 1, true);
         const bool same =
-            code == CL_SUCCESS && status == CAMBER_OK && gl_sees(&share->surface->gl, buffer.gl_name, word);
+            written == CAMBER_OK && status == CAMBER_OK && gl_sees(&share->surface->gl, output.gl_name, word);
         if (status == CAMBER_OK)
             status = camber_share_check(share, PROBE_BYTES);
         if (status == CAMBER_OK && !same)
             status = CAMBER_ERROR_DEVICE;
     }
-    path->ops.release(share, &buffer);
+    path->ops.release(share, &output);
     camber_surface_forget_errors(share->surface);
     return status;
 }

@@ -4,7 +4,7 @@
 
 #include "gl/surface.h"
 
-/* A device and a surface that share buffers: the user of camber_buffer_ops. */
+/* A device and a surface that share buffers: the user of camber_shared_buffer_ops. */
 typedef struct camber_share {
     camber_device *device;
     camber_surface *surface;
@@ -14,18 +14,18 @@ typedef struct camber_share {
 typedef struct camber_share_path {
     camber_sharing sharing;
     bool (*is_possible)(const camber_share *share);
-    camber_buffer_ops ops;
+    camber_shared_buffer_ops ops;
 } camber_share_path;
 
 extern const camber_share_path camber_share_gl;
 extern const camber_share_path camber_share_zero_copy;
 extern const camber_share_path camber_share_copy;
 
-/* Frees both sides of a buffer. */
-void camber_share_release(void *user, camber_buffer *buffer);
+/* Frees both sides of a output. */
+void camber_share_release(void *user, camber_shared_buffer *output);
 
 /* Waits for GL where a frame in flight reads one of the buffers. */
-void camber_share_await(camber_share *share, const camber_buffer *buffers, size_t count);
+void camber_share_await(camber_share *share, const camber_shared_buffer *outputs, size_t count);
 
 /* Whether GL has reported an error for a buffer of this size, as a status. */
 camber_status camber_share_check(const camber_share *share, size_t size_bytes);

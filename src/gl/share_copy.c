@@ -6,49 +6,48 @@ static bool is_possible(const camber_share *share) {
     return true;
 }
 
-static camber_status reserve(void *user, camber_buffer *buffer, size_t size_bytes) {
+static camber_status reserve(void *user, camber_shared_buffer *output, size_t size_bytes) {
     const camber_share *share = user;
     const camber_gl *gl = &share->surface->gl;
-    if (size_bytes <= buffer->capacity_bytes)
+    if (size_bytes <= output->capacity_bytes)
         return CAMBER_OK;
-    camber_share_release(user, buffer);
-    camber_status status = camber_make_buffer(share->device, CL_MEM_READ_WRITE, size_bytes, NULL, &buffer->mem);
+    camber_share_release(user, output);
+    camber_status status = camber_buffer_create(share->device, CAMBER_BUFFER_OWN, size_bytes, NULL, &output->buffer);
     if (status != CAMBER_OK)
         return status;
-    gl->GenBuffers(1, &buffer->gl_name);
-    gl->BindBuffer(GL_ARRAY_BUFFER, buffer->gl_name);
+    gl->GenBuffers(1, &output->gl_name);
+    gl->BindBuffer(GL_ARRAY_BUFFER, output->gl_name);
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, GL_DYNAMIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     status = camber_share_check(share, size_bytes);
     if (status == CAMBER_OK)
-        buffer->capacity_bytes = size_bytes;
+        output->capacity_bytes = size_bytes;
     return status;
 }
 
-static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
+static camber_status begin(void *user, camber_shared_buffer *outputs, size_t count) {
     (void)user;
-    (void)buffers;
+    (void)outputs;
     (void)count;
     return CAMBER_OK;
 }
 
-static camber_status finish(void *user, camber_buffer *buffers, size_t count, bool written) {
+static camber_status finish(void *user, camber_shared_buffer *outputs, size_t count, bool written) {
     const camber_share *share = user;
     const camber_gl *gl = &share->surface->gl;
     for (size_t i = 0; i < count && written; i++) {
-        cl_int code;
-        void *bytes = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0,
-                                         buffers[i].used_bytes, 0, NULL, NULL, &code);
-        if (code != CL_SUCCESS)
-            return camber_fail_cl(share->device->context, "clEnqueueMapBuffer", code);
-        gl->BindBuffer(GL_ARRAY_BUFFER, buffers[i].gl_name);
-        gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)buffers[i].used_bytes, bytes);
+        const void *bytes;
+        camber_status status =
+            camber_buffer_map(share->device, outputs[i].buffer, CAMBER_MAP_READ, outputs[i].used_bytes, &bytes);
+        if (status != CAMBER_OK)
+            return status;
+        gl->BindBuffer(GL_ARRAY_BUFFER, outputs[i].gl_name);
+        gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)outputs[i].used_bytes, bytes);
         gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-        code = clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, bytes, 0, NULL, NULL);
-        if (code == CL_SUCCESS)
-            code = clFinish(share->device->queue);
-        const camber_status status = code == CL_SUCCESS ? camber_share_check(share, buffers[i].used_bytes)
-                                                        : camber_fail_cl(share->device->context, "clFinish", code);
+        camber_buffer_unmap(share->device, outputs[i].buffer, bytes);
+        status = camber_device_finish(share->device);
+        if (status == CAMBER_OK)
+            status = camber_share_check(share, outputs[i].used_bytes);
         if (status != CAMBER_OK)
             return status;
     }

@@ -3,8 +3,8 @@
 #ifndef CAMBER_GL_SURFACE_H
 #define CAMBER_GL_SURFACE_H
 
-#include "cl/buffer.h"
 #include "gl/gl.h"
+#include "gpu/shared_buffer.h"
 
 typedef struct camber_surface_ops {
     camber_backend backend;

@@ -1,7 +1,6 @@
 /* EGL without a display: Mesa's surfaceless platform, else the first device that gives a GLES 3 context. */
 #include "gl/surface.h"
 
-#include <CL/cl_gl.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <dlfcn.h>
@@ -161,7 +160,7 @@ static void release(camber_surface *surface) {
 static camber_gl_handles handles(const camber_surface *surface) {
     const egl_state *egl = surface->state;
     return (camber_gl_handles){
-        .context = (intptr_t)egl->context, .display = (intptr_t)egl->display, .display_kind = CL_EGL_DISPLAY_KHR};
+        .context = (intptr_t)egl->context, .display = (intptr_t)egl->display, .display_kind = CAMBER_GL_DISPLAY_EGL};
 }
 
 static void destroy(camber_surface *surface) {

@@ -22,7 +22,7 @@ void camber_raster_destroy(camber_raster *raster) {
     if (!raster)
         return;
     for (int i = 0; i < BUFFERS; i++)
-        camber_release_buffer(raster->device, &raster->buffers[i]);
+        camber_buffer_release(raster->device, &raster->buffers[i]);
     camber_drawing_close(raster->device, &raster->memory);
     camber_free(raster->device->context, raster->setups);
     camber_free(raster->device->context, raster->jobs);
@@ -68,7 +68,7 @@ uint32_t camber_raster_widest(const camber_raster *raster) {
 }
 
 void camber_raster_drop(camber_raster *raster, int which) {
-    camber_release_buffer(raster->device, &raster->buffers[which]);
+    camber_buffer_release(raster->device, &raster->buffers[which]);
     raster->capacities[which] = 0;
     count_buffers(raster);
 }
@@ -85,8 +85,8 @@ camber_status camber_raster_reserve(camber_raster *raster, int which, size_t siz
     const size_t more = size_bytes + size_bytes / 4;
     const bool is_roomy = !raster->memory.allowed_bytes && more < device->info.largest_buffer_bytes;
     const size_t room = is_roomy ? more : size_bytes;
-    const cl_mem_flags flags = CL_MEM_READ_WRITE | (which == BUFFER_PIXELS ? CL_MEM_ALLOC_HOST_PTR : 0);
-    const camber_status status = camber_make_buffer(device, flags, room, NULL, &raster->buffers[which]);
+    const camber_buffer_kind kind = which == BUFFER_PIXELS ? CAMBER_BUFFER_READ_BACK : CAMBER_BUFFER_OWN;
+    const camber_status status = camber_buffer_create(device, kind, room, NULL, &raster->buffers[which]);
     if (status != CAMBER_OK)
         return status;
     raster->capacities[which] = room;
@@ -95,36 +95,30 @@ camber_status camber_raster_reserve(camber_raster *raster, int which, size_t siz
 }
 
 camber_status camber_raster_put(camber_raster *raster, int which, const void *bytes, size_t size_bytes) {
-    const camber_device *device = raster->device;
     const camber_status status = camber_raster_reserve(raster, which, size_bytes);
-    if (status != CAMBER_OK)
-        return status;
-    const cl_int code =
-        clEnqueueWriteBuffer(device->queue, raster->buffers[which], CL_FALSE, 0, size_bytes, bytes, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
+    return status == CAMBER_OK ? camber_buffer_write_later(raster->device, raster->buffers[which], 0, size_bytes, bytes)
+                               : status;
 }
 
 /* ---- Pixels ---- */
 
 /* The buffer that the last area was drawn into. */
-static cl_mem pixels_of(const camber_raster *raster) {
+static camber_buffer *pixels_of(const camber_raster *raster) {
     return raster->given ? raster->given : raster->buffers[BUFFER_PIXELS];
 }
 
 camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels) {
-    const camber_device *device = raster->device;
     const size_t row_bytes = 4 * camber_raster_stride_px(&raster->area);
-    cl_int code;
-    const void *rgba = clEnqueueMapBuffer(device->queue, pixels_of(raster), CL_TRUE, CL_MAP_READ, 0,
-                                          row_bytes * raster->area.height, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
-    *pixels = (camber_raster_pixels){rgba, row_bytes};
-    return CAMBER_OK;
+    const uint8_t *rgba;
+    const camber_status status =
+        camber_buffer_map(raster->device, pixels_of(raster), CAMBER_MAP_READ, row_bytes * raster->area.height, &rgba);
+    if (status == CAMBER_OK)
+        *pixels = (camber_raster_pixels){rgba, row_bytes};
+    return status;
 }
 
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels) {
-    clEnqueueUnmapMemObject(raster->device->queue, pixels_of(raster), (void *)(uintptr_t)pixels.rgba, 0, NULL, NULL);
+    camber_buffer_unmap(raster->device, pixels_of(raster), pixels.rgba);
     raster->given = NULL; /* it may go now */
 }
 
@@ -136,10 +130,7 @@ static camber_status get(camber_raster *raster, int which, size_t size_bytes, vo
     *bytes = camber_alloc(device->context, size_bytes, 1);
     if (!*bytes)
         return CAMBER_ERROR_MEMORY;
-    const cl_int code = size_bytes ? clEnqueueReadBuffer(device->queue, raster->buffers[which], CL_TRUE, 0, size_bytes,
-                                                         *bytes, 0, NULL, NULL)
-                                   : CL_SUCCESS;
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
+    return camber_buffer_read(device, raster->buffers[which], size_bytes, *bytes);
 }
 
 static camber_status copy_pixels(camber_raster *raster, uint8_t **rgba) {

@@ -80,7 +80,7 @@ camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scen
 /* The same, into a buffer of the caller that holds camber_raster_bytes, and that must live until pixels are unmapped or
  * something else is drawn. */
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
-                                      const camber_raster_area *area, cl_mem pixels);
+                                      const camber_raster_area *area, camber_buffer *pixels);
 /* Maps the pixels of the area that was drawn last, until they are unmapped. */
 camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels);
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels);

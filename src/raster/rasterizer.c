@@ -8,7 +8,7 @@
 #include "kernels/area.h"
 
 #include "base/stages.h"
-#include "cl/launch.h"
+#include "gpu/launch.h"
 
 #include <string.h>
 
@@ -40,10 +40,9 @@ static camber_status settle(camber_raster *raster) {
     camber_status status = CAMBER_OK;
     for (size_t i = raster->pending_count; i-- > 0;) {
         const camber_raster_pending *one = raster->pending + i;
-        const cl_int code = clWaitForEvents(1, &one->event);
-        camber_add_ms(one->event, raster->ms + one->stage);
-        if (code != CL_SUCCESS)
-            status = camber_fail_stage(raster->device, "clWaitForEvents", stage_name(one->stage), code);
+        const camber_status waited = camber_event_wait(raster->device, one->event, stage_name(one->stage));
+        camber_event_end(raster->device, one->event, raster->ms + one->stage);
+        status = status == CAMBER_OK ? waited : status;
     }
     raster->pending_count = 0;
     return status;
@@ -53,11 +52,11 @@ static camber_status settle(camber_raster *raster) {
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
     const size_t a_job = stage == STAGE_RASTERIZE && camber_raster_draws_cells(raster) ? CAMBER_CELLS : 1;
-    const cl_kernel kernels[STAGES] = {raster->program->setup,    raster->program->bin_count,
-                                       raster->program->bin_scan, raster->program->bin_scatter,
-                                       raster->program->wind,     raster->program->rasterize};
+    camber_kernel *const kernels[STAGES] = {raster->program->setup,    raster->program->bin_count,
+                                            raster->program->bin_scan, raster->program->bin_scatter,
+                                            raster->program->wind,     raster->program->rasterize};
     const camber_launch launch = {stage_name(stage), kernels[stage], args, arg_count, a_job * job_count, a_job};
-    cl_event event = NULL;
+    camber_event *event = NULL;
     if (job_count == 0)
         return CAMBER_OK;
     const camber_status status = camber_launch_kernel(raster->device, &launch, &event);
@@ -83,10 +82,10 @@ static bool cut_range(const camber_raster *raster, camber_slot_range *range) {
 }
 
 /* Starts setup for ranges of one part by so many work-items. part: NULL for fills, which have no points. */
-static camber_status set_up(camber_raster *raster, const camber_setup_args *args, cl_uint count, size_t items,
+static camber_status set_up(camber_raster *raster, const camber_setup_args *args, uint32_t count, size_t items,
                             const camber_mesh_part *part) {
     const camber_status status = camber_raster_put(raster, BUFFER_SETUPS, args, count * sizeof *args);
-    cl_mem nothing = raster->buffers[BUFFER_ROWS];
+    camber_buffer *nothing = raster->buffers[BUFFER_ROWS];
     const camber_kernel_arg arguments[] = {CAMBER_ARG_BUFFER(part ? part->x : nothing),
                                            CAMBER_ARG_BUFFER(part ? part->y : nothing),
                                            CAMBER_ARG_BUFFER(part ? part->info : nothing),
@@ -113,13 +112,13 @@ static camber_status set_up_part(camber_raster *raster, const listed_scene *p, s
     camber_setup_args *args = raster->setups + first;
     camber_status status = CAMBER_OK;
     size_t items = 0;
-    cl_uint count = 0;
+    uint32_t count = 0;
     for (size_t i = first; i < end && status == CAMBER_OK; i++) {
         camber_slot_range range = p->list.ranges[i];
         if (!cut_range(raster, &range))
             continue;
-        if (count == 0 && part)
-            status = camber_part_ensure_points(mesh, part);
+        if (part) /* edges have no joins */
+            status = range.is_area ? camber_part_ensure_made(mesh, part) : camber_part_ensure_points(mesh, part);
         args[count] = camber_raster_setup_args(p->scene, &range, &raster->band);
         args[count++].first_item = (uint32_t)items;
         items += (range.end - range.first + an_item - 1) / an_item;
@@ -194,20 +193,20 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     const camber_device *device = raster->device;
     const size_t lists = raster->list_count;
     uint64_t sum = 0;
-    cl_int code;
+    const uint32_t *totals;
     if (!camber_grow(device->context, &raster->starts, &raster->start_capacity, lists + 2, sizeof *raster->starts))
         return CAMBER_ERROR_MEMORY;
-    cl_uint *totals = clEnqueueMapBuffer(device->queue, raster->buffers[BUFFER_TOTALS], CL_TRUE, CL_MAP_READ, 0,
-                                         4 * lists, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    camber_status status =
+        camber_buffer_map(device, raster->buffers[BUFFER_TOTALS], CAMBER_MAP_READ, 4 * lists, &totals);
+    if (status != CAMBER_OK)
+        return status;
     for (size_t i = 0; i < lists; i++) {
         raster->starts[i] = (uint32_t)sum;
         sum += totals[i];
     }
     /* One more than there are lists, as rasterize looks at the next tile's list, too. */
     raster->starts[lists] = raster->starts[lists + 1] = (uint32_t)sum;
-    clEnqueueUnmapMemObject(device->queue, raster->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
+    camber_buffer_unmap(device, raster->buffers[BUFFER_TOTALS], totals);
     const uint64_t crossings = sum - raster->starts[raster->tile_count];
     *fits = 4 * (sum + CAMBER_CROSSING_WORDS * crossings) <= camber_raster_most_bytes(raster, CAMBER_RASTER_LISTS) ||
             (raster->band.height <= CAMBER_TILE_PX && raster->segment_count <= 16);
@@ -216,7 +215,7 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     if (sum > UINT32_MAX)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT, "%llu segments in tiles; draw less at once",
                            (unsigned long long)sum);
-    camber_status status = camber_raster_put(raster, BUFFER_STARTS, raster->starts, 4 * (lists + 2));
+    status = camber_raster_put(raster, BUFFER_STARTS, raster->starts, 4 * (lists + 2));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_LISTS, 4 * (sum ? (size_t)sum : 1));
     return status;
@@ -535,7 +534,7 @@ static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
 }
 
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
-                                      const camber_raster_area *area, cl_mem pixels) {
+                                      const camber_raster_area *area, camber_buffer *pixels) {
     camber_context *context = raster->device->context;
     listed_scene p = {.scene = scene, .list = {.context = context}};
     memset(raster->ms, 0, sizeof raster->ms);
@@ -556,7 +555,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
         status = draw_bands(raster, &p);
     const camber_status settled = settle(raster);
     if (status != CAMBER_OK)
-        clFinish(raster->device->queue); /* the scene may be freed: what was put must have been copied */
+        camber_device_settle(raster->device); /* the scene may be freed: what was put must have been copied */
     status = status == CAMBER_OK ? settled : status;
     camber_raster_free_ranges(&p.list);
     return status;

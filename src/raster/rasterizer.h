@@ -32,7 +32,7 @@ enum { STAGE_SETUP, STAGE_BIN_COUNT, STAGE_BIN_SCAN, STAGE_BIN_SCATTER, STAGE_WI
 
 /* A kernel that was started, and its stage. */
 typedef struct camber_raster_pending {
-    cl_event event;
+    camber_event *event;
     int stage;
 } camber_raster_pending;
 enum { CAMBER_RASTER_PENDING = 32 };
@@ -41,7 +41,7 @@ struct camber_raster {
     camber_device *device;
     camber_program *program; /* of the variant */
     unsigned variant;        /* of what was drawn last */
-    cl_mem buffers[BUFFERS];
+    camber_buffer *buffers[BUFFERS];
     size_t capacities[BUFFERS];
     camber_setup_args *setups; /* of the slice's ranges. This and the next are in host memory: */
     size_t setup_capacity;
@@ -51,7 +51,7 @@ struct camber_raster {
     size_t spill_count, spills_before;   /* tiles that have one, and those that had one before the slice */
     camber_raster_area area;             /* drawn last */
     camber_raster_area band;             /* the band of the area: whole rows of tiles whose lists and spills fit */
-    cl_mem given;                        /* the caller's buffer for the pixels; NULL: a buffer of our own */
+    camber_buffer *given;                /* the caller's buffer for the pixels; NULL: a buffer of our own */
     uint32_t columns;                    /* tiles */
     size_t first_segment, segment_count; /* of the slice */
     size_t first_edge, end_edge;         /* those of camber_range_list */

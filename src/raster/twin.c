@@ -33,10 +33,10 @@ static point point_at(const camber_part_points *part, int64_t word, const camber
     return (point){part->x[i], part->y[i], part->joins[i], part->info[i]};
 }
 
-static bool ends_segment(const point *b) {
+static bool ends_segment(const point *b, bool is_edge) {
     const uint32_t kind = camber_join_kind(b->join);
-    return b->info & CAMBER_POINT_REAL && kind != CAMBER_KIND_SENTINEL &&
-           (!(b->info & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT);
+    const bool follows = b->info & CAMBER_POINT_REAL && !(b->info & CAMBER_POINT_FIRST);
+    return is_edge ? follows : kind == CAMBER_KIND_DOT || (follows && kind != CAMBER_KIND_SENTINEL);
 }
 
 /* The point that may end a segment in a slot, and the two before it. */
@@ -51,7 +51,7 @@ static three_points points_of(const camber_part_points *part, const camber_setup
                               .before = {-CAMBER_FILL_PX, 0.0f, CAMBER_FILL_JOIN, 0},
                               .ends = slot == 0};
     three_points p = {point_at(part, slot + 1, r), point_at(part, slot, r), point_at(part, slot - 1, r), false};
-    p.ends = slot < r->end && ends_segment(&p.b);
+    p.ends = slot < r->end && ends_segment(&p.b, r->makes == CAMBER_MAKES_EDGES);
     return p;
 }
 
@@ -102,14 +102,15 @@ static void put_segment(const camber_twin *t, const camber_part_points *part, co
                         size_t segment) {
     const three_points points = points_of(part, r, slot);
     const point b = points.b, p = points.first;
-    const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT, ends = points.ends;
+    const bool is_edge = r->makes == CAMBER_MAKES_EDGES, ends = points.ends;
+    const bool is_dot = !is_edge && camber_join_kind(b.join) == CAMBER_KIND_DOT;
     const point a = is_dot ? b : points.before;
     const float *row =
         t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.info >> CAMBER_POINT_ROW_SHIFT : 0));
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
     camber_segment s;
     bool drawn = ends && row[0] >= 0.0f;
-    if (r->makes == CAMBER_MAKES_EDGES) {
+    if (is_edge) {
         camber_edge_segment(a.x + x, a.y + y, b.x + x, b.y + y, &s);
         const camber_segment flat = s;
         drawn = drawn && (!t->scene->pitched || camber_pitch_edge_of(r->eye, &flat, &s));

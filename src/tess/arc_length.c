@@ -5,7 +5,7 @@
  * Both add up integers (kernels/arc_length.h), so that the order does not matter and they agree bit for bit. */
 #include "tess/arc_length.h"
 
-#include "cl/launch.h"
+#include "gpu/launch.h"
 #include "kernels/arc_length.h"
 
 #include <string.h>
@@ -28,15 +28,13 @@ static void carry(camber_u64 *sums, size_t chunk_count) {
     }
 }
 
-static camber_status carry_sums(const camber_device *device, cl_mem sums, size_t chunk_count) {
-    cl_int code;
-    camber_u64 *mapped = clEnqueueMapBuffer(device->queue, sums, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
-                                            16 * chunk_count, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+static camber_status carry_sums(const camber_device *device, camber_buffer *sums, size_t chunk_count) {
+    camber_u64 *mapped;
+    const camber_status status = camber_buffer_map(device, sums, CAMBER_MAP_READ_WRITE, 16 * chunk_count, &mapped);
+    if (status != CAMBER_OK)
+        return status;
     carry(mapped, chunk_count);
-    code = clEnqueueUnmapMemObject(device->queue, sums, mapped, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueUnmapMemObject", code);
+    return camber_buffer_unmap_written(device, sums, mapped);
 }
 
 camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *part) {
@@ -47,7 +45,7 @@ camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *p
         return status;
     const camber_source_line_buffers *c = &part->source_line;
     const bool beside = mesh->has_offsets;
-    cl_mem sums = beside ? c->lengths : part->lengths;
+    camber_buffer *sums = beside ? c->lengths : part->lengths;
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(beside ? c->x : part->x),
                                       CAMBER_ARG_BUFFER(beside ? c->y : part->y),
                                       CAMBER_ARG_BUFFER(beside ? c->info : part->info), CAMBER_ARG_BUFFER(sums),

@@ -8,7 +8,7 @@
  *     chunks        |   0   |   1   |   2   |   3   |
  *     cull_count        5       0       9       4          slots
  *     chunk_bases       0       5       5      14     18   slots before, and all */
-#include "cl/launch.h"
+#include "gpu/launch.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -53,7 +53,7 @@ size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part 
 
 /* Describes a launch over the chunks of a part. */
 static camber_launch over_chunks(const camber_device *device, const camber_projection *p, const char *name,
-                                 cl_kernel kernel) {
+                                 camber_kernel *kernel) {
     return (camber_launch){.name = name,
                            .kernel = kernel,
                            .work_items = part_chunks(p),
@@ -75,12 +75,12 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
         return CAMBER_ERROR_MEMORY;
     if (chunks <= held->chunk_capacity)
         return CAMBER_OK;
-    camber_release_buffer(mesh->device, &held->counts);
-    camber_release_buffer(mesh->device, &held->bases);
+    camber_buffer_release(mesh->device, &held->counts);
+    camber_buffer_release(mesh->device, &held->bases);
     held->chunk_capacity = 0;
-    status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * chunks, NULL, &held->counts);
+    status = camber_buffer_create(mesh->device, CAMBER_BUFFER_OWN, 4 * chunks, NULL, &held->counts);
     if (status == CAMBER_OK)
-        status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * (chunks + 1), NULL, &held->bases);
+        status = camber_buffer_create(mesh->device, CAMBER_BUFFER_OWN, 4 * (chunks + 1), NULL, &held->bases);
     if (status == CAMBER_OK)
         held->chunk_capacity = chunks;
     camber_mesh_count_bytes(mesh);
@@ -102,24 +102,23 @@ static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part
                                       CAMBER_ARG_BUFFER(held->counts),
                                       CAMBER_ARG_VALUE(*p)};
     camber_launch launch = over_chunks(device, p, "cull_count", held->program->cull_count);
-    cl_event event = NULL;
+    camber_event *event = NULL;
     launch.args = args;
     launch.arg_count = sizeof args / sizeof *args;
-    const camber_status status = camber_launch_kernel(device, &launch, &event);
+    const uint32_t *counts;
+    camber_status status = camber_launch_kernel(device, &launch, &event);
     if (status != CAMBER_OK)
         return status;
-    cl_int code;
-    const cl_uint *counts =
-        clEnqueueMapBuffer(device->queue, held->counts, CL_TRUE, CL_MAP_READ, 0, 4 * chunks, 0, NULL, NULL, &code);
+    status = camber_buffer_map(device, held->counts, CAMBER_MAP_READ, 4 * chunks, &counts);
     camber_mesh_add_time(mesh, CAMBER_STAGE_CULL_COUNT, event);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    if (status != CAMBER_OK)
+        return status;
     *slots = 0;
     for (size_t i = 0; i <= chunks; i++) {
         part->chunk_bases[i] = (uint32_t)*slots;
         *slots += i < chunks ? counts[i] : 0;
     }
-    clEnqueueUnmapMemObject(device->queue, held->counts, (void *)(uintptr_t)counts, 0, NULL, NULL);
+    camber_buffer_unmap(device, held->counts, counts);
     return CAMBER_OK;
 }
 
@@ -157,7 +156,7 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, padded)
                                : camber_part_reserve_with_spare(mesh, part, padded);
     if (status == CAMBER_OK)
-        status = camber_write_buffer_later(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
+        status = camber_buffer_write_later(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
     if (status != CAMBER_OK)
         return status;
     const camber_section *section = mesh->held->sections + part->section;

@@ -1,4 +1,4 @@
-/* Counts what the meshes of a device hold, and evicts parts and sections where that is bounded (cl/memory.h).
+/* Counts what the meshes of a device hold, and evicts parts and sections where that is bounded (gpu/memory.h).
  *
  * Main idea: everything evicted can be made again, parts from their source and sections from host memory. So when bytes
  * are needed, camber_mesh_evict_for goes through this list until they are free, one step at a time, and starts again at

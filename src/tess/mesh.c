@@ -6,16 +6,18 @@
 
 #include "kernels/join.h"
 
+#include <string.h>
+
 /* ---- Mesh ---- */
 
-camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
+camber_status camber_mesh_create_on(camber_device *device, const camber_shared_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh) {
     const camber_status status = camber_check_process(device->context);
     camber_mesh *made = status == CAMBER_OK ? camber_alloc_zero(device->context, 1, sizeof *made) : NULL;
     if (!made)
         return status == CAMBER_OK ? CAMBER_ERROR_MEMORY : status;
     made->device = device;
-    made->ops = ops ? ops : &camber_buffer_plain;
+    made->ops = ops ? ops : &camber_shared_buffer_plain;
     made->ops_user = ops ? ops_user : device;
     made->buffer_copies = 1;
     made->empty = true;
@@ -32,8 +34,8 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_mesh_return_points(mesh);
     camber_mesh_release_parts(mesh);
     camber_mesh_release_source(mesh);
-    camber_release_buffer(mesh->device, &mesh->rows);
-    camber_release_buffer(mesh->device, &mesh->offset_rows);
+    camber_buffer_release(mesh->device, &mesh->rows);
+    camber_buffer_release(mesh->device, &mesh->offset_rows);
     camber_mesh **link = &mesh->device->meshes;
     while (*link != mesh)
         link = &(*link)->next;
@@ -49,33 +51,30 @@ void camber_mesh_destroy(camber_mesh *mesh) {
 /* ---- Counts ---- */
 
 /* Adds up the joins and segments of slots, from their join and info words. */
-static void count_words(const cl_uint *joins, const cl_uint *info, size_t slot_count, camber_mesh_info *counts,
+static void count_words(const uint32_t *joins, const uint32_t *info, size_t slot_count, camber_mesh_info *counts,
                         size_t *segments) {
     for (size_t i = 1; i <= slot_count; i++) {
         camber_mesh_info_add_join(counts, joins[i], info[i]);
-        *segments += info[i] & CAMBER_POINT_REAL && !(info[i] & CAMBER_POINT_FIRST);
+        *segments += (info[i] & (CAMBER_POINT_REAL | CAMBER_POINT_FIRST | CAMBER_POINT_AREA)) == CAMBER_POINT_REAL;
         *segments += camber_join_kind(joins[i]) == CAMBER_KIND_DOT;
     }
 }
 
 camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
                                       size_t *segments) {
-    cl_command_queue queue = mesh->device->queue;
+    const camber_device *device = mesh->device;
     const size_t size_bytes = 4 * (part->slot_count + 2);
-    cl_int code;
+    const uint32_t *joins = NULL, *info = NULL;
     if (part->slot_count == 0)
         return CAMBER_OK;
-    cl_uint *joins = clEnqueueMapBuffer(queue, part->joins, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
-    if (code == CL_SUCCESS) {
-        cl_uint *info =
-            clEnqueueMapBuffer(queue, part->info, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
-        if (code == CL_SUCCESS) {
-            count_words(joins, info, part->slot_count, counts, segments);
-            clEnqueueUnmapMemObject(queue, part->info, info, 0, NULL, NULL);
-        }
-        clEnqueueUnmapMemObject(queue, part->joins, joins, 0, NULL, NULL);
-    }
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
+    camber_status status = camber_buffer_map(device, part->joins, CAMBER_MAP_READ, size_bytes, &joins);
+    if (status == CAMBER_OK)
+        status = camber_buffer_map(device, part->info, CAMBER_MAP_READ, size_bytes, &info);
+    if (status == CAMBER_OK)
+        count_words(joins, info, part->slot_count, counts, segments);
+    camber_buffer_unmap(device, part->info, info);
+    camber_buffer_unmap(device, part->joins, joins);
+    return status;
 }
 
 void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t segments) {
@@ -136,32 +135,25 @@ camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part
     return status;
 }
 
-static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *buffer, size_t size_bytes, void *bytes) {
-    if (size_bytes == 0)
-        return CAMBER_OK;
-    const cl_int code =
-        clEnqueueReadBuffer(mesh->device->queue, buffer->mem, CL_TRUE, 0, size_bytes, bytes, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
-}
-
-/* Reads size_bytes of each record, from its byte offset_bytes on. A record with an arc length has 32 bytes. */
-static camber_status read_words(const camber_mesh *mesh, const camber_mesh_part *part, size_t offset_bytes,
-                                size_t size_bytes, void *bytes) {
-    const size_t from[3] = {offset_bytes, 0, 0}, to[3] = {0, 0, 0}, region[3] = {size_bytes, part->record_count, 1};
-    const cl_int code =
-        clEnqueueReadBufferRect(mesh->device->queue, part->buffers[CAMBER_BUFFER_RECORDS].mem, CL_TRUE, from, to,
-                                region, camber_record_bytes(&mesh->mesh_info), 0, size_bytes, 0, bytes, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBufferRect", code);
-}
-
+/* Reads the records of a part. With arc lengths one has 32 bytes, of which the first 16 are its words. */
 static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
+    camber_buffer *buffer = part->buffers[CAMBER_BUFFER_RECORDS].buffer;
     camber_record *records = data->records + part->first_record;
+    const size_t count = part->record_count, record_bytes = camber_record_bytes(&mesh->mesh_info);
+    const uint8_t *mapped;
     if (!mesh->mesh_info.has_arc_length)
-        return read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *records, records);
-    const camber_status status = read_words(mesh, part, 0, sizeof *records, records);
-    return status == CAMBER_OK ? read_words(mesh, part, sizeof *records, sizeof *data->arc_lengths,
-                                            data->arc_lengths + part->first_record)
-                               : status;
+        return camber_buffer_read(mesh->device, buffer, count * record_bytes, records);
+    const camber_status status =
+        camber_buffer_map(mesh->device, buffer, CAMBER_MAP_READ, count * record_bytes, &mapped);
+    if (status != CAMBER_OK)
+        return status;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(records + i, mapped + i * record_bytes, sizeof *records);
+        memcpy(data->arc_lengths + part->first_record + i, mapped + i * record_bytes + sizeof *records,
+               sizeof *data->arc_lengths);
+    }
+    camber_buffer_unmap(mesh->device, buffer, mapped);
+    return CAMBER_OK;
 }
 
 /* Reads a part's records and corners behind those of the parts before, and numbers the corners' records on. */
@@ -174,8 +166,8 @@ static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber
         return status;
     status = read_records(mesh, part, data);
     if (status == CAMBER_OK && data->corners)
-        status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_INDICES, 4 * part->index_count,
-                             data->corners + part->first_index);
+        status = camber_buffer_read(mesh->device, part->buffers[CAMBER_BUFFER_INDICES].buffer, 4 * part->index_count,
+                                    data->corners + part->first_index);
     status = camber_part_finish(mesh, part, false, status);
     const uint32_t base = (uint32_t)part->first_record << CAMBER_CORNER_BITS;
     for (size_t i = 0; data->corners && status == CAMBER_OK && i < part->index_count; i++)

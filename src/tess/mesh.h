@@ -14,9 +14,9 @@
 #define CAMBER_TESS_MESH_H
 
 #include "base/stages.h"
-#include "cl/buffer.h"
-#include "cl/memory.h"
-#include "cl/program.h"
+#include "gpu/memory.h"
+#include "gpu/program.h"
+#include "gpu/shared_buffer.h"
 #include "lines/lines.h"
 
 #include "camber_proof.h"
@@ -26,8 +26,8 @@
 /* Buffers of a part whose lines have an offset: the slots of the source lines beside which they lie, and what the
  * offset stages find out about each. The part's own buffers then hold the offset lines. */
 typedef struct camber_source_line_buffers {
-    cl_mem x, y, info, clips, counts, places;
-    cl_mem lengths, arc_lengths; /* only with arc lengths */
+    camber_buffer *x, *y, *info, *clips, *counts, *places;
+    camber_buffer *lengths, *arc_lengths; /* only with arc lengths */
     size_t slot_capacity;
 } camber_source_line_buffers;
 
@@ -35,7 +35,7 @@ typedef struct camber_source_line_buffers {
  * Where buffers would be too large for the device or for its bound on memory, there are several, in the order of their
  * polylines. */
 typedef struct camber_mesh_part {
-    camber_buffer buffers[2]; /* records; indices, which strips do not have */
+    camber_shared_buffer buffers[2]; /* records; indices, which strips do not have */
     size_t first_polyline, polyline_count;
     size_t first_slot, given_count; /* slots before the offset stages; given_count is padded to whole blocks */
     size_t slot_count;              /* slots that classify reads: those given, or those of the offset lines */
@@ -46,8 +46,8 @@ typedef struct camber_mesh_part {
     size_t chunk_capacity;
     bool uploaded;
     bool lent; /* x, y and info are arrays of the polylines, which kernels read in place */
-    cl_mem x, y, info, joins, offsets, sums, bases;
-    cl_mem lengths, arc_lengths; /* only with arc lengths: sums of chunks; a camber_arc_length a slot */
+    camber_buffer *x, *y, *info, *joins, *offsets, *sums, *bases;
+    camber_buffer *lengths, *arc_lengths; /* only with arc lengths: sums of chunks; a camber_arc_length a slot */
     size_t slot_capacity;
     camber_source_line_buffers source_line;
     uint64_t *host_bases; /* first vertex and first index of each block, then the totals */
@@ -65,7 +65,7 @@ typedef struct camber_mesh_part {
 struct camber_mesh {
     camber_device *device;
     const void *owner; /* the renderer that may draw it, compared and never read here; NULL: nobody */
-    const camber_buffer_ops *ops;
+    const camber_shared_buffer_ops *ops;
     void *ops_user;
     unsigned buffer_copies; /* how often each output buffer lies in memory: 2 where GL gets a copy */
     camber_mesh *next;      /* in the device's list */
@@ -88,11 +88,11 @@ struct camber_mesh {
     camber_mesh_part *parts; /* part_capacity, of which the first part_count are in use */
     size_t part_count, part_capacity;
 
-    cl_mem rows;
+    camber_buffer *rows;
     camber_row *host_rows; /* the host's copy of rows */
     size_t row_capacity, host_row_capacity;
-    bool has_offsets;   /* a row has an offset: parts have buffers for source lines */
-    cl_mem offset_rows; /* each row's values for the offset stages */
+    bool has_offsets;           /* a row has an offset: parts have buffers for source lines */
+    camber_buffer *offset_rows; /* each row's values for the offset stages */
     size_t offset_row_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are valid */
@@ -109,7 +109,7 @@ struct camber_mesh {
 
 enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 
-camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
+camber_status camber_mesh_create_on(camber_device *device, const camber_shared_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
 /* Makes a part again unless its buffers hold what the mesh is drawn from. part points into mesh->parts. Other parts may
  * be evicted. */
@@ -124,7 +124,7 @@ camber_status camber_part_ensure_output(camber_mesh *mesh, camber_mesh_part *par
 camber_status camber_part_number(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_info *counts);
 /* The first slot of a polyline in its part. One just behind the part's last gives the end of its slots. places: those
  * of the slots of offset lines, mapped; not read where the mesh has no offsets, nor for an end. */
-size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places, size_t polyline);
+size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const uint32_t *places, size_t polyline);
 /* The same among the given slots, before the offset stages. */
 size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* How many output buffers each part has. */
@@ -148,7 +148,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
 typedef struct camber_slot_finder {
     const camber_mesh *mesh;
     const camber_mesh_part *part; /* which is made */
-    cl_uint *places;              /* mapped; NULL: nobody asked yet, or the mesh has no offsets */
+    const uint32_t *places;       /* mapped; NULL: nobody asked yet, or the mesh has no offsets */
 } camber_slot_finder;
 
 /* The first slot of a polyline. One just after the part's last gives the end. Offset lines make it wait for the device,
@@ -159,9 +159,9 @@ void camber_slot_finder_close(camber_slot_finder *finder);
 
 /* Where the output of a part's polylines begins, too, from what classify and scan left. */
 typedef struct camber_slot_starts {
-    camber_slot_finder finder;       /* its part has been scanned */
-    cl_uint *joins, *info, *offsets; /* mapped; NULL: nobody asked yet */
-    size_t at;                       /* the slot that was asked for last, and sum for it */
+    camber_slot_finder finder;              /* its part has been scanned */
+    const uint32_t *joins, *info, *offsets; /* mapped; NULL: nobody asked yet */
+    size_t at;                              /* the slot that was asked for last, and sum for it */
     uint32_t sum;
 } camber_slot_starts;
 
@@ -195,7 +195,7 @@ camber_status camber_part_read_points(camber_mesh *mesh, camber_mesh_part *part,
 void camber_part_points_free(camber_context *context, camber_part_points *points);
 
 /* Adds the time that a command took to the stage's time in the mesh's info, and releases its event. */
-void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event);
+void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, camber_event *event);
 
 /* parts.c: divides polylines into parts whose input the device can hold. Parts, and what is uploaded to them, stay
  * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits into no part. */

@@ -51,8 +51,8 @@ static inline size_t camber_network_first_point(const camber_network *network, s
 typedef struct camber_section {
     size_t first_entry, end_entry;
     size_t first_point, end_point;
-    cl_mem x, y, importance, stretches, chunk_stretches; /* NULL: not on the device now */
-    cl_mem lengths, totals;                              /* NULL where the network has no arc lengths */
+    camber_buffer *x, *y, *importance, *stretches, *chunk_stretches; /* NULL: not on the device now */
+    camber_buffer *lengths, *totals;                                 /* NULL where the network has no arc lengths */
     uint64_t held_bytes;
 } camber_section;
 
@@ -63,9 +63,9 @@ struct camber_held_network {
     camber_program *program;
     camber_section *sections;
     size_t section_count, section_capacity;
-    cl_mem counts, bases; /* one a chunk of the part in work: slots, and slots before; all parts take turns */
+    camber_buffer *counts, *bases; /* one a chunk of the part in work: slots, and slots before; all parts take turns */
     size_t chunk_capacity;
-    cl_event projected; /* the launch of cull_emit, until its time has been added */
+    camber_event *projected; /* the launch of cull_emit, until its time has been added */
 };
 
 /* Adds a holder: the network lives until each has called camber_network_destroy. */

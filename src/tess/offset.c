@@ -11,7 +11,7 @@
  * The twin walks the source lines slot by slot and appends. */
 #include "tess/offset.h"
 
-#include "cl/launch.h"
+#include "gpu/launch.h"
 #include "kernels/arc_length.h"
 
 #include <math.h>
@@ -47,7 +47,7 @@ static camber_status make_offset_rows(camber_context *context, const camber_tess
 }
 
 static void release_offset_rows(camber_mesh *mesh) {
-    camber_release_buffer(mesh->device, &mesh->offset_rows);
+    camber_buffer_release(mesh->device, &mesh->offset_rows);
     mesh->offset_row_capacity = 0;
 }
 
@@ -59,14 +59,14 @@ static camber_status upload_offset_rows(camber_mesh *mesh, const camber_tessella
         release_offset_rows(mesh);
         status = camber_mesh_make_room(mesh, NULL, size_bytes);
         if (status == CAMBER_OK)
-            status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, size_bytes, NULL, &mesh->offset_rows);
+            status = camber_buffer_create(mesh->device, CAMBER_BUFFER_OWN, size_bytes, NULL, &mesh->offset_rows);
         mesh->offset_row_capacity = status == CAMBER_OK ? count : 0;
         camber_mesh_count_bytes(mesh);
     }
     if (status == CAMBER_OK)
         status = make_offset_rows(mesh->device->context, desc, &offset_rows);
     if (status == CAMBER_OK)
-        status = camber_write_buffer(mesh->device, mesh->offset_rows, 0, size_bytes, offset_rows);
+        status = camber_buffer_write(mesh->device, mesh->offset_rows, 0, size_bytes, offset_rows);
     camber_free(mesh->device->context, offset_rows);
     return status;
 }
@@ -88,11 +88,11 @@ camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellati
 enum { SOURCE_LINE_BUFFERS = 8 };
 
 void camber_source_line_release(const camber_device *device, camber_source_line_buffers *source_line) {
-    cl_mem *mems[SOURCE_LINE_BUFFERS] = {&source_line->x,       &source_line->y,          &source_line->info,
-                                         &source_line->clips,   &source_line->counts,     &source_line->places,
-                                         &source_line->lengths, &source_line->arc_lengths};
+    camber_buffer **buffers[SOURCE_LINE_BUFFERS] = {
+        &source_line->x,      &source_line->y,      &source_line->info,    &source_line->clips,
+        &source_line->counts, &source_line->places, &source_line->lengths, &source_line->arc_lengths};
     for (size_t i = 0; i < SOURCE_LINE_BUFFERS; i++)
-        camber_release_buffer(device, mems[i]);
+        camber_buffer_release(device, buffers[i]);
     source_line->slot_capacity = 0;
 }
 
@@ -110,7 +110,7 @@ static camber_status make_source_line(const camber_device *device, bool has_arc_
                                       camber_source_line_buffers *source_line, size_t slots) {
     const size_t words = slots + 2;
     const struct {
-        cl_mem *mem;
+        camber_buffer **buffer;
         size_t size_bytes;
     } wanted[SOURCE_LINE_BUFFERS] = {
         {&source_line->x, 4 * words},
@@ -126,7 +126,7 @@ static camber_status make_source_line(const camber_device *device, bool has_arc_
     camber_status status = CAMBER_OK;
     camber_source_line_release(device, source_line);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-        status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
+        status = camber_buffer_create(device, CAMBER_BUFFER_OWN, wanted[i].size_bytes, NULL, wanted[i].buffer);
     if (status == CAMBER_OK)
         source_line->slot_capacity = slots;
     else
@@ -155,25 +155,25 @@ camber_status camber_part_reserve_source_lines(camber_mesh *mesh, camber_mesh_pa
 /* ---- Stages ---- */
 
 /* Replaces each chunk's count by the sum of the counts before it, and puts the sum of all behind the last. */
-static camber_status scan_counts(const camber_device *device, cl_mem counts, size_t chunk_count, uint64_t *slots) {
-    cl_int code;
+static camber_status scan_counts(const camber_device *device, camber_buffer *counts, size_t chunk_count,
+                                 uint64_t *slots) {
     uint64_t sum = 0;
-    cl_uint *mapped = clEnqueueMapBuffer(device->queue, counts, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
-                                         4 * (chunk_count + 1), 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    uint32_t *mapped;
+    const camber_status status =
+        camber_buffer_map(device, counts, CAMBER_MAP_READ_WRITE, 4 * (chunk_count + 1), &mapped);
+    if (status != CAMBER_OK)
+        return status;
     for (size_t i = 0; i <= chunk_count; i++) {
         const uint64_t count = i < chunk_count ? mapped[i] : 0;
-        mapped[i] = (cl_uint)sum;
+        mapped[i] = (uint32_t)sum;
         sum += count;
     }
     *slots = sum;
-    code = clEnqueueUnmapMemObject(device->queue, counts, mapped, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueUnmapMemObject", code);
+    return camber_buffer_unmap_written(device, counts, mapped);
 }
 
 static camber_status run_emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
-                              cl_event *event) {
+                              camber_event **event) {
     const camber_source_line_buffers *c = &part->source_line;
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(c->x),
                                       CAMBER_ARG_BUFFER(c->y),
@@ -207,7 +207,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(c->x),     CAMBER_ARG_BUFFER(c->y),
                                       CAMBER_ARG_BUFFER(c->info),  CAMBER_ARG_BUFFER(mesh->offset_rows),
                                       CAMBER_ARG_BUFFER(c->clips), CAMBER_ARG_BUFFER(c->counts)};
-    cl_event events[3] = {NULL, NULL, NULL};
+    camber_event *events[3] = {NULL, NULL, NULL};
     camber_program *program = NULL;
     uint64_t slots = 0;
     /* The part's last output is invalid from here on, also where no slot comes out now. */
@@ -233,9 +233,10 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
             status = run_emit(mesh, part, program, events + 2);
     }
     for (size_t i = 0; i < 3; i++) {
-        if (events[i] && status == CAMBER_OK)
-            clWaitForEvents(1, events + i);
-        camber_mesh_add_time(mesh, (camber_stage_id)(CAMBER_STAGE_OFFSET_CLIP + i), events[i]);
+        const camber_stage_id stage = (camber_stage_id)(CAMBER_STAGE_OFFSET_CLIP + i);
+        if (status == CAMBER_OK)
+            status = camber_event_wait(device, events[i], camber_stage_name(stage));
+        camber_mesh_add_time(mesh, stage, events[i]);
     }
     return status;
 }

@@ -18,18 +18,18 @@ enum { INPUTS = 9, POINT_INPUTS = 3 };
 
 /* Lists a part's input buffers. The first three may be lent by polylines, the last two are there only with arc
  * lengths. */
-static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
-    cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,      &part->offsets,
-                                  &part->sums, &part->bases, &part->lengths, &part->arc_lengths};
-    memcpy(mems, list, sizeof list);
+static void list_input(camber_mesh_part *part, camber_buffer **buffers[INPUTS]) {
+    camber_buffer **const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,      &part->offsets,
+                                          &part->sums, &part->bases, &part->lengths, &part->arc_lengths};
+    memcpy(buffers, list, sizeof list);
 }
 
 /* Releases the first `count` of the input buffers. */
 static void release_inputs(const camber_device *device, camber_mesh_part *part, size_t count) {
-    cl_mem *mems[INPUTS];
-    list_input(part, mems);
+    camber_buffer **buffers[INPUTS];
+    list_input(part, buffers);
     for (size_t i = 0; i < count; i++)
-        camber_release_buffer(device, mems[i]);
+        camber_buffer_release(device, buffers[i]);
     part->lent = false;
 }
 
@@ -46,16 +46,16 @@ static void release_input(const camber_device *device, camber_mesh_part *part) {
 }
 
 void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
-    cl_mem *to[INPUTS], *mems[INPUTS];
+    camber_buffer **to[INPUTS], **buffers[INPUTS];
     list_input(part, to);
-    list_input(from, mems);
+    list_input(from, buffers);
     for (size_t i = 0; i < INPUTS; i++) {
-        *to[i] = *mems[i];
-        *mems[i] = NULL;
+        *to[i] = *buffers[i];
+        *buffers[i] = NULL;
     }
     for (int i = 0; i < 2; i++) {
         part->buffers[i] = from->buffers[i];
-        from->buffers[i] = (camber_buffer){0};
+        from->buffers[i] = (camber_shared_buffer){0};
     }
     part->slot_capacity = from->slot_capacity;
     part->lent = from->lent;
@@ -90,7 +90,7 @@ static camber_status reserve_input(const camber_device *device, bool has_arc_len
     const size_t blocks = slots / device->block, words = slots + 2;
     camber_status status = CAMBER_OK;
     const struct {
-        cl_mem *mem;
+        camber_buffer **buffer;
         size_t size_bytes;
     } wanted[] = {
         {&part->x, 4 * words},
@@ -105,7 +105,7 @@ static camber_status reserve_input(const camber_device *device, bool has_arc_len
     };
     const size_t count = has_arc_length ? INPUTS : INPUTS - 2;
     for (size_t i = lent ? POINT_INPUTS : 0; i < count && status == CAMBER_OK; i++)
-        status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
+        status = camber_buffer_create(device, CAMBER_BUFFER_OWN, wanted[i].size_bytes, NULL, wanted[i].buffer);
     if (status != CAMBER_OK) {
         release_slots(device, part);
         return status;
@@ -158,7 +158,7 @@ camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part
 }
 
 camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
-    camber_buffer *buffer = part->buffers + which;
+    camber_shared_buffer *buffer = part->buffers + which;
     camber_status status = CAMBER_OK;
     if (size_bytes > buffer->capacity_bytes)
         status = camber_mesh_make_room(mesh, part, mesh->buffer_copies * (size_bytes - buffer->capacity_bytes));
@@ -224,7 +224,8 @@ size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *p
     return mesh->held ? camber_part_network_slot(mesh, part, polyline) : mesh->first_slots[polyline] - part->first_slot;
 }
 
-size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *places, size_t polyline) {
+size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const uint32_t *places,
+                        size_t polyline) {
     const size_t given = camber_part_given_slot(mesh, part, polyline);
     if (!mesh->has_offsets)
         return given;
@@ -358,7 +359,7 @@ void camber_mesh_return_points(camber_mesh *mesh) {
         camber_mesh_part *part = mesh->parts + i;
         if (!part->lent)
             continue;
-        clFinish(mesh->device->queue); /* nothing maps them any more */
+        camber_device_settle(mesh->device); /* nothing maps them any more */
         release_inputs(mesh->device, part, POINT_INPUTS);
         part->uploaded = false;
         camber_part_count_bytes(mesh, part);
@@ -369,20 +370,20 @@ void camber_mesh_return_points(camber_mesh *mesh) {
 static camber_status borrow_points(const camber_mesh *mesh, camber_mesh_part *part, size_t words) {
     const camber_polylines *polylines = mesh->polylines;
     const struct {
-        cl_mem *mem;
+        camber_buffer **buffer;
         const void *words;
     } arrays[POINT_INPUTS] = {{&part->x, polylines->x}, {&part->y, polylines->y}, {&part->info, polylines->info}};
     camber_status status = CAMBER_OK;
     release_inputs(mesh->device, part, POINT_INPUTS);
     for (size_t i = 0; i < POINT_INPUTS && status == CAMBER_OK; i++)
-        status = camber_make_buffer(mesh->device, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, 4 * words, arrays[i].words,
-                                    arrays[i].mem);
+        status =
+            camber_buffer_create(mesh->device, CAMBER_BUFFER_BORROWED, 4 * words, arrays[i].words, arrays[i].buffer);
     part->lent = true;
     return status;
 }
 
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
-    static const cl_uint zeros[CAMBER_BLOCK + 2];
+    static const uint32_t zeros[CAMBER_BLOCK + 2];
     const camber_device *device = mesh->device;
     const camber_polylines *polylines = mesh->polylines;
     part->slot_count = part->given_count;
@@ -403,22 +404,22 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
     given = given < words ? given : words;
     const struct {
-        cl_mem mem;
+        camber_buffer *buffer;
         const void *bytes;
     } arrays[] = {{mesh->has_offsets ? source_line->x : part->x, polylines->x + first},
                   {mesh->has_offsets ? source_line->y : part->y, polylines->y + first},
                   {mesh->has_offsets ? source_line->info : part->info, polylines->info + first}};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays && !lent; i++) {
         if (status == CAMBER_OK)
-            status = camber_write_buffer_later(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
+            status = camber_buffer_write_later(device, arrays[i].buffer, 0, 4 * given, arrays[i].bytes);
         if (status == CAMBER_OK && given < words)
-            status = camber_write_buffer_later(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
+            status = camber_buffer_write_later(device, arrays[i].buffer, 4 * given, 4 * (words - given), zeros);
     }
     /* classify writes a join word for each slot. Those of the sentinels around them are read by neighbours, too. */
     if (status == CAMBER_OK && !mesh->has_offsets)
-        status = camber_write_buffer_later(device, part->joins, 0, 4, zeros);
+        status = camber_buffer_write_later(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK && !mesh->has_offsets)
-        status = camber_write_buffer_later(device, part->joins, 4 * (words - 1), 4, zeros);
+        status = camber_buffer_write_later(device, part->joins, 4 * (words - 1), 4, zeros);
     part->uploaded = status == CAMBER_OK;
     return status;
 }
@@ -477,7 +478,7 @@ static bool is_too_large(const camber_mesh *mesh, const camber_mesh_part *part, 
            needed_bytes(mesh, part, size) > camber_device_share(mesh->device, eighths);
 }
 
-/* Eighths of the bound for a part of a single polyline, and of several: cl/memory.h. */
+/* Eighths of the bound for a part of a single polyline, and of several: gpu/memory.h. */
 enum { ALONE = 4, TOGETHER = 1 };
 
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {

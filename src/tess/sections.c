@@ -15,11 +15,11 @@
 /* ---- Upload ---- */
 
 void camber_section_release(const camber_mesh *mesh, camber_section *section) {
-    cl_mem *mems[] = {
+    camber_buffer **buffers[] = {
         &section->x,       &section->y,     &section->importance, &section->stretches, &section->chunk_stretches,
         &section->lengths, &section->totals};
-    for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
-        camber_release_buffer(mesh->device, mems[i]);
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        camber_buffer_release(mesh->device, buffers[i]);
     camber_section_count_bytes(mesh, section);
 }
 
@@ -31,8 +31,8 @@ void camber_mesh_release_source(camber_mesh *mesh) {
         return;
     for (size_t i = 0; i < held->section_count; i++)
         camber_section_release(mesh, held->sections + i);
-    camber_release_buffer(mesh->device, &held->counts);
-    camber_release_buffer(mesh->device, &held->bases);
+    camber_buffer_release(mesh->device, &held->counts);
+    camber_buffer_release(mesh->device, &held->bases);
     camber_free(mesh->device->context, held->sections);
     camber_network_destroy(held->network);
     camber_free(mesh->device->context, held);
@@ -44,9 +44,9 @@ void camber_mesh_release_source(camber_mesh *mesh) {
 /* Makes a buffer that the kernels read. is_kept: the bytes stay as they are for as long as the buffer lives, so that a
  * device that works in host memory can read them in place. */
 static camber_status upload_array(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
-                                  cl_mem *mem) {
-    const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    return camber_make_buffer(device, CL_MEM_READ_ONLY | from, size_bytes, bytes, mem);
+                                  camber_buffer **buffer) {
+    const camber_buffer_kind kind = device->host_memory && is_kept ? CAMBER_BUFFER_BORROWED : CAMBER_BUFFER_COPY;
+    return camber_buffer_create(device, kind, size_bytes, bytes, buffer);
 }
 
 /* Uploads the stretch of each chunk's first point, counted from the section's first stretch. */

@@ -5,19 +5,12 @@
 
 #include "kernels/join.h"
 
-static cl_uint *map(const camber_mesh *mesh, cl_mem mem, size_t count, camber_status *status) {
-    cl_int code = CL_SUCCESS;
-    void *bytes = *status != CAMBER_OK ? NULL
-                                       : clEnqueueMapBuffer(mesh->device->queue, mem, CL_TRUE, CL_MAP_READ, 0,
-                                                            4 * count, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        *status = camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
-    return code == CL_SUCCESS ? bytes : NULL;
-}
-
-static void unmap(const camber_mesh *mesh, cl_mem mem, cl_uint *words) {
-    if (words)
-        clEnqueueUnmapMemObject(mesh->device->queue, mem, words, 0, NULL, NULL);
+/* Maps words of a buffer. Does nothing after an earlier failure, so that calls can follow each other. */
+static const uint32_t *map(const camber_mesh *mesh, camber_buffer *buffer, size_t count, camber_status *status) {
+    const uint32_t *words = NULL;
+    if (*status == CAMBER_OK)
+        *status = camber_buffer_map(mesh->device, buffer, CAMBER_MAP_READ, 4 * count, &words);
+    return words;
 }
 
 static camber_status map_places(camber_slot_finder *finder) {
@@ -51,7 +44,7 @@ camber_status camber_slot_finder_find(camber_slot_finder *finder, size_t polylin
 
 void camber_slot_finder_close(camber_slot_finder *finder) {
     if (finder->part)
-        unmap(finder->mesh, finder->part->source_line.places, finder->places);
+        camber_buffer_unmap(finder->mesh->device, finder->part->source_line.places, finder->places);
     *finder = (camber_slot_finder){0};
 }
 
@@ -77,9 +70,9 @@ void camber_slot_starts_unmap(camber_slot_starts *starts) {
     const camber_mesh_part *part = starts->finder.part;
     if (!part)
         return;
-    unmap(starts->finder.mesh, part->offsets, starts->offsets);
-    unmap(starts->finder.mesh, part->info, starts->info);
-    unmap(starts->finder.mesh, part->joins, starts->joins);
+    camber_buffer_unmap(starts->finder.mesh->device, part->offsets, starts->offsets);
+    camber_buffer_unmap(starts->finder.mesh->device, part->info, starts->info);
+    camber_buffer_unmap(starts->finder.mesh->device, part->joins, starts->joins);
     camber_slot_finder_close(&starts->finder);
     *starts = (camber_slot_starts){0};
 }

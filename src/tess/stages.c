@@ -6,26 +6,17 @@
 
 /* A part's arrays, mapped into host memory. */
 typedef struct arrays {
-    float *x, *y;
+    const float *x, *y;
+    const camber_arc_length *arc_lengths; /* NULL: the mesh has none */
     camber_slot_starts starts;
 } arrays;
 
-/* Maps a buffer for reading. Does nothing after an earlier failure, so that calls can follow each other. */
-static void *map(const camber_mesh *mesh, cl_mem mem, size_t words, camber_status *status) {
-    if (*status != CAMBER_OK)
-        return NULL;
-    cl_int code;
-    void *bytes =
-        clEnqueueMapBuffer(mesh->device->queue, mem, CL_TRUE, CL_MAP_READ, 0, 4 * words, 0, NULL, NULL, &code);
-    if (code == CL_SUCCESS)
-        return bytes;
-    *status = camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
-    return NULL;
-}
-
-static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
-    if (bytes)
-        clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
+/* Maps words of a buffer. Does nothing after an earlier failure, so that calls can follow each other. */
+static const void *map(const camber_mesh *mesh, camber_buffer *buffer, size_t words, camber_status *status) {
+    const void *mapped = NULL;
+    if (*status == CAMBER_OK)
+        *status = camber_buffer_map(mesh->device, buffer, CAMBER_MAP_READ, 4 * words, &mapped);
+    return mapped;
 }
 
 /* Appends the points of a part to stages. Where a device has counted wrongly, a polyline's slots may lie past the
@@ -35,9 +26,11 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
     size_t count = 0;
     for (size_t slot = 0; slot < part->slot_count; slot++)
         count += a->starts.info[slot + 1] & CAMBER_POINT_REAL;
-    size_t capacity = stages->point_count;
-    if (!camber_grow(mesh->device->context, &stages->points, &capacity, stages->point_count + count,
-                     sizeof *stages->points))
+    camber_context *context = mesh->device->context;
+    size_t capacity = stages->point_count, arc_length_capacity = capacity;
+    if (!camber_grow(context, &stages->points, &capacity, stages->point_count + count, sizeof *stages->points) ||
+        (a->arc_lengths && !camber_grow(context, &stages->arc_lengths, &arc_length_capacity,
+                                        stages->point_count + count, sizeof *stages->arc_lengths)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0, slot = 0; i < part->polyline_count; i++) {
         const size_t polyline = part->first_polyline + i;
@@ -51,13 +44,16 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
                 continue;
             const uint64_t *base = part->host_bases + 2 * block;
             const uint32_t packed = camber_slot_starts_before(&a->starts, slot);
+            if (a->arc_lengths)
+                stages->arc_lengths[stages->point_count] = a->arc_lengths[slot];
             stages->points[stages->point_count++] = (camber_point_stages){
                 .polyline = (uint32_t)polyline,
                 .point = point++,
                 .x = a->x[word],
                 .y = a->y[word],
                 .join = a->starts.joins[word],
-                .first_vertex = (uint32_t)(part->first_vertex + base[0] + (packed & 0xffffu)),
+                .info = a->starts.info[word],
+                .first_vertex = part->first_vertex + base[0] + (packed & 0xffffu),
                 .first_index = part->first_index + base[1] + (packed >> 16),
             };
         }
@@ -81,13 +77,16 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             .y = map(mesh, part->y, words, &status),
             .starts = camber_slot_starts_of(mesh, part),
         };
+        if (mesh->mesh_info.has_arc_length)
+            seen.arc_lengths = map(mesh, part->arc_lengths, 2 * part->slot_count, &status);
         if (status == CAMBER_OK)
             status = camber_slot_starts_map(&seen.starts);
         if (status == CAMBER_OK)
             status = append_points(mesh, part, &seen, &made);
         camber_slot_starts_unmap(&seen.starts);
-        unmap(mesh, part->x, seen.x);
-        unmap(mesh, part->y, seen.y);
+        camber_buffer_unmap(mesh->device, part->x, seen.x);
+        camber_buffer_unmap(mesh->device, part->y, seen.y);
+        camber_buffer_unmap(mesh->device, part->arc_lengths, seen.arc_lengths);
     }
     if (status != CAMBER_OK) {
         camber_stages_destroy(&made);
@@ -98,18 +97,13 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
 }
 
 /* Reads words of a buffer into an array that is made for them. Does nothing after an earlier failure. */
-static void read_words(const camber_mesh *mesh, cl_mem mem, size_t words, void *array, camber_status *status) {
-    const camber_device *device = mesh->device;
+static void read_words(const camber_mesh *mesh, camber_buffer *buffer, size_t words, void *array,
+                       camber_status *status) {
     void **made = array;
-    if (*status != CAMBER_OK)
-        return;
-    if (!(*made = camber_alloc(device->context, words, 4))) {
+    if (*status == CAMBER_OK && !(*made = camber_alloc(mesh->device->context, words, 4)))
         *status = CAMBER_ERROR_MEMORY;
-        return;
-    }
-    const cl_int code = clEnqueueReadBuffer(device->queue, mem, CL_TRUE, 0, 4 * words, *made, 0, NULL, NULL);
-    if (code != CL_SUCCESS)
-        *status = camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
+    if (*status == CAMBER_OK)
+        *status = camber_buffer_read(mesh->device, buffer, 4 * words, *made);
 }
 
 camber_status camber_part_read_points(camber_mesh *mesh, camber_mesh_part *part, camber_part_points *points) {
@@ -139,7 +133,9 @@ void camber_part_points_free(camber_context *context, camber_part_points *points
 }
 
 void camber_stages_destroy(camber_stages *stages) {
-    if (stages->context)
-        camber_free(stages->context, stages->points);
+    if (!stages->context)
+        return;
+    camber_free(stages->context, stages->arc_lengths);
+    camber_free(stages->context, stages->points);
     *stages = (camber_stages){0};
 }

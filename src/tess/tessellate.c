@@ -15,7 +15,7 @@
  * Meshes that OpenCL draws are scanned and emitted when somebody asks for their counts or reads them. If memory is
  * bounded and full, the parts that come last are not kept; camber_part_ensure_made makes them when they are needed.
  */
-#include "cl/launch.h"
+#include "gpu/launch.h"
 #include "kernels/stroke_ends.h"
 #include "tess/arc_length.h"
 #include "tess/network.h"
@@ -52,22 +52,21 @@ void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *base
 static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const size_t blocks = part->slot_count / device->block;
-    cl_int code;
-    cl_uint *sums =
-        clEnqueueMapBuffer(device->queue, part->sums, CL_TRUE, CL_MAP_READ, 0, 4 * blocks, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    const uint32_t *sums;
+    const camber_status status = camber_buffer_map(device, part->sums, CAMBER_MAP_READ, 4 * blocks, &sums);
+    if (status != CAMBER_OK)
+        return status;
     camber_scan_blocks(sums, blocks, part->host_bases);
-    clEnqueueUnmapMemObject(device->queue, part->sums, sums, 0, NULL, NULL);
+    camber_buffer_unmap(device, part->sums, sums);
     part->vertex_count = (size_t)part->host_bases[2 * blocks];
     part->index_count = (size_t)part->host_bases[2 * blocks + 1];
     part->record_count = camber_part_count_records(mesh, part);
     return CAMBER_OK;
 }
 
-void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event) {
+void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, camber_event *event) {
     double ms = 0.0;
-    camber_add_ms(event, &ms);
+    camber_event_end(mesh->device, event, &ms);
     if (event)
         camber_stage_times_add(&mesh->mesh_info.times, stage, ms);
 }
@@ -81,13 +80,14 @@ static camber_program_desc program_of(const camber_mesh *mesh, camber_method met
 static camber_status run_over_points(camber_mesh *mesh, const camber_mesh_part *part, camber_launch launch,
                                      camber_stage_id stage) {
     const camber_device *device = mesh->device;
-    cl_event event = NULL;
+    camber_event *event = NULL;
     launch.work_items = part->slot_count / device->point_chunk;
     launch.group_size = device->block / device->point_chunk;
-    const camber_status status = camber_launch_kernel(device, &launch, &event);
-    const cl_int code = event ? clWaitForEvents(1, &event) : CL_SUCCESS;
+    camber_status status = camber_launch_kernel(device, &launch, &event);
+    if (status == CAMBER_OK)
+        status = camber_event_wait(device, event, launch.name);
     camber_mesh_add_time(mesh, stage, event);
-    return code == CL_SUCCESS ? status : camber_fail_stage(device, "clWaitForEvents", launch.name, code);
+    return status;
 }
 
 /* Finds the join words of the part's points, as a method has them. */
@@ -134,7 +134,7 @@ static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
 /* Makes room in an output buffer. For a network a quarter more, where the device has plenty: the next frame may need
  * it. */
 static camber_status reserve_buffer(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
-    camber_buffer *buffer = part->buffers + which;
+    camber_shared_buffer *buffer = part->buffers + which;
     const size_t room = size_bytes + (mesh->held ? size_bytes / 4 : 0);
     const bool enough = size_bytes <= buffer->capacity_bytes || room > mesh->device->info.largest_buffer_bytes ||
                         !camber_device_is_roomy(mesh->device, mesh->buffer_copies * room);
@@ -159,12 +159,12 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     camber_status status =
-        camber_write_buffer_later(device, part->bases, 0, 16 * (part->slot_count / device->block), part->host_bases);
+        camber_buffer_write_later(device, part->bases, 0, 16 * (part->slot_count / device->block), part->host_bases);
     if (status == CAMBER_OK)
         status = reserve_output(mesh, part);
     if (status != CAMBER_OK)
         return status;
-    cl_event event = NULL;
+    camber_event *event = NULL;
     const size_t second = mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES; /* no indices */
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(part->x),
                                       CAMBER_ARG_BUFFER(part->y),
@@ -173,15 +173,16 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                                       CAMBER_ARG_BUFFER(part->joins),
                                       CAMBER_ARG_BUFFER(part->offsets),
                                       CAMBER_ARG_BUFFER(part->bases),
-                                      CAMBER_ARG_BUFFER(part->buffers[CAMBER_BUFFER_RECORDS].mem),
-                                      CAMBER_ARG_BUFFER(part->buffers[second].mem),
+                                      CAMBER_ARG_BUFFER(part->buffers[CAMBER_BUFFER_RECORDS].buffer),
+                                      CAMBER_ARG_BUFFER(part->buffers[second].buffer),
                                       CAMBER_ARG_BUFFER(mesh->mesh_info.has_arc_length ? part->arc_lengths : NULL)};
     const camber_launch launch = {
         "emit", program->emit, args, 10, part->slot_count / device->point_chunk, device->block / device->point_chunk};
     status = camber_launch_kernel(device, &launch, &event);
-    const cl_int code = clFinish(device->queue);
-    if (status == CAMBER_OK && code != CL_SUCCESS)
-        status = camber_fail_cl(device->context, "clFinish", code);
+    if (status == CAMBER_OK)
+        status = camber_device_finish(device);
+    else
+        camber_device_settle(device);
     status = camber_part_finish(mesh, part, true, status);
     camber_mesh_add_time(mesh, CAMBER_STAGE_EMIT, event);
     return status;
@@ -195,10 +196,10 @@ static camber_status reserve_rows(camber_mesh *mesh, size_t count) {
         return CAMBER_ERROR_MEMORY;
     if (count <= mesh->row_capacity)
         return CAMBER_OK;
-    camber_release_buffer(mesh->device, &mesh->rows);
+    camber_buffer_release(mesh->device, &mesh->rows);
     mesh->row_capacity = 0;
     const camber_status status =
-        camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, count * row_bytes, NULL, &mesh->rows);
+        camber_buffer_create(mesh->device, CAMBER_BUFFER_OWN, count * row_bytes, NULL, &mesh->rows);
     if (status == CAMBER_OK)
         mesh->row_capacity = count;
     return status;
@@ -226,7 +227,7 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     if (status != CAMBER_OK)
         return status;
     memcpy(mesh->host_rows, rows, count * sizeof *rows);
-    return camber_write_buffer_later(device, mesh->rows, 0, count * sizeof *rows, mesh->host_rows);
+    return camber_buffer_write_later(device, mesh->rows, 0, count * sizeof *rows, mesh->host_rows);
 }
 
 /* Makes a part's points. *fits is false, and there are none, if they are too many. The steps, each only if the mesh has
@@ -369,7 +370,7 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
         status = emit_unless_empty(mesh, part);
     part->made = status == CAMBER_OK;
     if (status != CAMBER_OK)
-        clFinish(device->queue); /* what is written later is read from the host's arrays */
+        camber_device_settle(device); /* what is written later is read from the host's arrays */
     part->slot_count = slots;
     part->used_slots = used;
     part->record_count = records;
@@ -418,12 +419,16 @@ typedef struct source {
     uint32_t row_count;
 } source;
 
-/* Adds up what the mesh is drawn from: its points, or its output. */
+/* Adds up what the mesh is drawn from: its points, or its output. It is empty if it has no points. */
 static void set_bytes(camber_mesh *mesh) {
     camber_mesh_info *info = &mesh->mesh_info;
-    info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
-    for (size_t i = 0; i < mesh->part_count && mesh->draws_points; i++)
-        info->bytes += mesh->parts[i].slot_count * camber_slot_bytes(info);
+    size_t slots = 0;
+    for (size_t i = 0; i < mesh->part_count; i++)
+        slots += mesh->parts[i].slot_count;
+    info->bytes = mesh->draws_points
+                      ? slots * camber_slot_bytes(info)
+                      : info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
+    mesh->empty = slots == 0;
 }
 
 /* Divides the source into parts, and aims the camera at a network. */
@@ -475,11 +480,11 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     }
     if (status != CAMBER_OK) {
         mesh->mesh_info = nothing;
-        clFinish(mesh->device->queue); /* what is written later is read from the source's arrays */
+        camber_device_settle(mesh->device); /* what is written later is read from the source's arrays */
     }
     camber_mesh_let_go(mesh);
     mesh->done = status == CAMBER_OK;
-    mesh->empty = mesh->mesh_info.bytes == 0;
+    mesh->empty |= status != CAMBER_OK;
     camber_free(context, rows);
     return status;
 }

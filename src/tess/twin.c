@@ -28,7 +28,7 @@ typedef struct twin {
     const camber_arc_length *arc_lengths; /* one a slot. NULL: without arc lengths */
     camber_stages *stages;                /* NULL: not wanted */
     uint32_t polyline, point;             /* of the next point in stages */
-    size_t record_capacity, measure_capacity, index_capacity, stage_capacity;
+    size_t record_capacity, measure_capacity, index_capacity, stage_capacity, stage_arc_length_capacity;
     bool failed; /* out of memory, or out of 32-bit indices: nothing is appended any more */
 } twin;
 
@@ -88,7 +88,7 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
     const camber_turn turn = camber_turn_between(p->x[slot] - p->x[slot - 1], p->y[slot] - p->y[slot - 1],
                                                  p->x[slot + 1] - p->x[slot], p->y[slot + 1] - p->y[slot]);
     *half_shorter = turn.half_shorter;
-    if (!(info & CAMBER_POINT_REAL))
+    if (!(info & CAMBER_POINT_REAL) || info & CAMBER_POINT_AREA)
         return 0;
     if (info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) && !(info & CAMBER_POINT_RING))
         return camber_cap_word(row->cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
@@ -213,11 +213,15 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
     camber_stages *stages = t->stages;
     if (!stages || t->failed)
         return;
-    if (!camber_grow(p->context, &stages->points, &t->stage_capacity, stages->point_count + 1,
-                     sizeof *stages->points)) {
+    const size_t count = stages->point_count + 1;
+    if (!camber_grow(p->context, &stages->points, &t->stage_capacity, count, sizeof *stages->points) ||
+        (t->arc_lengths && !camber_grow(p->context, &stages->arc_lengths, &t->stage_arc_length_capacity, count,
+                                        sizeof *stages->arc_lengths))) {
         t->failed = true;
         return;
     }
+    if (t->arc_lengths)
+        stages->arc_lengths[stages->point_count] = t->arc_lengths[slot - 1];
     while (p->first_slots[t->polyline + 1] < slot) {
         t->polyline++;
         t->point = 0;
@@ -228,7 +232,8 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
         .x = p->x[slot],
         .y = p->y[slot],
         .join = join,
-        .first_vertex = (uint32_t)(t->method == CAMBER_STRIP ? t->data->info.vertex_count : slot - 1),
+        .info = p->info[slot],
+        .first_vertex = t->method == CAMBER_STRIP ? t->data->info.vertex_count : slot - 1,
         .first_index = t->method == CAMBER_STRIP ? 2 * t->data->info.record_count : t->data->info.index_count,
     };
 }

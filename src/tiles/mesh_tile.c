@@ -1,6 +1,6 @@
 /* Cuts the lines of a picture into mesh tiles.
  *
- * Input: the records of a mesh of strips, as the device tessellated them for a picture of tiles. Output: for each tile
+ * Input: the points of a mesh, as the device tessellated them for a picture of tiles. Output: for each tile
  * the points of the segments that come within reach of it, in whole units of the tile. Main idea: a segment that
  * touches the tile, grown by how far its row reaches, stays as it is; others go. So a tile, clipped to its square,
  * shows what the picture shows there. A segment is cut only where it leaves what 16 bits hold.
@@ -19,42 +19,57 @@
 
 /* ---- The lines of a picture ---- */
 
-/* Leaves each point once, and lists the lines. */
-static camber_status list_lines(camber_mesh_picture *picture) {
-    camber_mesh_data *data = &picture->data;
-    size_t count = 0, capacity = 0;
-    for (size_t i = 0; i < data->info.record_count; i++) {
-        const camber_record *r = data->records + i;
-        if (r->last & (CAMBER_RECORD_BREAK | CAMBER_RECORD_START))
+/* How much room the lists of a picture have. */
+typedef struct room {
+    size_t lines, points;
+} room;
+
+static bool add_point(camber_mesh_picture *picture, room *has, camber_mesh_point point) {
+    if (!camber_grow(picture->plan->context, &picture->points, &has->points, picture->point_count + 1,
+                     sizeof *picture->points))
+        return false;
+    picture->points[picture->point_count++] = point;
+    camber_mesh_line *line = picture->lines + picture->line_count - 1;
+    line->x0 = fminf(line->x0, point.x);
+    line->y0 = fminf(line->y0, point.y);
+    line->x1 = fmaxf(line->x1, point.x);
+    line->y1 = fmaxf(line->y1, point.y);
+    line->count++;
+    return true;
+}
+
+static bool add_line(camber_mesh_picture *picture, room *has, const camber_mesh_point *first) {
+    if (!camber_grow(picture->plan->context, &picture->lines, &has->lines, picture->line_count + 1,
+                     sizeof *picture->lines))
+        return false;
+    picture->lines[picture->line_count++] = (camber_mesh_line){.first = picture->point_count,
+                                                               .pair = first->info >> CAMBER_POINT_ROW_SHIFT,
+                                                               .x0 = first->x,
+                                                               .y0 = first->y,
+                                                               .x1 = first->x,
+                                                               .y1 = first->y};
+    return true;
+}
+
+/* Lists lines and points. Dots that are not drawn are left out; others get a segment from their point to itself. */
+static camber_status list_lines(camber_mesh_picture *picture, const camber_stages *stages) {
+    room has = {0, 0};
+    for (size_t i = 0; i < stages->point_count; i++) {
+        const camber_point_stages *p = stages->points + i;
+        const camber_mesh_point point = {
+            p->x, p->y, p->info, stages->arc_lengths ? stages->arc_lengths[i] : (camber_arc_length){0.0f, 0.0f}};
+        const bool begins = p->info & CAMBER_POINT_FIRST;
+        if (p->join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_SENTINEL || (!begins && !picture->line_count))
             continue;
-        if (r->last & CAMBER_POINT_FIRST) {
-            if (!camber_grow(data->context, &picture->lines, &capacity, picture->line_count + 1,
-                             sizeof *picture->lines))
-                return CAMBER_ERROR_MEMORY;
-            picture->lines[picture->line_count++] = (camber_mesh_line){.first = count,
-                                                                       .pair = r->last >> CAMBER_POINT_ROW_SHIFT,
-                                                                       .x0 = r->x,
-                                                                       .y0 = r->y,
-                                                                       .x1 = r->x,
-                                                                       .y1 = r->y};
-        }
-        if (!picture->line_count)
-            continue;
-        camber_mesh_line *line = picture->lines + picture->line_count - 1;
-        line->x0 = fminf(line->x0, r->x);
-        line->y0 = fminf(line->y0, r->y);
-        line->x1 = fmaxf(line->x1, r->x);
-        line->y1 = fmaxf(line->y1, r->y);
-        line->count++;
-        if (data->arc_lengths)
-            data->arc_lengths[count] = data->arc_lengths[i];
-        data->records[count++] = *r;
+        if ((begins && !add_line(picture, &has, &point)) || !add_point(picture, &has, point) ||
+            (begins && p->info & CAMBER_POINT_LAST && !add_point(picture, &has, point)))
+            return CAMBER_ERROR_MEMORY;
     }
     return CAMBER_OK;
 }
 
-static bool is_seam(const camber_mesh_picture *picture, size_t record) {
-    return picture->data.records[record].last & CAMBER_POINT_RING;
+static bool is_seam(const camber_mesh_picture *picture, size_t point) {
+    return picture->points[point].info & CAMBER_POINT_RING;
 }
 
 /* Joins the pieces of rings that the picture has cut where the rings begin and end. */
@@ -73,23 +88,24 @@ static void join_seams(camber_mesh_picture *picture) {
 }
 
 camber_status camber_mesh_picture_take(const camber_mesh_plan *plan, camber_mesh *mesh, camber_mesh_picture *picture) {
+    camber_stages stages = {0};
+    camber_status status = camber_mesh_read_stages(mesh, &stages);
     *picture = (camber_mesh_picture){.plan = plan};
-    camber_status status = camber_mesh_read(mesh, &picture->data);
     if (status == CAMBER_OK)
-        status = list_lines(picture);
+        status = list_lines(picture, &stages);
     if (status == CAMBER_OK)
         join_seams(picture);
+    camber_stages_destroy(&stages);
     return status;
 }
 
 void camber_mesh_picture_free(camber_mesh_picture *picture) {
-    if (picture->data.context)
-        camber_free(picture->data.context, picture->lines);
     if (picture->plan) {
+        camber_free(picture->plan->context, picture->points);
+        camber_free(picture->plan->context, picture->lines);
         camber_free(picture->plan->context, picture->rings);
         camber_free(picture->plan->context, picture->ring_points);
     }
-    camber_mesh_data_destroy(&picture->data);
     *picture = (camber_mesh_picture){0};
 }
 
@@ -112,13 +128,10 @@ typedef struct cut_point {
 } cut_point;
 
 static cut_point point_at(const cutter *c, const camber_mesh_line *line, size_t i) {
-    const camber_record *r = c->picture->data.records + line->first + i;
-    cut_point p = {(double)r->x - c->centre_x, (double)r->y - c->centre_y, 0.0f, 0.0f};
-    if (c->picture->plan->has_arc_length[c->picture->plan->pair_rows[line->pair]] && c->picture->data.arc_lengths) {
-        p.along_px = c->picture->data.arc_lengths[line->first + i].along_px;
-        p.total_px = c->picture->data.arc_lengths[line->first + i].total_px;
-    }
-    return p;
+    const camber_mesh_point *p = c->picture->points + line->first + i;
+    const bool is_along = c->picture->plan->has_arc_length[c->picture->plan->pair_rows[line->pair]];
+    return (cut_point){(double)p->x - c->centre_x, (double)p->y - c->centre_y, is_along ? p->at.along_px : 0.0f,
+                       is_along ? p->at.total_px : 0.0f};
 }
 
 /* The shares of the segment between which it lies in a square about the centre. false: nowhere. */
@@ -204,8 +217,8 @@ static bool is_near(const cutter *c, const line_walk *w, size_t i) {
 
 /* The flags of a run's end: those of the line, where it is the line's own. */
 static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, bool own) {
-    const uint32_t last = c->picture->data.records[w->line->first + point].last;
-    return own && !(last & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
+    const uint32_t info = c->picture->points[w->line->first + point].info;
+    return own && !(info & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
 }
 
 camber_status camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint16_t *number) {
@@ -230,15 +243,16 @@ static void number_row(cutter *c, line_walk *w) {
     w->has_row = true;
 }
 
-/* A record, counted from 1, as a neighbour of a point; where 16 bits do not hold it, it is pulled to the point. */
+/* A point of the picture, counted from 1, as a neighbour of another; where 16 bits do not hold it, it is pulled to the
+ * point. */
 static cut_point neighbour_of(const cutter *c, cut_point point, size_t neighbour) {
-    const camber_record *r = c->picture->data.records + neighbour - 1;
-    const cut_point other = {.x = (double)r->x - c->centre_x, .y = (double)r->y - c->centre_y};
+    const camber_mesh_point *p = c->picture->points + neighbour - 1;
+    const cut_point other = {.x = (double)p->x - c->centre_x, .y = (double)p->y - c->centre_y};
     double from, to;
     return clip(point, other, c->limit, &from, &to) ? between(point, other, to) : other;
 }
 
-/* The sentinel before has the neighbour, where the line is a ring's piece that begins here. neighbour: a record, from
+/* The sentinel before has the neighbour, where the line is a ring's piece that begins here. neighbour: a point, from
  * 1; 0: none. */
 static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, size_t neighbour) {
     if (!w->has_row)
@@ -376,10 +390,10 @@ static void put_line(cutter *c, const camber_mesh_line *line) {
     camber_mesh_tile *tile = c->tile;
     const camber_mesh_plan *plan = c->picture->plan;
     const uint32_t row = plan->pair_rows[line->pair];
-    const camber_record *begin = c->picture->data.records + line->first;
+    const camber_mesh_point *begin = c->picture->points + line->first;
     const size_t before = tile->segments, first = tile->record_count ? tile->record_count : 1;
     line_walk w = {.line = line, .reach = c->half + (double)plan->reach_px[row]};
-    w.is_ring = line->count > 3 && (begin->last & begin[line->count - 1].last & CAMBER_POINT_RING);
+    w.is_ring = line->count > 3 && (begin->info & begin[line->count - 1].info & CAMBER_POINT_RING);
     if (w.is_ring)
         put_ring(c, &w);
     else

@@ -23,19 +23,27 @@ enum {
 enum { CAMBER_MESH_UNITS = 32768 };
 
 typedef struct camber_mesh_line {
-    size_t first, count; /* of the records */
+    size_t first, count; /* of the points */
     uint32_t pair;
     float x0, y0, x1, y1; /* its box, px */
-    /* Where the picture has cut a ring: the record before its first point in the ring's last piece, and the record
-     * behind its last point in the first piece, counted from 1. 0: none. */
+    /* If the picture has cut a ring: the point before its first one in the ring's last piece, and the point after its
+     * last one in the first piece, counted from 1. 0: none. */
     size_t before, behind;
 } camber_mesh_line;
+
+/* A point of the picture. A dot's lies there twice. */
+typedef struct camber_mesh_point {
+    float x, y;    /* px */
+    uint32_t info; /* CAMBER_POINT_* */
+    camber_arc_length at;
+} camber_mesh_point;
 
 /* The lines of a picture. */
 typedef struct camber_mesh_picture {
     const camber_mesh_plan *plan; /* NULL: none */
-    camber_mesh_data data;        /* its records are points, each once */
-    camber_mesh_line *lines;      /* line_count */
+    camber_mesh_point *points;    /* line by line */
+    size_t point_count;
+    camber_mesh_line *lines; /* line_count */
     size_t line_count;
     camber_mesh_line *rings; /* ring_count: those that are filled, closed, in drawing order */
     size_t ring_count;
@@ -43,8 +51,8 @@ typedef struct camber_mesh_picture {
     size_t ring_point_count;
 } camber_mesh_picture;
 
-/* Takes the lines of a mesh of strips, which was tessellated for the picture with the zoom's plan. Free it with
- * camber_mesh_picture_free, also after a failure. Returns what camber_mesh_read returns. */
+/* Takes the lines of a mesh, which was tessellated for the picture with the zoom's plan. Free it with
+ * camber_mesh_picture_free, also after a failure. Returns what camber_mesh_read_stages returns. */
 camber_status camber_mesh_picture_take(const camber_mesh_plan *plan, camber_mesh *mesh, camber_mesh_picture *picture);
 void camber_mesh_picture_free(camber_mesh_picture *picture);
 

@@ -68,7 +68,7 @@ static void tell_stage(camber_finding *finding, const char *stage, const camber_
 
 static bool points_differ(const camber_point_stages *got, const camber_point_stages *expected,
                           camber_finding *finding) {
-    const field_pair fields[] = {FIELD(polyline), FIELD(point), FIELD(x), FIELD(y)};
+    const field_pair fields[] = {FIELD(polyline), FIELD(point), FIELD(x), FIELD(y), FIELD(info)};
     return take_first(fields, sizeof fields / sizeof *fields, finding);
 }
 

@@ -8,6 +8,7 @@
 
 #include "tess/mesh.h"
 
+#include <CL/cl.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>

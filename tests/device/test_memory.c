@@ -2,6 +2,7 @@
  * allowed, parts that are not there are made again, and what cannot fit is refused by name. */
 #include "pictures.h"
 
+#include "gpu/opencl/opencl.h"
 #include "tess/network.h"
 
 /* ---- Held by OpenCL ---- */
@@ -55,13 +56,13 @@ static void bounded_open(fixture *b, uint64_t memory_bytes, uint32_t work_group_
     const camber_device_desc desc = {.work_group_size = work_group_size, .memory_bytes = memory_bytes};
     fixture_open_mesh(b, &desc);
     memset(&watch, 0, sizeof watch);
-    watch.context = b->on.device->cl;
+    watch.context = opencl_of(b->on.device)->cl;
 }
 
 /* The count is of what OpenCL was asked for, and no more than allowed. */
 static void assert_bounded(const camber_device *device) {
     const camber_device_memory memory = camber_device_get_memory(device);
-    if (watch.context != device->cl)
+    if (watch.context != opencl_of(device)->cl)
         return;
     assert_true(memory.held_bytes <= memory.most_bytes && memory.most_bytes > 0);
     assert_true(watch.held_bytes <= memory.held_bytes && watch.most_bytes <= memory.most_bytes);
@@ -74,7 +75,7 @@ static void bounded_close(fixture *b) {
     camber_mesh_destroy(b->mesh);
     b->mesh = NULL;
     assert_true(camber_device_get_memory(b->on.device).held_bytes == 0);
-    if (watch.context == b->on.device->cl)
+    if (watch.context == opencl_of(b->on.device)->cl)
         assert_int_equal(watch.count, 0);
     fixture_close(b);
 }
@@ -631,7 +632,7 @@ static bool drawn_open(drawn_lines *e, uint64_t memory_bytes, unsigned drawers, 
         return false;
     }
     assert_int_equal(camber_mesh_create(e->f.on.device, e->renderer, &e->mesh), CAMBER_OK);
-    watch.context = e->f.on.device->cl;
+    watch.context = opencl_of(e->f.on.device)->cl;
     return true;
 }
 

@@ -125,16 +125,16 @@ static void narrow_strokes(camber_stroke strokes[CAMBER_KERNEL_ROWS]) {
 
 /* ---- Device and twin ---- */
 
-static void *read_words(const network_devices *b, size_t which, cl_mem mem, size_t words) {
+static void *read_words(const network_devices *b, size_t which, camber_buffer *buffer, size_t words) {
     void *bytes = malloc(4 * words);
     assert_non_null(bytes);
-    assert_int_equal(clEnqueueReadBuffer(b->devices[which]->queue, mem, CL_TRUE, 0, 4 * words, bytes, 0, NULL, NULL),
-                     CL_SUCCESS);
+    assert_int_equal(camber_buffer_read(b->devices[which], buffer, 4 * words, bytes), CAMBER_OK);
     return bytes;
 }
 
-static void compare_words(const network_devices *b, size_t which, cl_mem mem, const void *expected, size_t words) {
-    uint32_t *got = read_words(b, which, mem, words);
+static void compare_words(const network_devices *b, size_t which, camber_buffer *buffer, const void *expected,
+                          size_t words) {
+    uint32_t *got = read_words(b, which, buffer, words);
     for (size_t i = 0; i < words; i++)
         if (memcmp(got + i, (const uint32_t *)expected + i, 4) != 0)
             fail_msg("device %zu: word %zu of %zu is %08x, the twin's is %08x", which, i, words, got[i],
@@ -157,12 +157,12 @@ static void compare_part(const network_devices *b, size_t which, const camber_me
         return;
     const size_t words = part->slot_count + 2, given = end - first;
     const void *arrays[] = {twin->x, twin->y, twin->info};
-    const cl_mem mems[] = {part->x, part->y, part->info};
+    camber_buffer *const buffers[] = {part->x, part->y, part->info};
     for (int k = 0; k < 3; k++) {
         uint32_t *expected = calloc(words, 4);
         assert_non_null(expected);
         memcpy(expected + 1, (const uint32_t *)arrays[k] + 1 + first, 4 * given);
-        compare_words(b, which, mems[k], expected, words);
+        compare_words(b, which, buffers[k], expected, words);
         free(expected);
     }
 }

@@ -3,6 +3,7 @@
 #include "pictures.h"
 
 #include "draw/renderer.h"
+#include "gpu/opencl/opencl.h"
 
 /* ---- Watching OpenCL ---- */
 
@@ -35,12 +36,12 @@ cl_int __wrap_clEnqueueWriteBuffer(cl_command_queue queue, cl_mem mem, cl_bool b
 static void bounded_open(fixture *b, uint64_t largest_buffer_bytes, uint32_t work_group_size) {
     const camber_device_desc desc = {.work_group_size = work_group_size, .largest_buffer_bytes = largest_buffer_bytes};
     fixture_open_mesh(b, &desc);
-    watched = b->on.device->cl;
+    watched = opencl_of(b->on.device)->cl;
     largest_buffer = 0;
 }
 
 static void bounded_close(fixture *b) {
-    if (watched == b->on.device->cl)
+    if (watched == opencl_of(b->on.device)->cl)
         assert_true(largest_buffer > 0 && largest_buffer <= camber_device_get_info(b->on.device).largest_buffer_bytes);
     fixture_close(b);
 }
@@ -526,7 +527,7 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
     const bool there = has_surface && camber_device_create(context, &device_desc, &device) == CAMBER_OK &&
                        camber_renderer_create(device, surface, &renderer_desc, &renderer) == CAMBER_OK;
     if (there) {
-        watched = device->cl;
+        watched = opencl_of(device)->cl;
         largest_buffer = 0;
         camber_stroke strokes[CAMBER_KERNEL_ROWS];
         camber_paint paints[CAMBER_KERNEL_ROWS];

@@ -1,7 +1,7 @@
 /* Devices, and the kernels in the cache folder. */
 #include "core.h"
 
-#include "cl/pocl.h"
+#include "gpu/opencl/pocl.h"
 #include "tess/mesh.h"
 
 #include <dirent.h>

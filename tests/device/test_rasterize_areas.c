@@ -8,6 +8,7 @@
 #include "camber_network.h"
 #include "draw/renderer.h"
 
+#include <CL/cl.h>
 #include <dlfcn.h>
 #include <math.h>
 

@@ -80,6 +80,13 @@ static void test_device_equals_twin(void **state) {
     }
 }
 
+static void flip_bit(const camber_device *device, camber_buffer *buffer, size_t word, int bit) {
+    uint32_t *words;
+    assert_int_equal(camber_buffer_map(device, buffer, CAMBER_MAP_READ_WRITE, 4 * (word + 1), &words), CAMBER_OK);
+    words[word] ^= 1u << bit;
+    assert_int_equal(camber_buffer_unmap_written(device, buffer, words), CAMBER_OK);
+}
+
 /* A word that is wrong on the device shows where it is. */
 static void test_wrong_words_show(void **state) {
     fixture *b = *state;
@@ -93,21 +100,18 @@ static void test_wrong_words_show(void **state) {
     /* Without rings and repeated points a point's slot is its place in the list. */
     assert_int_equal(good.point_count, polylines->first_slots[polylines->polyline_count]);
     const size_t item = b->mesh->device->point_chunk; /* an offset is that of a run */
-    const cl_mem mems[] = {b->mesh->parts->x, b->mesh->parts->y, b->mesh->parts->joins, b->mesh->parts->offsets};
+    camber_buffer *const buffers[] = {b->mesh->parts->x, b->mesh->parts->y, b->mesh->parts->joins,
+                                      b->mesh->parts->offsets};
     for (size_t k = 0; k < 4; k++) {
         const size_t points[] = {0, 255, 256, 1000, good.point_count - 1};
         for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
-            const size_t at = 4 * (k < 3 ? points[i] + 1 : points[i] / item);
-            cl_uint word = 0;
+            const size_t at = k < 3 ? points[i] + 1 : points[i] / item;
             for (int bit = 0; bit < 32; bit += 7) {
-                clEnqueueReadBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
-                word ^= 1u << bit;
-                clEnqueueWriteBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                flip_bit(b->on.device, buffers[k], at, bit);
                 camber_stages bad = on_device(b);
                 assert_int_equal(first_difference(&good, &bad), k < 3 ? points[i] : points[i] / item * item);
                 camber_stages_destroy(&bad);
-                word ^= 1u << bit;
-                clEnqueueWriteBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                flip_bit(b->on.device, buffers[k], at, bit);
             }
         }
     }

@@ -2,6 +2,7 @@
  * of a wrong picture is handed over, all can be destroyed, and drawing works again: with the same objects, or after the
  * context's loss with new ones. */
 #include "gl_fault.h"
+#include "gpu/opencl/opencl.h"
 #include "pictures.h"
 
 #include <EGL/egl.h>
@@ -385,7 +386,7 @@ static void check_current(drawn_lines *e) {
  */
 static void check_destruction(drawn_lines *e) {
     for (size_t n = 1; n <= 3; n++) { /* a buffer a mesh, and the renderer */
-        cl_mem mem = e->meshes[0]->parts[0].buffers[CAMBER_BUFFER_RECORDS].mem;
+        cl_mem mem = e->meshes[0]->parts[0].buffers[CAMBER_BUFFER_RECORDS].buffer->native;
         cl_uint count = 0;
         clRetainMemObject(mem);
         begin(e);

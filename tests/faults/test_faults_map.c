@@ -229,10 +229,10 @@ static camber_status try_glb(camber_context *context, void *user) {
 
 /* A zigzag through the tile for each pair that has lines, drawn or not. */
 enum { ZIGZAG = 40, PAIRS_MOST = 64 };
-static void make_lines(const camber_mesh_plan *plan, camber_record *records, camber_mesh_picture *picture) {
+static void make_lines(const camber_mesh_plan *plan, camber_mesh_point *points, camber_mesh_picture *picture) {
     const camber_plan *p = &plan->zoom->plan;
     *picture = (camber_mesh_picture){.plan = plan, .lines = calloc(PAIRS_MOST, sizeof *picture->lines)};
-    picture->data.records = records;
+    picture->points = points;
     assert_non_null(picture->lines);
     for (size_t set = 0; set < p->set_count; set++)
         for (size_t k = 0; k < p->sets[set].pair_count && !camber_plan_is_area(p, p->sets + set); k++) {
@@ -246,18 +246,18 @@ static void make_lines(const camber_mesh_plan *plan, camber_record *records, cam
                                                                        .x1 = 20 * ZIGZAG,
                                                                        .y1 = 100};
             for (size_t i = 0; i < ZIGZAG; i++)
-                records[first + i] = (camber_record){.x = 20.0f * (float)i,
-                                                     .y = i % 2 ? 100.0f : 0.0f,
-                                                     .last = CAMBER_POINT_REAL | (i ? 0u : CAMBER_POINT_FIRST) |
-                                                             (i + 1 < ZIGZAG ? 0u : CAMBER_POINT_LAST)};
+                points[first + i] = (camber_mesh_point){.x = 20.0f * (float)i,
+                                                        .y = i % 2 ? 100.0f : 0.0f,
+                                                        .info = CAMBER_POINT_REAL | (i ? 0u : CAMBER_POINT_FIRST) |
+                                                                (i + 1 < ZIGZAG ? 0u : CAMBER_POINT_LAST)};
         }
-    picture->data.info.record_count = ZIGZAG * picture->line_count;
+    picture->point_count = ZIGZAG * picture->line_count;
 }
 
 /* Plans, cuts and encodes a mesh tile. What a device draws for it is made by hand, and free of the context. */
 static camber_status try_mesh_tile(camber_context *context, void *user) {
     desk *d = user;
-    static camber_record records[ZIGZAG * PAIRS_MOST];
+    static camber_mesh_point points[ZIGZAG * PAIRS_MOST];
     const camber_zoom_desc desc = {.zoom = 10, .scale_px = 512 << 10, .ratio = 1, .simplify_px = 0.1};
     const camber_mesh_place place = {10, 540, 350, 1};
     camber_mesh_plan *plan = NULL;
@@ -267,7 +267,7 @@ static camber_status try_mesh_tile(camber_context *context, void *user) {
     camber_status status = camber_mesh_plan_create(d->features, &desc, &plan);
     if (status == CAMBER_OK) {
         camber_mesh_picture picture;
-        make_lines(plan, records, &picture);
+        make_lines(plan, points, &picture);
         assert_true(picture.line_count > 2);
         status = camber_mesh_tile_cut(context, &picture, 512, 0, 0, &tile);
         free(picture.lines);

@@ -12,12 +12,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { RECORDS_MOST = 256, LINES_MOST = 32 };
+enum { POINTS_MOST = 256, LINES_MOST = 32 };
 
 typedef struct input {
-    camber_record records[RECORDS_MOST];
+    camber_mesh_point points[POINTS_MOST];
     camber_mesh_line lines[LINES_MOST];
-    size_t record_count, line_count;
+    size_t point_count, line_count;
 } input;
 
 static float take_px(fuzz_reader *from) {
@@ -29,24 +29,24 @@ static void take_line(fuzz_reader *from, input *made) {
     const unsigned head = (unsigned)fuzz_take(from, 1);
     const size_t count = 2 + (head & 15);
     camber_mesh_line *line = made->lines + made->line_count++;
-    camber_record *records = made->records + made->record_count;
+    camber_mesh_point *points = made->points + made->point_count;
     *line = (camber_mesh_line){
-        .first = made->record_count, .count = count, .x0 = 1e9f, .y0 = 1e9f, .x1 = -1e9f, .y1 = -1e9f};
+        .first = made->point_count, .count = count, .x0 = 1e9f, .y0 = 1e9f, .x1 = -1e9f, .y1 = -1e9f};
     for (size_t i = 0; i < count; i++) {
-        records[i] = (camber_record){.x = take_px(from), .y = take_px(from), .last = CAMBER_POINT_REAL};
-        line->x0 = fminf(line->x0, records[i].x);
-        line->y0 = fminf(line->y0, records[i].y);
-        line->x1 = fmaxf(line->x1, records[i].x);
-        line->y1 = fmaxf(line->y1, records[i].y);
+        points[i] = (camber_mesh_point){.x = take_px(from), .y = take_px(from), .info = CAMBER_POINT_REAL};
+        line->x0 = fminf(line->x0, points[i].x);
+        line->y0 = fminf(line->y0, points[i].y);
+        line->x1 = fmaxf(line->x1, points[i].x);
+        line->y1 = fmaxf(line->y1, points[i].y);
     }
     const uint32_t ends = (head & 16 ? CAMBER_POINT_RING : 0) | (head & 32 ? CAMBER_POINT_CUT : 0);
     if (head & 16) { /* it ends where it begins */
-        records[count - 1].x = records[0].x;
-        records[count - 1].y = records[0].y;
+        points[count - 1].x = points[0].x;
+        points[count - 1].y = points[0].y;
     }
-    records[0].last |= CAMBER_POINT_FIRST | ends;
-    records[count - 1].last |= CAMBER_POINT_LAST | ends;
-    made->record_count += count;
+    points[0].info |= CAMBER_POINT_FIRST | ends;
+    points[count - 1].info |= CAMBER_POINT_LAST | ends;
+    made->point_count += count;
 }
 
 /* Lines lie between sentinels, each from a first to a last record, and within what 16 bits hold. */
@@ -87,12 +87,12 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
                                    .reach_px = &reach_px,
                                    .has_arc_length = has_arc_length};
     camber_mesh_tile tile = {0};
-    made.record_count = made.line_count = 0;
-    while (from.size && made.line_count < LINES_MOST && made.record_count + 17 <= RECORDS_MOST)
+    made.point_count = made.line_count = 0;
+    while (from.size && made.line_count < LINES_MOST && made.point_count + 17 <= POINTS_MOST)
         take_line(&from, &made);
     camber_mesh_picture picture = {.plan = &plan, .lines = made.lines, .line_count = made.line_count};
-    picture.data.records = made.records;
-    picture.data.info.record_count = made.record_count;
+    picture.points = made.points;
+    picture.point_count = made.point_count;
     for (int again = 0; again < 2; again++) /* a tile keeps its room */
         if (fuzz_done(run,
                       camber_mesh_tile_cut(run->context, &picture, head & 8 ? 256 : 512, head & 7, head >> 4, &tile)))

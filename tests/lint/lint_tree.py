@@ -281,6 +281,17 @@ def check_includes(tree):
                               "move what both need into a lower layer, or correct LINKS in src/CMakeLists.txt")
 
 
+def check_compute(tree):
+    """OpenCL's names stay in gpu/, so that another back end is a folder of it."""
+    for file in tree.ending(".c", ".h"):
+        if not file.path.startswith("src/") or file.layer == "gpu":
+            continue
+        match = re.search(r"\b(?:cl_(?!khr_)[a-z]\w*|cl[A-Z]\w*|CL_[A-Z]\w*)\b", file.code)
+        if match:
+            yield Finding(file.path, file.line_at(match.start()), "%s outside of src/gpu" % match.group(),
+                          "use gpu/buffer.h or gpu/launch.h; if they lack it, add it to each back end")
+
+
 # ---- Object files ----
 
 
@@ -568,8 +579,8 @@ def check_packages(tree):
                           "add it")
 
 
-RULES = (check_packages, check_types, check_guards, check_layers, check_includes, check_links, check_kernels, check_words,
-         check_comments, check_documents)
+RULES = (check_packages, check_types, check_guards, check_layers, check_includes, check_compute, check_links, check_kernels,
+         check_words, check_comments, check_documents)
 
 
 def main(arguments):

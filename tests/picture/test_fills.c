@@ -9,6 +9,7 @@ typedef struct drawing {
     camber_pass passes[PASSES_MAX];
     camber_frame frame;
     camber_made_scene lines;
+    camber_method method;
 } drawing;
 
 static void begin_drawing(drawing *d) {
@@ -36,7 +37,8 @@ static void put_fill(drawing *d, camber_color color, float opacity) {
 }
 
 static picture draw(const fixture *s, camber_renderer *renderer, drawing *d, uint32_t piece_px) {
-    const camber_tessellation_desc desc = {.strokes = d->strokes, .stroke_count = CAMBER_KERNEL_ROWS};
+    const camber_tessellation_desc desc = {
+        .strokes = d->strokes, .stroke_count = CAMBER_KERNEL_ROWS, .method = d->method};
     camber_mesh *mesh = fixture_mesh(s, renderer, &d->lines, &desc);
     for (size_t i = 0; i < d->frame.pass_count; i++)
         d->passes[i].mesh = d->passes[i].paints ? mesh : NULL;
@@ -167,8 +169,36 @@ static void test_gl(void **state) {
     camber_renderer_destroy(cl);
 }
 
+/* Kernels that fill areas read the same points as GL's vertex buffers were made of, whatever the method. */
+static void test_areas_of_methods(void **state) {
+    const fixture *s = *state;
+    static const camber_fill fill = {.color = {0, 0.5f, 0, 0.5f}};
+    camber_renderer *cl = NULL;
+    if (draws_in_cl())
+        skip(); /* it has points alone */
+    assert_int_equal(camber_renderer_create(s->on.device, NULL, NULL, &cl), CAMBER_OK);
+    for (int method = CAMBER_METHOD_STRIP; method <= CAMBER_METHOD_FAN; method++) {
+        drawing d;
+        begin_drawing(&d);
+        camber_paint areas[CAMBER_KERNEL_ROWS];
+        for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
+            areas[i] = (camber_paint){.fill = &fill};
+        d.method = (camber_method)method;
+        for (size_t k = 0; k < 2; k++) {
+            put_lines(&d, k);
+            d.passes[d.frame.pass_count++] = (camber_pass){
+                .paints = areas, .paint_count = CAMBER_KERNEL_ROWS, .first_polyline = k, .polyline_count = 1};
+        }
+        put_lines(&d, 2);
+        compare_with_gl(s, cl, &d, 0.5);
+        camber_made_scene_free(&d.lines);
+    }
+    camber_renderer_destroy(cl);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_hidden), cmocka_unit_test(test_order),
-                                       cmocka_unit_test(test_pieces), cmocka_unit_test(test_gl)};
+                                       cmocka_unit_test(test_pieces), cmocka_unit_test(test_gl),
+                                       cmocka_unit_test(test_areas_of_methods)};
     return FIXTURE_RUN(tests);
 }

@@ -1,4 +1,4 @@
-/* Mesh tiles: lines cut and quantised, and what stands between them. No device: a picture of records is made by hand.
+/* Mesh tiles: lines cut and quantised, and what stands between them. No device: a picture of points is made by hand.
  */
 #include "tiles/mesh_tile.h"
 
@@ -22,7 +22,7 @@ typedef struct fixture {
     float reach_px[1];
     bool has_arc_length[1];
     camber_mesh_plan plan;
-    camber_record records[MOST];
+    camber_mesh_point points[MOST];
     camber_mesh_line line;
     camber_mesh_picture picture;
     camber_mesh_tile tile;
@@ -43,17 +43,17 @@ static void make(fixture *f, const float (*points)[2], size_t count, uint32_t fi
     f->line = (camber_mesh_line){.count = count, .x0 = 1e9f, .y0 = 1e9f, .x1 = -1e9f, .y1 = -1e9f};
     for (size_t i = 0; i < count; i++) {
         const float x = points[i][0], y = points[i][1];
-        f->records[i] = (camber_record){.x = x, .y = y, .last = CAMBER_POINT_REAL};
+        f->points[i] = (camber_mesh_point){.x = x, .y = y, .info = CAMBER_POINT_REAL};
         f->line.x0 = x < f->line.x0 ? x : f->line.x0;
         f->line.y0 = y < f->line.y0 ? y : f->line.y0;
         f->line.x1 = x > f->line.x1 ? x : f->line.x1;
         f->line.y1 = y > f->line.y1 ? y : f->line.y1;
     }
-    f->records[0].last |= CAMBER_POINT_FIRST | first_flags;
-    f->records[count - 1].last |= CAMBER_POINT_LAST | last_flags;
+    f->points[0].info |= CAMBER_POINT_FIRST | first_flags;
+    f->points[count - 1].info |= CAMBER_POINT_LAST | last_flags;
     f->picture = (camber_mesh_picture){.plan = &f->plan, .lines = &f->line, .line_count = 1};
-    f->picture.data.records = f->records;
-    f->picture.data.info.record_count = count;
+    f->picture.points = f->points;
+    f->picture.point_count = count;
 }
 
 static void cut(fixture *f) {
@@ -212,7 +212,7 @@ static void test_seam(void **state) {
     static const float points[][2] = {{100, 100}, {150, 100}, {100, 500}};
     fixture f;
     make(&f, points, 2, CAMBER_POINT_RING, CAMBER_POINT_CUT);
-    f.records[2] = (camber_record){.x = points[2][0], .y = points[2][1]};
+    f.points[2] = (camber_mesh_point){.x = points[2][0], .y = points[2][1]};
     f.line.before = 3;
     cut(&f);
     assert_int_equal(f.tile.record_count, 4);

@@ -1,10 +1,9 @@
-/* An open OpenCL device: its queue, the programs built for it so far, and counts of the memory that is held on it. */
-#ifndef CAMBER_CL_DEVICE_H
-#define CAMBER_CL_DEVICE_H
+/* An open compute device: the programs made for it so far, and counts of the memory that is held on it. Layers above
+ * this one know devices, buffers, programs and launches; only a back end's folder knows OpenCL. */
+#ifndef CAMBER_GPU_DEVICE_H
+#define CAMBER_GPU_DEVICE_H
 
 #include "base/base.h"
-
-#include <CL/cl.h>
 
 /* Returns CAMBER_ERROR_DEVICE in a child that was forked after drivers were set up: their threads are the parent's, and
  * a call would wait for them for ever. */
@@ -12,14 +11,12 @@ camber_status camber_check_process(camber_context *context);
 
 struct camber_device {
     camber_context *context;
-    cl_platform_id platform;
-    cl_device_id id;
-    cl_context cl;
-    cl_command_queue queue;
+    const struct camber_gpu_backend *backend;
+    void *native; /* the back end's own */
     camber_device_info info;
     bool rounds_correctly; /* divides and takes roots exactly as the host: kernels equal the twin bit for bit */
     bool host_memory;      /* the device works in the host's memory: it can read the host's arrays in place */
-    bool gl_context;       /* cl was made for a GL context, so that GL buffers can be shared */
+    bool gl_context;       /* it was opened for a GL context, so that GL buffers can be shared */
     size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels are built */
     size_t point_chunk;    /* points a work-item: CAMBER_POINT_CHUNK */
     unsigned lanes;        /* of the rasterizer's vectors: CAMBER_LANES */
@@ -35,7 +32,9 @@ struct camber_device {
     camber_mesh *meshes;                           /* a list: each mesh points to the next */
 };
 
-/* Logs "CALL: OpenCL NAME (code); cure" and returns the status that the code stands for. */
-camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);
+/* Waits for all that was queued. */
+camber_status camber_device_finish(const camber_device *device);
+/* The same after a failure that has been logged: nothing reads the host's arrays afterwards. */
+void camber_device_settle(const camber_device *device);
 
 #endif

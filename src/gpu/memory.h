@@ -6,10 +6,10 @@
  *     4   a part of a single polyline, which cannot be cut
  *     2   unused room in buffers that a part has taken over from another
  * A part of several polylines gets one eighth, so that the next part does not have to evict everything. */
-#ifndef CAMBER_CL_MEMORY_H
-#define CAMBER_CL_MEMORY_H
+#ifndef CAMBER_GPU_MEMORY_H
+#define CAMBER_GPU_MEMORY_H
 
-#include "cl/device.h"
+#include "gpu/device.h"
 
 /* That many eighths of the bound on the device's meshes, in bytes; UINT64_MAX where there is no bound. */
 uint64_t camber_device_share(const camber_device *device, unsigned eighths);

@@ -1,21 +1,28 @@
-/* OpenCL programs and their kernels. A program is loaded from the cache or built when a device first needs it. */
-#ifndef CAMBER_CL_PROGRAM_H
-#define CAMBER_CL_PROGRAM_H
+/* Programs and their kernels. A program is loaded from the cache or built when a device first needs it. */
+#ifndef CAMBER_GPU_PROGRAM_H
+#define CAMBER_GPU_PROGRAM_H
 
-#include "cl/device.h"
+#include "gpu/launch.h"
 
 /* One program. Only the kernels of its kind are set; the others are NULL. */
 typedef struct camber_program {
-    cl_program cl;
-    cl_kernel classify, scan, emit;  /* of a tessellation method */
-    cl_kernel cull_count, cull_emit; /* of networks: which points a camera sees */
-    cl_kernel arc_length_sum, arc_length_scan;
-    cl_kernel offset_clip, offset_count, offset_emit; /* of lines beside others */
-    cl_kernel setup, bin_count, bin_scan, bin_scatter, wind, rasterize;
-    uint64_t key; /* names its file in the cache */
-    bool built;   /* compiled from source: no cache had it */
-    bool kept;    /* a cache has it by now */
+    void *native;                          /* the back end's own */
+    camber_kernel *classify, *scan, *emit; /* of a tessellation method */
+    camber_kernel *cull_count, *cull_emit; /* of networks: which points a camera sees */
+    camber_kernel *arc_length_sum, *arc_length_scan;
+    camber_kernel *offset_clip, *offset_count, *offset_emit; /* of lines beside others */
+    camber_kernel *setup, *bin_count, *bin_scan, *bin_scatter, *wind, *rasterize;
+    bool built; /* compiled from source: no cache had it */
+    bool kept;  /* a cache has it by now */
 } camber_program;
+
+/* A back end makes a program of this. */
+typedef struct camber_program_source {
+    const char *name; /* for people */
+    const char *text;
+    size_t text_bytes;
+    char options[256];
+} camber_program_source;
 
 /* The properties of a mesh that its kernels are built for. */
 typedef struct camber_program_desc {
@@ -35,6 +42,6 @@ camber_status camber_device_network_program(camber_device *device, bool has_arc_
 camber_status camber_device_arc_length_program(camber_device *device, camber_program **program);
 camber_status camber_device_offset_program(camber_device *device, bool has_arc_length, camber_program **program);
 camber_status camber_device_raster_program(camber_device *device, unsigned variant, camber_program **program);
-void camber_program_destroy(camber_context *context, camber_program *program);
+void camber_program_destroy(const camber_device *device, camber_program *program);
 
 #endif

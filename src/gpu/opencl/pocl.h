@@ -1,8 +1,8 @@
 /* Makes PoCL run the kernels of a saved binary as they are. */
-#ifndef CAMBER_CL_POCL_H
-#define CAMBER_CL_POCL_H
+#ifndef CAMBER_GPU_OPENCL_POCL_H
+#define CAMBER_GPU_OPENCL_POCL_H
 
-#include "cl/device.h"
+#include "gpu/device.h"
 
 /* Whether the device is a CPU under PoCL. */
 bool camber_is_pocl(const camber_device_info *info);

@@ -1,5 +1,5 @@
 /* Counts what is held on a device, and divides its bound. memory.h has the rule. */
-#include "cl/memory.h"
+#include "gpu/memory.h"
 
 /* An OpenCL renderer gets a quarter of the bound on meshes. Where that is less than this, it gets this much, and meshes
  * keep their whole bound. */

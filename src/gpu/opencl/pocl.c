@@ -23,7 +23,7 @@
  * of a program that was compiled from source PoCL would find the code. */
 #define _GNU_SOURCE /* ST_NOEXEC */
 
-#include "cl/pocl.h"
+#include "gpu/opencl/pocl.h"
 
 #include <limits.h>
 #include <pthread.h>

@@ -1,0 +1,69 @@
+/* A back end gives a table of functions, and handles that mean something to it alone. OpenCL's folder is opencl/.
+ * Another back end is another folder, and its line in the list in device.c. Only files of gpu/ include this. */
+#ifndef CAMBER_GPU_BACKEND_H
+#define CAMBER_GPU_BACKEND_H
+
+#include "gpu/buffer.h"
+#include "gpu/launch.h"
+#include "gpu/program.h"
+
+/* A device that a back end has found, and what it opens it by. */
+typedef struct camber_found_device {
+    const struct camber_gpu_backend *backend;
+    void *platform, *id;
+    camber_device_info info;
+} camber_found_device;
+
+/* A call that failed while devices were looked for: the reason to give if none is found. */
+typedef struct camber_failed_call {
+    const struct camber_gpu_backend *backend;
+    const char *name; /* NULL: none failed */
+    int code;
+} camber_failed_call;
+
+struct camber_buffer {
+    void *native;
+    size_t counted_bytes; /* of the run's budget */
+};
+
+/* Functions that return a status log why they failed. */
+typedef struct camber_gpu_backend {
+    /* Fails if drivers would end the process, when they are first asked. */
+    camber_status (*check_process)(camber_context *context);
+    /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. */
+    size_t (*find)(camber_found_device *found, size_t capacity, camber_failed_call *failed);
+    /* Logs such a call, and returns the status that its code stands for. */
+    camber_status (*fail)(camber_context *context, const camber_failed_call *failed);
+    /* Sets device->native and what only the back end knows: rounds_correctly, host_memory, gl_context, and lanes if
+     * they are 0. close is called even if this failed. */
+    camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl);
+    void (*close)(camber_device *device);
+    /* These two fail in silence unless is_told. */
+    camber_status (*finish)(const camber_device *device, bool is_told);
+    camber_status (*unmap)(const camber_device *device, void *native, void *bytes, bool is_told);
+
+    camber_status (*make_buffer)(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
+                                 const void *bytes, void **native);
+    camber_status (*make_gl_buffer)(const camber_device *device, unsigned gl_name, void **native);
+    void (*release_buffer)(void *native);
+    camber_status (*write)(const camber_device *device, void *native, const camber_byte_range *range, const void *bytes,
+                           bool waits);
+    camber_status (*read)(const camber_device *device, void *native, size_t size_bytes, void *bytes);
+    camber_status (*map)(const camber_device *device, void *native, camber_map_access access, size_t size_bytes,
+                         void **bytes);
+    camber_status (*acquire_gl)(const camber_device *device, void *const *natives, size_t count);
+    camber_status (*release_gl)(const camber_device *device, void *const *natives, size_t count);
+
+    /* Sets program->native, built and kept. release_program is called even if this failed. */
+    camber_status (*make_program)(camber_device *device, const camber_program_source *from, camber_program *program);
+    void (*release_program)(void *native);
+    camber_status (*make_kernel)(const camber_device *device, void *program, const char *name, camber_kernel **kernel);
+    void (*release_kernel)(camber_kernel *kernel);
+    camber_status (*launch)(const camber_device *device, const camber_launch *launch, camber_event **event);
+    camber_status (*wait)(const camber_device *device, camber_event *event, const char *name);
+    double (*end_event)(camber_event *event); /* returns how long its command ran, ms, and releases it */
+} camber_gpu_backend;
+
+extern const camber_gpu_backend camber_opencl;
+
+#endif

@@ -1,0 +1,244 @@
+/* Lists, chooses and opens compute devices.
+ *
+ * Input: a desc with a word that the device must match and bounds on its memory. Output: a camber_device that a back
+ * end has opened, and the sizes that its kernels are built for. Of the devices that match a GPU wins over a CPU, and a
+ * CPU over anything else. Programs are made later, when they are first used (program.c). */
+#include "gpu/backend.h"
+
+#include "kernels/layout.h"
+
+#include <ctype.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+enum { DEVICES_MAX = 64 };
+
+static const camber_gpu_backend *const backends[] = {&camber_opencl};
+enum { BACKENDS = sizeof backends / sizeof *backends };
+
+/* The only lock of the whole process. It guards state of the process: the OpenCL loader and the drivers set themselves
+ * up when they are first asked. PoCL (3.1 and 6.0) tells a second thread too early that this is done, and gives it
+ * devices without a name. Every use of OpenCL begins with find_devices, so locking here is enough. */
+static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
+
+/* The process that has set drivers up. 0: none yet. */
+static _Atomic(pid_t) process_of_drivers;
+
+camber_status camber_check_process(camber_context *context) {
+    const pid_t process = atomic_load(&process_of_drivers);
+    if (process == 0 || process == getpid())
+        return CAMBER_OK;
+    return camber_fail(
+        context, CAMBER_ERROR_DEVICE,
+        "device: this process was forked after camber had set up OpenCL, which does not survive that; fork "
+        "before camber's first call, or start a new process (exec)");
+}
+
+/* Returns how many devices were found. *failed takes the last call that failed, if any did. */
+static size_t find_devices(camber_found_device found[DEVICES_MAX], camber_failed_call *failed) {
+    size_t count = 0;
+    *failed = (camber_failed_call){0};
+    pthread_mutex_lock(&asking);
+    atomic_store(&process_of_drivers, getpid());
+    for (size_t i = 0; i < BACKENDS; i++)
+        count += backends[i]->find(found + count, DEVICES_MAX - count, failed);
+    pthread_mutex_unlock(&asking);
+    return count;
+}
+
+/* Fails if drivers would end the process, or would not fit its memory, when they are first asked. */
+static camber_status check_before_asking(camber_context *context) {
+    camber_status status = camber_check_process(context);
+    if (status == CAMBER_OK)
+        status = camber_budget_check_drivers(context);
+    for (size_t i = 0; i < BACKENDS && status == CAMBER_OK && atomic_load(&process_of_drivers) == 0; i++)
+        status = backends[i]->check_process(context);
+    return status;
+}
+
+static camber_status list_devices(camber_context *context) {
+    camber_found_device found[DEVICES_MAX];
+    camber_failed_call failed;
+    const camber_status status = check_before_asking(context);
+    if (status != CAMBER_OK)
+        return status;
+    const size_t count = find_devices(found, &failed);
+    context->devices = camber_alloc(context, count, sizeof *context->devices);
+    if (!context->devices)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        context->devices[i] = found[i].info;
+    context->device_count = count;
+    return CAMBER_OK;
+}
+
+camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info) {
+    const camber_status status = context->devices ? CAMBER_OK : list_devices(context);
+    if (status == CAMBER_OK)
+        *info = n < context->device_count ? context->devices + n : NULL;
+    return status;
+}
+
+static bool contains_ignoring_case(const char *text, const char *part) {
+    for (; *text; text++) {
+        size_t i = 0;
+        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (!part[i])
+            return true;
+    }
+    return *part == 0;
+}
+
+bool camber_device_info_matches(const camber_device_info *info, const char *match) {
+    if (!match)
+        return true;
+    if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
+        return info->type == CAMBER_DEVICE_TYPE_CPU;
+    if (contains_ignoring_case("gpu", match) && strlen(match) == 3)
+        return info->type == CAMBER_DEVICE_TYPE_GPU;
+    return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match);
+}
+
+static int rank(const camber_device_info *info) {
+    return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
+}
+
+/* Picks the best device that matches: a GPU, else a CPU, else another; or the number-th of those that match, where
+ * number is not 0. */
+static camber_status choose_device(camber_device *device, const camber_device_desc *desc, camber_found_device *chosen) {
+    const char *match = desc->match;
+    const uint32_t number = desc->number;
+    camber_found_device found[DEVICES_MAX];
+    camber_failed_call failed;
+    const size_t count = find_devices(found, &failed);
+    if (count == 0 && failed.name)
+        return failed.backend->fail(device->context, &failed);
+    if (count == 0)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                           "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd), "
+                           "and let POCL_CACHE_DIR name a folder that PoCL can write to");
+    char names[1024] = "";
+    uint32_t seen = 0;
+    int best = -1;
+    for (size_t i = 0; i < count; i++) {
+        const camber_device_info info = found[i].info;
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
+        if (!camber_device_info_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
+            continue;
+        best = rank(&info);
+        *chosen = found[i];
+    }
+    if (best < 0 && number)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                           "no OpenCL device number %u matches '%s'; there are: %s", number, match ? match : "", names);
+    if (best < 0)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no OpenCL device matches '%s'; there are: %s", match,
+                           names);
+    return CAMBER_OK;
+}
+
+/* Below these, a part of a single block and the strokes of a style would not fit. */
+enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
+/* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
+static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
+
+/* Sets the work-group's size, the lanes and the largest buffer, from the desc's bounds and the device's. */
+static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc) {
+    const uint32_t size = desc->work_group_size;
+    if (size != 0 && size != 64 && size != 128 && size != 256)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "a work-group of %u points; it must be 64, 128, 256, or 0 for 256", size);
+    if (desc->lanes != 0 && desc->lanes != 1 && desc->lanes != 8 && desc->lanes != 16)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "vectors of %u lanes; it must be 1, 8, 16, or 0 for the device's own width", desc->lanes);
+    if (desc->largest_buffer_bytes != 0 && desc->largest_buffer_bytes < LEAST_BUFFER_BYTES)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "a largest buffer of %llu bytes; it must be %d or more, or 0 for the device's own limit",
+                           (unsigned long long)desc->largest_buffer_bytes, LEAST_BUFFER_BYTES);
+    if (desc->memory_bytes != 0 && desc->memory_bytes < LEAST_MEMORY_BYTES)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "%llu bytes of memory for meshes; it must be %d or more, or 0 for what the device has",
+                           (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
+    device->block = size ? size : CAMBER_BLOCK;
+    device->point_chunk = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_POINT_CHUNK;
+    device->lanes = desc->lanes;
+    uint64_t *largest = &device->info.largest_buffer_bytes;
+    if (*largest > LARGEST_BUFFER_BYTES)
+        *largest = LARGEST_BUFFER_BYTES;
+    if (desc->gl.largest_buffer_bytes && desc->gl.largest_buffer_bytes < *largest)
+        *largest = desc->gl.largest_buffer_bytes;
+    if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
+        *largest = desc->largest_buffer_bytes;
+    return CAMBER_OK;
+}
+
+/* Bounds what meshes may hold. Where the desc gives no bound, a device with memory of its own keeps a quarter of it for
+ * pictures. */
+static void bound_memory(camber_device *device, const camber_device_desc *desc) {
+    device->memory_bytes = desc->memory_bytes;
+    if (!desc->memory_bytes && !device->host_memory && device->info.memory_bytes)
+        device->memory_bytes = device->info.memory_bytes / 4 * 3;
+}
+
+camber_status camber_device_create(camber_context *context, const camber_device_desc *desc, camber_device **device) {
+    camber_device *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    camber_found_device found = {0};
+    made->context = context;
+    const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
+    camber_status status = check_before_asking(context);
+    if (status == CAMBER_OK)
+        status = choose_device(made, &full, &found);
+    made->backend = found.backend;
+    made->info = found.info;
+    if (status == CAMBER_OK)
+        status = apply_bounds(made, &full);
+    if (status == CAMBER_OK)
+        status = made->backend->open(made, &found, &full.gl);
+    if (status == CAMBER_OK)
+        bound_memory(made, &full);
+    if (status != CAMBER_OK) {
+        camber_device_destroy(made);
+        return status;
+    }
+    *device = made;
+    return CAMBER_OK;
+}
+
+void camber_device_destroy(camber_device *device) {
+    if (!device)
+        return;
+    for (int has_arc_length = 0; has_arc_length < 2; has_arc_length++) {
+        for (int kind = 0; kind < 6; kind++)
+            camber_program_destroy(device, device->programs[has_arc_length][kind / 3][kind % 3]);
+        for (int pitched = 0; pitched < 2; pitched++)
+            camber_program_destroy(device, device->network_programs[has_arc_length][pitched]);
+    }
+    camber_program_destroy(device, device->arc_length_program);
+    for (size_t i = 0; i < 2; i++)
+        camber_program_destroy(device, device->offset_programs[i]);
+    for (size_t i = 0; i < sizeof device->raster_programs / sizeof *device->raster_programs; i++)
+        camber_program_destroy(device, device->raster_programs[i]);
+    if (device->backend)
+        device->backend->close(device);
+    camber_free(device->context, device);
+}
+
+camber_device_info camber_device_get_info(const camber_device *device) {
+    return device->info;
+}
+
+camber_status camber_device_finish(const camber_device *device) {
+    return device->backend->finish(device, true);
+}
+
+void camber_device_settle(const camber_device *device) {
+    (void)device->backend->finish(device, false);
+}

@@ -1,0 +1,237 @@
+/* Finds and opens OpenCL devices, and is the table of the back end.
+ *
+ * Every platform is asked for every device. Each answer may fail: such a device is left out, and the reason is told if
+ * none is left. */
+#include "gpu/opencl/opencl.h"
+#include "gpu/opencl/pocl.h"
+
+#include <CL/cl_gl.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
+
+/* The loader answers this where it finds no driver. It belongs to an extension, so that cl.h lacks it. */
+#define PLATFORM_NOT_FOUND_KHR (-1001)
+
+static const char *cl_error_name(cl_int code) {
+    switch (code) {
+    case CL_DEVICE_NOT_FOUND: return "CL_DEVICE_NOT_FOUND";
+    case CL_DEVICE_NOT_AVAILABLE: return "CL_DEVICE_NOT_AVAILABLE";
+    case CL_COMPILER_NOT_AVAILABLE: return "CL_COMPILER_NOT_AVAILABLE";
+    case CL_MEM_OBJECT_ALLOCATION_FAILURE: return "CL_MEM_OBJECT_ALLOCATION_FAILURE";
+    case CL_OUT_OF_RESOURCES: return "CL_OUT_OF_RESOURCES";
+    case CL_OUT_OF_HOST_MEMORY: return "CL_OUT_OF_HOST_MEMORY";
+    case CL_BUILD_PROGRAM_FAILURE: return "CL_BUILD_PROGRAM_FAILURE";
+    case CL_INVALID_VALUE: return "CL_INVALID_VALUE";
+    case CL_INVALID_BUFFER_SIZE: return "CL_INVALID_BUFFER_SIZE";
+    case CL_INVALID_BINARY: return "CL_INVALID_BINARY";
+    case CL_INVALID_WORK_GROUP_SIZE: return "CL_INVALID_WORK_GROUP_SIZE";
+    case PLATFORM_NOT_FOUND_KHR: return "CL_PLATFORM_NOT_FOUND_KHR";
+    default: return "error";
+    }
+}
+
+camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code) {
+    const bool memory = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_HOST_MEMORY ||
+                        code == CL_OUT_OF_RESOURCES || code == CL_INVALID_BUFFER_SIZE;
+    const char *cure = memory ? "draw less at once or use a device with more memory" : "try another device";
+    if (code == CL_INVALID_WORK_GROUP_SIZE)
+        cure = "ask for smaller work-groups";
+    return camber_fail(context, memory ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_DEVICE, "%s: OpenCL %s (%d); %s", call,
+                       cl_error_name(code), code, cure);
+}
+
+static bool has_word(const char *text, const char *word) {
+    const size_t length = strlen(word);
+    for (const char *at = strstr(text, word); at; at = strstr(at + 1, word))
+        if ((at == text || at[-1] == ' ') && (at[length] == ' ' || at[length] == 0))
+            return true;
+    return false;
+}
+
+static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t size) {
+    char whole[1024] = "";
+    const cl_int code = clGetDeviceInfo(id, what, sizeof whole - 1, whole, NULL);
+    snprintf(text, size, "%s", whole);
+    return code;
+}
+
+/* Fills found->info. Returns the error of the first question that the device does not answer: it cannot be used. */
+static cl_int query_info(camber_found_device *found) {
+    camber_device_info *info = &found->info;
+    cl_device_type type = 0;
+    cl_ulong memory = 0, largest = 0;
+    char extensions[16384] = ""; /* a longer list does not fit: buffers are copied then */
+    const cl_int codes[] = {
+        get_text(found->id, CL_DEVICE_NAME, info->name, sizeof info->name),
+        get_text(found->id, CL_DEVICE_VERSION, info->version, sizeof info->version),
+        get_text(found->id, CL_DRIVER_VERSION, info->driver, sizeof info->driver),
+        clGetDeviceInfo(found->id, CL_DEVICE_TYPE, sizeof type, &type, NULL),
+        clGetDeviceInfo(found->id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof info->compute_units, &info->compute_units, NULL),
+        clGetDeviceInfo(found->id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL),
+        clGetDeviceInfo(found->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof largest, &largest, NULL),
+    };
+    (void)clGetDeviceInfo(found->id, CL_DEVICE_EXTENSIONS, sizeof extensions - 1, extensions, NULL);
+    info->memory_bytes = memory;
+    info->largest_buffer_bytes = largest;
+    info->type = type & CL_DEVICE_TYPE_GPU   ? CAMBER_DEVICE_TYPE_GPU
+                 : type & CL_DEVICE_TYPE_CPU ? CAMBER_DEVICE_TYPE_CPU
+                                             : CAMBER_DEVICE_TYPE_OTHER;
+    info->gl_sharing = has_word(extensions, "cl_khr_gl_sharing");
+    for (size_t i = 0; i < sizeof codes / sizeof *codes; i++)
+        if (codes[i] != CL_SUCCESS)
+            return codes[i];
+    return CL_SUCCESS;
+}
+
+static size_t find_on_platform(cl_platform_id platform, camber_found_device *found, size_t capacity,
+                               camber_failed_call *failed) {
+    cl_device_id ids[DEVICES_MAX];
+    cl_uint id_count = 0;
+    size_t count = 0;
+    char name[1024] = "";
+    cl_int code = clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
+    if (code != CL_SUCCESS) {
+        *failed = (camber_failed_call){&camber_opencl, "clGetPlatformInfo", code};
+        return 0;
+    }
+    code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &id_count);
+    if (code != CL_SUCCESS) {
+        if (code != CL_DEVICE_NOT_FOUND)
+            *failed = (camber_failed_call){&camber_opencl, "clGetDeviceIDs", code};
+        return 0;
+    }
+    for (cl_uint i = 0; i < id_count && i < DEVICES_MAX && count < capacity; i++) {
+        found[count] = (camber_found_device){.backend = &camber_opencl, .platform = platform, .id = ids[i]};
+        snprintf(found[count].info.platform, sizeof found->info.platform, "%.127s", name);
+        code = query_info(found + count);
+        if (code == CL_SUCCESS)
+            count++;
+        else
+            *failed = (camber_failed_call){&camber_opencl, "clGetDeviceInfo", code};
+    }
+    return count;
+}
+
+static size_t find(camber_found_device *found, size_t capacity, camber_failed_call *failed) {
+    cl_platform_id platforms[PLATFORMS_MAX];
+    cl_uint platform_count = 0;
+    size_t count = 0;
+    const cl_int code = clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
+    if (code != CL_SUCCESS) {
+        if (code != PLATFORM_NOT_FOUND_KHR)
+            *failed = (camber_failed_call){&camber_opencl, "clGetPlatformIDs", code};
+        return 0;
+    }
+    for (cl_uint i = 0; i < platform_count && i < PLATFORMS_MAX; i++)
+        count += find_on_platform(platforms[i], found + count, capacity - count, failed);
+    return count;
+}
+
+/* Lanes that are as wide as the device's vectors. GPUs have none: each work-item takes a pixel at a time. */
+static camber_status find_lanes(camber_device *device) {
+    cl_uint floats = 0;
+    const cl_int code =
+        clGetDeviceInfo(opencl_of(device)->id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof floats, &floats, NULL);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clGetDeviceInfo", code);
+    device->lanes = device->info.type != CAMBER_DEVICE_TYPE_CPU ? 1 : floats >= 16 ? 16 : 8;
+    return CAMBER_OK;
+}
+
+/* OpenCL has its own name for each kind of display. */
+static cl_context_properties display_kind(const camber_gl_handles *gl) {
+    return gl->display_kind == CAMBER_GL_DISPLAY_GLX ? CL_GLX_DISPLAY_KHR : CL_EGL_DISPLAY_KHR;
+}
+
+/* Makes the context, shared with a GL context where that works, and the queue; then asks for properties. */
+static camber_status open_cl(camber_device *device, const camber_gl_handles *gl) {
+    camber_opencl_device *cl = device->native;
+    cl_int code;
+    const cl_context_properties shared[] = {CL_CONTEXT_PLATFORM,
+                                            (cl_context_properties)cl->platform,
+                                            CL_GL_CONTEXT_KHR,
+                                            gl->context,
+                                            display_kind(gl),
+                                            gl->display,
+                                            0};
+    const cl_context_properties alone[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)cl->platform, 0};
+    if (gl->context && device->info.gl_sharing) {
+        cl->cl = clCreateContext(shared, 1, &cl->id, NULL, NULL, &code);
+        device->gl_context = code == CL_SUCCESS;
+    }
+    if (!device->gl_context) {
+        cl->cl = clCreateContext(alone, 1, &cl->id, NULL, NULL, &code);
+        if (code != CL_SUCCESS)
+            return camber_fail_cl(device->context, "clCreateContext", code);
+    }
+    cl->queue = clCreateCommandQueue(cl->cl, cl->id, CL_QUEUE_PROFILING_ENABLE, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clCreateCommandQueue", code);
+    cl_device_fp_config rounding = 0;
+    code = clGetDeviceInfo(cl->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clGetDeviceInfo", code);
+    device->rounds_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    cl_bool unified = CL_FALSE; /* a device that does not answer gets copies */
+    (void)clGetDeviceInfo(cl->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
+    device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
+    return device->lanes ? CAMBER_OK : find_lanes(device);
+}
+
+static camber_status open_device(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl) {
+    camber_opencl_device *made = camber_alloc_zero(device->context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->platform = found->platform;
+    made->id = found->id;
+    device->native = made;
+    return open_cl(device, gl);
+}
+
+static void close_device(camber_device *device) {
+    camber_opencl_device *cl = device->native;
+    if (cl && cl->queue)
+        clReleaseCommandQueue(cl->queue);
+    if (cl && cl->cl)
+        clReleaseContext(cl->cl);
+    camber_free(device->context, cl);
+    device->native = NULL;
+}
+
+static camber_status finish(const camber_device *device, bool is_told) {
+    const cl_int code = clFinish(opencl_of(device)->queue);
+    if (code == CL_SUCCESS)
+        return CAMBER_OK;
+    return is_told ? camber_fail_cl(device->context, "clFinish", code) : CAMBER_ERROR_DEVICE;
+}
+
+static camber_status fail_found(camber_context *context, const camber_failed_call *failed) {
+    return camber_fail_cl(context, failed->name, failed->code);
+}
+
+const camber_gpu_backend camber_opencl = {
+    .check_process = camber_pocl_check_threads,
+    .find = find,
+    .fail = fail_found,
+    .open = open_device,
+    .close = close_device,
+    .finish = finish,
+    .make_buffer = camber_opencl_make_buffer,
+    .make_gl_buffer = camber_opencl_make_gl_buffer,
+    .release_buffer = camber_opencl_release_buffer,
+    .write = camber_opencl_write,
+    .read = camber_opencl_read,
+    .map = camber_opencl_map,
+    .unmap = camber_opencl_unmap,
+    .acquire_gl = camber_opencl_acquire_gl,
+    .release_gl = camber_opencl_release_gl,
+    .make_program = camber_opencl_make_program,
+    .release_program = camber_opencl_release_program,
+    .make_kernel = camber_opencl_make_kernel,
+    .release_kernel = camber_opencl_release_kernel,
+    .launch = camber_opencl_launch,
+    .wait = camber_opencl_wait,
+    .end_event = camber_opencl_end_event,
+};

@@ -6,7 +6,7 @@
 
 #include "base/base.h"
 #include "gpu/opencl/opencl.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 #include <math.h>
 #include <pthread.h>

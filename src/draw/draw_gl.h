@@ -130,6 +130,10 @@ camber_status camber_gl_fill_layer(camber_renderer *renderer, const camber_draw_
 /* Lets the polylines of a command wait, and draws those that wait already where they cannot share a draw call. */
 camber_status camber_batch_add(camber_renderer *renderer, const camber_draw_command *command,
                                const camber_gl_area *area);
+/* Puts all images of a command into the atlas. If others have to go for it, draws what waits first. Returns
+ * CAMBER_ERROR_LIMIT if they do not fit at once. */
+camber_status camber_batch_hold_images(camber_renderer *renderer, const camber_draw_command *command,
+                                       const camber_gl_area *area);
 /* Draws all that wait. variant is added to the shader's. */
 camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_gl_area *area);
 /* Forgets all that wait. */
@@ -165,10 +169,11 @@ camber_status camber_rows_upload_widths(camber_renderer *renderer, const camber_
 
 /* Forgets the images of the frame before, which the caller may have changed. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_atlas_begin(camber_renderer *renderer);
-/* Puts all images of a command into the atlas. Where another has to go, draws what waits before. Returns
- * CAMBER_ERROR_LIMIT where they do not fit at once. */
-camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command,
-                                const camber_gl_area *area);
+/* Puts all images of a command into the atlas. *is_full: others have to go first, which camber_atlas_renew does. */
+camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command, bool *is_full);
+/* Empties the atlas, and puts all images of a command into it. Returns CAMBER_ERROR_LIMIT if they do not fit at once.
+ */
+camber_status camber_atlas_renew(camber_renderer *renderer, const camber_draw_command *command);
 /* Gives the rectangle of an image that the atlas holds: its corner and its size, in texture coordinates. */
 camber_status camber_atlas_find(camber_renderer *renderer, const camber_image_use *use, float rect[4]);
 void camber_atlas_bind(camber_renderer *renderer);

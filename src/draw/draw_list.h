@@ -8,7 +8,7 @@
 
 #include "draw/images.h"
 #include "draw/side_table.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 #include "kernels/features.h" /* CAMBER_FEATURE_* */
 

@@ -60,13 +60,6 @@ camber_status camber_renderer_render(camber_renderer *renderer, const camber_fra
     return render(renderer, frame, rows, user, NULL, stats);
 }
 
-bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const camber_place *place = user;
-    for (size_t i = 0; i < row_count; i++)
-        memcpy(place->rgba + (first_row + i) * place->stride_bytes, rgba + i * place->row_bytes, place->row_bytes);
-    return true;
-}
-
 camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame, uint8_t *rgba,
                                           size_t stride_bytes, camber_frame_stats *stats) {
     const size_t row_bytes = 4 * (size_t)frame->width;

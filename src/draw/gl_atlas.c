@@ -152,7 +152,7 @@ camber_status camber_atlas_find(camber_renderer *renderer, const camber_image_us
 
 /* ---- Commands ---- */
 
-static camber_status try_to_hold(camber_renderer *renderer, const camber_draw_command *command, bool *is_full) {
+camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command, bool *is_full) {
     const camber_draw_list *list = &renderer->list;
     const camber_row_paint *rows = list->rows + command->first_row;
     float rect[4];
@@ -170,17 +170,14 @@ static camber_status try_to_hold(camber_renderer *renderer, const camber_draw_co
     return status;
 }
 
-camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command,
-                                const camber_gl_area *area) {
-    bool is_full;
-    camber_status status = try_to_hold(renderer, command, &is_full);
-    if (status == CAMBER_OK && is_full)
-        status = camber_batch_draw(renderer, 0, area); /* it needs images that may go now */
+camber_status camber_atlas_renew(camber_renderer *renderer, const camber_draw_command *command) {
+    bool is_full = true;
+    camber_status status = CAMBER_OK;
     while (status == CAMBER_OK && is_full) {
         const bool is_largest = renderer->gl.atlas.height == largest_height(renderer);
         status = empty_atlas(renderer);
         if (status == CAMBER_OK)
-            status = try_to_hold(renderer, command, &is_full);
+            status = camber_atlas_hold(renderer, command, &is_full);
         if (status == CAMBER_OK && is_full && is_largest)
             return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT,
                                "the images of a pass take more than %d x %d px; draw fewer images in fewer sizes",

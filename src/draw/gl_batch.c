@@ -4,6 +4,7 @@
  * texture, and a vertex must know its table. The numbers of a strip's vertices say it, in the bits above those that the
  * mesh needs. Kite and fan have their indices in the mesh, so a uniform says it, and each command takes a call. */
 #include "draw/renderer.h"
+#include "vertices/vertices.h"
 
 #include "kernels/stroke_ends.h"
 
@@ -113,13 +114,23 @@ static bool has_room(const camber_renderer *renderer, const camber_draw_command 
            tables <= (size_t)1 << (31 - bits);
 }
 
+camber_status camber_batch_hold_images(camber_renderer *renderer, const camber_draw_command *command,
+                                       const camber_gl_area *area) {
+    bool is_full;
+    camber_status status = camber_atlas_hold(renderer, command, &is_full);
+    if (status != CAMBER_OK || !is_full)
+        return status;
+    status = camber_batch_draw(renderer, 0, area); /* it needs images that may go now */
+    return status == CAMBER_OK ? camber_atlas_renew(renderer, command) : status;
+}
+
 camber_status camber_batch_add(camber_renderer *renderer, const camber_draw_command *command,
                                const camber_gl_area *area) {
     camber_batch *batch = &renderer->gl.batch;
     camber_context *context = renderer->share.device->context;
     camber_status status = CAMBER_OK;
     if (command->features & CAMBER_FEATURE_IMAGE)
-        status = camber_atlas_hold(renderer, command, area);
+        status = camber_batch_hold_images(renderer, command, area);
     if (status == CAMBER_OK && batch->table_count && !has_room(renderer, command, area))
         status = camber_batch_draw(renderer, 0, area);
     if (status == CAMBER_OK)

@@ -135,7 +135,7 @@ static camber_status draw_fill(camber_renderer *renderer, const camber_draw_comm
     const camber_shader *shader;
     camber_status status = CAMBER_OK;
     if (fill->has_image)
-        status = camber_atlas_hold(renderer, command, area);
+        status = camber_batch_hold_images(renderer, command, area);
     if (status == CAMBER_OK)
         status = camber_shaders_flatten(&renderer->gl.shaders, kind, &shader);
     if (status == CAMBER_OK && fill->has_image)

@@ -4,10 +4,6 @@
 
 enum { AREA_PX = 16 * 1024 * 1024 };
 
-camber_status camber_gl_check(camber_renderer *renderer, const char *what) {
-    return camber_surface_check(renderer->share.surface, what);
-}
-
 void camber_gl_release(camber_renderer *renderer, bool is_current) {
     const camber_gl *gl = &renderer->share.surface->gl;
     camber_context *context = renderer->share.device->context;

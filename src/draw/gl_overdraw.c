@@ -9,6 +9,7 @@
  *   repeat   where it is 2 or more, adds 1 to the repeated pixels; everywhere, back to 0
  * so that only the first fragment of a pixel passes. */
 #include "draw/renderer.h"
+#include "vertices/vertices.h"
 
 #include <assert.h>
 #include <string.h>

@@ -1,6 +1,10 @@
 /* Textures that GL draws into: the picture, the layers that are flattened before they reach it, and counts. */
 #include "draw/renderer.h"
 
+camber_status camber_gl_check(camber_renderer *renderer, const char *what) {
+    return camber_surface_check(renderer->share.surface, what);
+}
+
 #include <stdio.h>
 
 static void release(const camber_gl *gl, camber_target *target) {

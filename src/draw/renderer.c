@@ -1,5 +1,6 @@
 /* Renderers: opening and closing them, and the buffers of the meshes that they draw. */
 #include "draw/renderer.h"
+#include "vertices/vertices.h"
 
 #include "raster/raster.h"
 
@@ -120,12 +121,19 @@ static const camber_shared_buffer_ops current_ops = {current_reserve, current_be
 camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh) {
     assert(!renderer || renderer->share.device == device);
     const bool in_gl = renderer && !renderer->raster;
-    const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, mesh);
+    const camber_mesh_output *output = renderer && renderer->raster ? NULL : &camber_vertices;
+    const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, output, mesh);
     if (status != CAMBER_OK)
         return status;
     (*mesh)->owner = renderer;
-    (*mesh)->draws_points = renderer && renderer->raster;
     if (in_gl && renderer->path->sharing == CAMBER_SHARING_COPY)
         (*mesh)->buffer_copies = 2;
     return CAMBER_OK;
+}
+
+bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const camber_place *place = user;
+    for (size_t i = 0; i < row_count; i++)
+        memcpy(place->rgba + (first_row + i) * place->stride_bytes, rgba + i * place->row_bytes, place->row_bytes);
+    return true;
 }

@@ -8,7 +8,7 @@
 #include "draw/draw_gl.h"
 #include "draw/draw_list.h"
 #include "gl/share.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 /* Memory of a caller that a picture goes to. */
 typedef struct camber_place {

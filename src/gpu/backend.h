@@ -1,5 +1,5 @@
 /* A back end gives a table of functions, and handles that mean something to it alone. OpenCL's folder is opencl/.
- * Another back end is another folder, and its line in the list in device.c. Only files of gpu/ include this. */
+ * Another back end is another folder, and its line in the list in find.c. Only files of gpu/ include this. */
 #ifndef CAMBER_GPU_BACKEND_H
 #define CAMBER_GPU_BACKEND_H
 
@@ -65,5 +65,11 @@ typedef struct camber_gpu_backend {
 } camber_gpu_backend;
 
 extern const camber_gpu_backend camber_opencl;
+
+/* find.c: fails if drivers would end the process, or would not fit its memory, when they are first asked. */
+camber_status camber_check_drivers(camber_context *context);
+enum { CAMBER_DEVICES_MAX = 64 };
+/* Returns how many devices were found. *failed takes the last call that failed, if any did. */
+size_t camber_find_devices(camber_found_device found[CAMBER_DEVICES_MAX], camber_failed_call *failed);
 
 #endif

@@ -1,4 +1,4 @@
-/* Lists, chooses and opens compute devices.
+/* Chooses and opens compute devices.
  *
  * Input: a desc with a word that the device must match and bounds on its memory. Output: a camber_device that a back
  * end has opened, and the sizes that its kernels are built for. Of the devices that match a GPU wins over a CPU, and a
@@ -8,80 +8,8 @@
 #include "kernels/layout.h"
 
 #include <ctype.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/types.h>
-#include <unistd.h>
-
-enum { DEVICES_MAX = 64 };
-
-static const camber_gpu_backend *const backends[] = {&camber_opencl};
-enum { BACKENDS = sizeof backends / sizeof *backends };
-
-/* The only lock of the whole process. It guards state of the process: the OpenCL loader and the drivers set themselves
- * up when they are first asked. PoCL (3.1 and 6.0) tells a second thread too early that this is done, and gives it
- * devices without a name. Every use of OpenCL begins with find_devices, so locking here is enough. */
-static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
-
-/* The process that has set drivers up. 0: none yet. */
-static _Atomic(pid_t) process_of_drivers;
-
-camber_status camber_check_process(camber_context *context) {
-    const pid_t process = atomic_load(&process_of_drivers);
-    if (process == 0 || process == getpid())
-        return CAMBER_OK;
-    return camber_fail(
-        context, CAMBER_ERROR_DEVICE,
-        "device: this process was forked after camber had set up OpenCL, which does not survive that; fork "
-        "before camber's first call, or start a new process (exec)");
-}
-
-/* Returns how many devices were found. *failed takes the last call that failed, if any did. */
-static size_t find_devices(camber_found_device found[DEVICES_MAX], camber_failed_call *failed) {
-    size_t count = 0;
-    *failed = (camber_failed_call){0};
-    pthread_mutex_lock(&asking);
-    atomic_store(&process_of_drivers, getpid());
-    for (size_t i = 0; i < BACKENDS; i++)
-        count += backends[i]->find(found + count, DEVICES_MAX - count, failed);
-    pthread_mutex_unlock(&asking);
-    return count;
-}
-
-/* Fails if drivers would end the process, or would not fit its memory, when they are first asked. */
-static camber_status check_before_asking(camber_context *context) {
-    camber_status status = camber_check_process(context);
-    if (status == CAMBER_OK)
-        status = camber_budget_check_drivers(context);
-    for (size_t i = 0; i < BACKENDS && status == CAMBER_OK && atomic_load(&process_of_drivers) == 0; i++)
-        status = backends[i]->check_process(context);
-    return status;
-}
-
-static camber_status list_devices(camber_context *context) {
-    camber_found_device found[DEVICES_MAX];
-    camber_failed_call failed;
-    const camber_status status = check_before_asking(context);
-    if (status != CAMBER_OK)
-        return status;
-    const size_t count = find_devices(found, &failed);
-    context->devices = camber_alloc(context, count, sizeof *context->devices);
-    if (!context->devices)
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < count; i++)
-        context->devices[i] = found[i].info;
-    context->device_count = count;
-    return CAMBER_OK;
-}
-
-camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info) {
-    const camber_status status = context->devices ? CAMBER_OK : list_devices(context);
-    if (status == CAMBER_OK)
-        *info = n < context->device_count ? context->devices + n : NULL;
-    return status;
-}
 
 static bool contains_ignoring_case(const char *text, const char *part) {
     for (; *text; text++) {
@@ -113,9 +41,9 @@ static int rank(const camber_device_info *info) {
 static camber_status choose_device(camber_device *device, const camber_device_desc *desc, camber_found_device *chosen) {
     const char *match = desc->match;
     const uint32_t number = desc->number;
-    camber_found_device found[DEVICES_MAX];
+    camber_found_device found[CAMBER_DEVICES_MAX];
     camber_failed_call failed;
-    const size_t count = find_devices(found, &failed);
+    const size_t count = camber_find_devices(found, &failed);
     if (count == 0 && failed.name)
         return failed.backend->fail(device->context, &failed);
     if (count == 0)
@@ -193,7 +121,7 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     camber_found_device found = {0};
     made->context = context;
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
-    camber_status status = check_before_asking(context);
+    camber_status status = camber_check_drivers(context);
     if (status == CAMBER_OK)
         status = choose_device(made, &full, &found);
     made->backend = found.backend;

@@ -25,15 +25,6 @@ struct camber_encoder {
     camber_file_bytes file;
 };
 
-bool camber_file_bytes_add(camber_file_bytes *file, const void *bytes, size_t size_bytes) {
-    file->refused |= !camber_grow(file->context, &file->bytes, &file->capacity, file->size + size_bytes, 1);
-    if (file->refused)
-        return false;
-    memcpy(file->bytes + file->size, bytes, size_bytes);
-    file->size += size_bytes;
-    return true;
-}
-
 static bool take_bytes(void *user, const void *bytes, size_t size_bytes) {
     return camber_file_bytes_add(user, bytes, size_bytes);
 }

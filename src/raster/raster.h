@@ -15,7 +15,8 @@
 #ifndef CAMBER_RASTER_RASTER_H
 #define CAMBER_RASTER_RASTER_H
 
-#include "tess/mesh.h"
+#include "residency/parts.h"
+#include "stroke/stroke.h"
 
 #include "camber_proof.h"
 #include "kernels/edge.h"

@@ -26,12 +26,6 @@ camber_stroke *camber_strokes_styled(const camber_stroke *strokes, size_t count,
     return styled;
 }
 
-camber_status camber_subject_tessellate(const camber_subject *s, camber_mesh *mesh,
-                                        const camber_tessellation_desc *desc) {
-    return s->network ? camber_mesh_tessellate_network(mesh, s->network, &s->camera, desc)
-                      : camber_mesh_tessellate(mesh, s->polylines, desc);
-}
-
 bool camber_subject_takes(const camber_subject *s, const camber_validation_desc *desc, camber_method method) {
     return s->network ? s->method == method : desc->method < 0 || desc->method == (int)method;
 }

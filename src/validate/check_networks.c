@@ -107,13 +107,6 @@ static void find_place(const camber_subject *s, size_t number, double *x, double
     }
 }
 
-void camber_camera_center(camber_camera *camera, double x, double y) {
-    const double angle = camera->bearing_deg * 3.14159265358979323846 / 180, c = cos(angle), s = sin(angle);
-    const double dx = (x - 0.5 * camera->width) / camera->scale_px, dy = (y - 0.5 * camera->height) / camera->scale_px;
-    camera->x += dx * c - dy * s;
-    camera->y += dx * s + dy * c;
-}
-
 static camber_camera aim(const job *j, size_t number) {
     camber_camera camera = j->camera;
     double x, y;

@@ -2,7 +2,7 @@
  * parts, against the twin: small enough for a simulator that checks bounds and races. Run by test_oclgrind.sh; without
  * the simulator it is a quick test of whatever device there is. */
 #include "camber_proof.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 #include "validate/scenes.h"
 
 #include <math.h>

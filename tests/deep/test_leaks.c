@@ -6,7 +6,7 @@
 
 #include "pictures.h"
 
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 #include <CL/cl.h>
 #include <EGL/egl.h>

@@ -3,7 +3,7 @@
 #include "pictures.h"
 
 #include "gpu/opencl/opencl.h"
-#include "tess/network.h"
+#include "residency/parts.h"
 
 /* ---- Held by OpenCL ---- */
 

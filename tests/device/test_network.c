@@ -1,7 +1,7 @@
 /* Networks: the device's slots against the twin's, and the twin's against the polylines that the camera should see. */
 #include "scene.h"
 
-#include "tess/network.h"
+#include "residency/parts.h"
 
 typedef struct network_devices {
     host h;

@@ -4,6 +4,7 @@
 
 #include "draw/renderer.h"
 #include "gpu/opencl/opencl.h"
+#include "vertices/vertices.h"
 
 /* ---- Watching OpenCL ---- */
 

@@ -2,7 +2,7 @@
 #include "core.h"
 
 #include "gpu/opencl/pocl.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 #include <dirent.h>
 #include <sys/stat.h>

@@ -3,7 +3,7 @@
 #include "pictures.h"
 
 #include "cl_fault.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 static const struct {
     cl_int code;

@@ -12,7 +12,7 @@
  */
 #include "fuzz_drawing.h"
 
-#include "tess/network.h"
+#include "points/network.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -311,7 +311,7 @@ def compiled_objects(tree):
 
 
 def list_symbols(tree):
-    """(source, symbol, is defined there) of all object files of src in BUILD."""
+    """(source, symbol, nm's kind) of all object files of src in BUILD."""
     sources = {}
     for compiled, source in compiled_objects(tree):
         sources.setdefault(source, compiled)  # one of those that are compiled twice
@@ -322,7 +322,7 @@ def list_symbols(tree):
     for line in listed.splitlines():
         path, rest = line.split(": ", 1)
         symbol, kind = rest.split()[:2]
-        yield by_object[path], symbol, kind not in "UvwVW"
+        yield by_object[path], symbol, kind
 
 
 def public_functions(tree):
@@ -337,11 +337,11 @@ def public_functions(tree):
 def link_arrows(tree):
     """(using layer, used layer) -> an example: source, symbol, the source that defines it."""
     defined, used, public = {}, [], public_functions(tree)
-    for source, symbol, is_defined in list_symbols(tree):
-        if is_defined:
-            defined[symbol] = source
-        else:
+    for source, symbol, kind in list_symbols(tree):
+        if kind in "UvwVW":
             used.append((source, symbol))
+        else:
+            defined[symbol] = source
     arrows = {}
     for source, symbol in sorted(used):
         target = defined.get(symbol)
@@ -366,6 +366,47 @@ def check_links(tree):
         elif real.allows(used, user):
             yield Finding(source, 1, "layers %s and %s use each other: here %s of %s" % (user, used, symbol, target),
                           "let one of the two know nothing of the other")
+
+
+# Files that call each other in a circle as yet, by folder. None may join them.
+CIRCLES = {
+}
+
+
+def calls_within(tree):
+    """layer -> source -> the sources of the same layer whose functions it calls. Tables of functions are no arrows."""
+    symbols = list(list_symbols(tree))
+    defined = {symbol: source for source, symbol, kind in symbols if kind in "Tt"}
+    calls = {}
+    for source, symbol, kind in symbols:
+        layer, target = source.split("/")[1], defined.get(symbol)
+        calls.setdefault(layer, {}).setdefault(source, set())
+        if kind == "U" and target and target != source and target.split("/")[1] == layer:
+            calls[layer][source].add(target)
+    return calls
+
+
+def reachable(graph, start):
+    seen, todo = set(), list(graph.get(start, ()))
+    while todo:
+        node = todo.pop()
+        if node not in seen:
+            seen.add(node)
+            todo.extend(graph.get(node, ()))
+    return seen
+
+
+def check_circles(tree):
+    """No files of a folder call each other in a circle: a reader can go through them from below."""
+    if not tree.build:
+        return
+    for layer, graph in sorted(calls_within(tree).items()):
+        for source in sorted(graph):
+            others = {other for other in reachable(graph, source) if source in reachable(graph, other)} - {source}
+            if others and source.split("/", 2)[2] not in CIRCLES.get(layer, ()):
+                yield Finding(source, 1, "it and %s call each other in a circle" %
+                              ", ".join(sorted(other.split("/", 2)[2] for other in others)),
+                              "move what both need into a file of its own, below")
 
 
 # ---- Kernels ----
@@ -579,8 +620,8 @@ def check_packages(tree):
                           "add it")
 
 
-RULES = (check_packages, check_types, check_guards, check_layers, check_includes, check_compute, check_links, check_kernels,
-         check_words, check_comments, check_documents)
+RULES = (check_packages, check_types, check_guards, check_layers, check_includes, check_compute, check_links,
+         check_circles, check_kernels, check_words, check_comments, check_documents)
 
 
 def main(arguments):

@@ -1,7 +1,7 @@
 /* Overdraw against counts by hand, against the oracle, and against itself in other ranges, pieces and back ends. */
 #include "pictures.h"
 
-#include "tess/mesh.h"
+#include "vertices/vertices.h"
 #include "validate/oracle.h"
 
 /* ---- Counting ---- */

@@ -186,6 +186,18 @@ class Lint(unittest.TestCase):
                                  "layers base and io use each other: here camber_png of src/io/png.c",
                                  "layers io and base use each other: here camber_base of src/base/base.c"])
 
+    def test_files_in_a_circle(self):
+        self.append("src/io/png.c", "int camber_other(void);\nint camber_one(void);\n"
+                                    "int camber_one(void) { return camber_other(); }\n")
+        self.write("src/io/other.c", HEAD + "int camber_one(void);\nint camber_other(void);\n"
+                                            "int camber_other(void) { return camber_one(); }\n")
+        whats = [finding[2] for finding in self.findings(self.compile())]
+        self.assertEqual(whats, ["it and png.c call each other in a circle", "it and other.c call each other in a circle"])
+
+    def test_opencl_outside_of_gpu(self):
+        self.append("src/draw/draw.c", "/* cl_mem is no more than a word here */\nlong cl_khr_fp64;\nvoid *cl_mem;\n")
+        self.finds("src/draw/draw.c:8", "cl_mem outside of src/gpu")
+
     # ---- Kernels ----
 
     def test_kernel_includes_nothing(self):

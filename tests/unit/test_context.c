@@ -2,7 +2,7 @@
 #include "core.h"
 
 #include "lines/lines.h"
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 #include <sys/stat.h>
 #include <time.h>

@@ -2,7 +2,7 @@
  * test_tessellate shows that the device gives the same bytes. */
 #include "scene.h"
 
-#include "tess/mesh.h"
+#include "vertices/vertices.h"
 
 typedef struct place {
     double x, y;

@@ -2,7 +2,7 @@
 #include "property.h"
 
 #include "kernels/join.h"
-#include "tess/mesh.h"
+#include "vertices/vertices.h"
 
 /* ---- Meshes of cases ---- */
 

@@ -25,8 +25,7 @@ camber_status camber_opencl_launch(const camber_device *device, const camber_lau
         if (code != CL_SUCCESS)
             return fail_stage(device, "clSetKernelArg", launch->name, code);
     }
-    const cl_int code =
-        clEnqueueNDRangeKernel(opencl_of(device)->queue, kernel, 1, NULL, &global, &local, 0, NULL,
+    const cl_int code = clEnqueueNDRangeKernel(opencl_of(device)->queue, kernel, 1, NULL, &global, &local, 0, NULL,
                                                event ? &made : NULL);
     if (code != CL_SUCCESS)
         return fail_stage(device, "clEnqueueNDRangeKernel", launch->name, code);

@@ -61,7 +61,8 @@ static bool load_binary(camber_device *device, built_program *program, const cha
         return false;
     if (camber_is_pocl(&device->info) && camber_pocl_check_program(device, binary, binary_size) != CAMBER_OK)
         return false; /* as building it will, and say why */
-    program->cl = clCreateProgramWithBinary(opencl_of(device)->cl, 1, &opencl_of(device)->id, &binary_size, &binary, &binary_code, &code);
+    program->cl = clCreateProgramWithBinary(opencl_of(device)->cl, 1, &opencl_of(device)->id, &binary_size, &binary,
+                                            &binary_code, &code);
     if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
         clBuildProgram(program->cl, 1, &opencl_of(device)->id, options, NULL, NULL) == CL_SUCCESS)
         return true;
@@ -107,14 +108,16 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
-static camber_status build_from_source(camber_device *device, built_program *program, const camber_program_source *from) {
+static camber_status build_from_source(camber_device *device, built_program *program,
+                                       const camber_program_source *from) {
     cl_int code;
     if (camber_is_pocl(&device->info)) {
         const camber_status status = camber_pocl_check_program(device, NULL, 0);
         if (status != CAMBER_OK)
             return status;
     }
-    program->cl = clCreateProgramWithSource(opencl_of(device)->cl, 1, (const char *[]){from->text}, &from->text_bytes, &code);
+    program->cl =
+        clCreateProgramWithSource(opencl_of(device)->cl, 1, (const char *[]){from->text}, &from->text_bytes, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateProgramWithSource", code);
     code = clBuildProgram(program->cl, 1, &opencl_of(device)->id, from->options, NULL, NULL);

@@ -9,9 +9,10 @@
  *     offset_emit   a chunk: writes its slots where the sum says, and for each source slot where its own begin (places)
  *
  * The twin walks the source lines slot by slot and appends. */
-#include "tess/offset.h"
+#include "stroke/offset.h"
+#include "residency/memory.h"
+#include "residency/parts.h"
 
-#include "gpu/launch.h"
 #include "kernels/arc_length.h"
 
 #include <math.h>
@@ -81,75 +82,6 @@ camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellati
     }
     mesh->has_offsets = offsets;
     return offsets ? upload_offset_rows(mesh, desc) : CAMBER_OK;
-}
-
-/* ---- Buffers ---- */
-
-enum { SOURCE_LINE_BUFFERS = 8 };
-
-void camber_source_line_release(const camber_device *device, camber_source_line_buffers *source_line) {
-    camber_buffer **buffers[SOURCE_LINE_BUFFERS] = {
-        &source_line->x,      &source_line->y,      &source_line->info,    &source_line->clips,
-        &source_line->counts, &source_line->places, &source_line->lengths, &source_line->arc_lengths};
-    for (size_t i = 0; i < SOURCE_LINE_BUFFERS; i++)
-        camber_buffer_release(device, buffers[i]);
-    source_line->slot_capacity = 0;
-}
-
-camber_status camber_part_check_source_lines(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
-                                             bool *fits) {
-    const uint64_t size_bytes = sizeof(camber_offset_clip) * (slots + 2);
-    if (!mesh->has_offsets || size_bytes <= mesh->device->info.largest_buffer_bytes)
-        return CAMBER_OK;
-    *fits = false;
-    return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
-}
-
-/* Makes the buffers of source lines; the last two only with arc lengths. */
-static camber_status make_source_line(const camber_device *device, bool has_arc_length,
-                                      camber_source_line_buffers *source_line, size_t slots) {
-    const size_t words = slots + 2;
-    const struct {
-        camber_buffer **buffer;
-        size_t size_bytes;
-    } wanted[SOURCE_LINE_BUFFERS] = {
-        {&source_line->x, 4 * words},
-        {&source_line->y, 4 * words},
-        {&source_line->info, 4 * words},
-        {&source_line->clips, sizeof(camber_offset_clip) * words},
-        {&source_line->counts, 4 * (slots / CAMBER_OFFSET_CHUNK + 1)},
-        {&source_line->places, 4 * slots},
-        {&source_line->lengths, 16 * slots / CAMBER_ARC_LENGTH_CHUNK},
-        {&source_line->arc_lengths, sizeof(camber_arc_length) * slots},
-    };
-    const size_t count = has_arc_length ? SOURCE_LINE_BUFFERS : SOURCE_LINE_BUFFERS - 2;
-    camber_status status = CAMBER_OK;
-    camber_source_line_release(device, source_line);
-    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-        status = camber_buffer_create(device, CAMBER_BUFFER_OWN, wanted[i].size_bytes, NULL, wanted[i].buffer);
-    if (status == CAMBER_OK)
-        source_line->slot_capacity = slots;
-    else
-        camber_source_line_release(device, source_line);
-    return status;
-}
-
-camber_status camber_part_reserve_source_lines(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
-    const bool has_arc_length = mesh->mesh_info.has_arc_length;
-    const camber_device *device = mesh->device;
-    const uint64_t wanted = camber_source_line_bytes(has_arc_length, slots);
-    if (slots <= part->source_line.slot_capacity && (!has_arc_length || part->source_line.arc_lengths))
-        return CAMBER_OK;
-    if (wanted > camber_device_share(device, 4))
-        return camber_fail_memory(mesh, part->first_polyline, wanted);
-    const uint64_t held =
-        camber_source_line_bytes(part->source_line.arc_lengths != NULL, part->source_line.slot_capacity);
-    camber_status status = camber_mesh_make_room(mesh, part, wanted > held ? wanted - held : 0);
-    if (status == CAMBER_OK)
-        status = make_source_line(device, has_arc_length, &part->source_line, slots);
-    part->uploaded = false;
-    camber_part_count_bytes(mesh, part);
-    return status;
 }
 
 /* ---- Stages ---- */

@@ -12,8 +12,10 @@
  *
  * A plain join has a single end, with which the strip goes on. For kite and fan there is one record a slot, and the
  * walk appends triangles: the body of each segment when it reaches the segment's end, then that point's join. */
-#include "tess/arc_length.h"
-#include "tess/offset.h"
+#include "points/rows.h"
+#include "stroke/arc_length.h"
+#include "stroke/offset.h"
+#include "vertices/vertices.h"
 
 #include "kernels/join.h"
 

@@ -1,8 +1,8 @@
 /* Arc lengths: how far along its polyline each point lies. */
-#ifndef CAMBER_TESS_ARC_LENGTH_H
-#define CAMBER_TESS_ARC_LENGTH_H
+#ifndef CAMBER_STROKE_ARC_LENGTH_H
+#define CAMBER_STROKE_ARC_LENGTH_H
 
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 /* Makes the arc lengths of a part's slots on the device. Parts of polylines only: a network knows its own. */
 camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *part);

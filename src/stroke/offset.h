@@ -1,8 +1,8 @@
 /* Lines with an offset, which lie beside others. kernels/offset.h has the geometry. */
-#ifndef CAMBER_TESS_OFFSET_H
-#define CAMBER_TESS_OFFSET_H
+#ifndef CAMBER_STROKE_OFFSET_H
+#define CAMBER_STROKE_OFFSET_H
 
-#include "tess/mesh.h"
+#include "residency/mesh.h"
 
 #include "kernels/offset_emit.h"
 
@@ -12,13 +12,6 @@ bool camber_desc_has_offsets(const camber_tessellation_desc *desc);
  * lose their buffers. */
 camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellation_desc *desc);
 
-/* Checks that the buffers of so many source slots fit the device; does nothing for a mesh without offsets. Where they
- * do not fit, sets *fits to false, or fails for a part of a single polyline. */
-camber_status camber_part_check_source_lines(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
-                                             bool *fits);
-/* Makes the buffers of a part's source lines large enough for so many slots. */
-camber_status camber_part_reserve_source_lines(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
-void camber_source_line_release(const camber_device *device, camber_source_line_buffers *source_line);
 /* Runs offset_clip, offset_count and offset_emit: makes the part's slots from those of its source lines. *fits is as
  * that of camber_part_project. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits);

@@ -16,7 +16,7 @@
  *          +---------------------------------+               \-- near_y --/
  */
 #include "base/perspective.h"
-#include "tess/network.h"
+#include "points/network.h"
 
 #include "kernels/offset.h"
 

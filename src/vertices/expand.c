@@ -19,7 +19,7 @@
  *     ---------1        3---------         3 OUT_LEFT, 4 OUT_RIGHT: of that out of it
  *              |   0    |                  0 CENTRE: the point
  *     ---------2        4---------         5 and more: a join's own, on its outer side */
-#include "tess/mesh.h"
+#include "vertices/vertices.h"
 
 #include "kernels/join.h"
 

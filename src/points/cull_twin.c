@@ -3,7 +3,8 @@
  * Input: a network, a camera, strokes. Output: camber_polylines with the slots that the device would make; or lines of
  * points in px. Main idea: it runs the kernels' own walk (kernels/cull.h), but an entry after the other instead of
  * chunk by chunk, as slots do not depend on how points are divided into chunks. */
-#include "tess/network.h"
+#include "points/network.h"
+#include "points/rows.h"
 
 #include <string.h>
 

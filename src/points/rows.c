@@ -1,9 +1,8 @@
-/* The style table that kernels and twin read, made from strokes; and the count of joins that both share. */
-#include "tess/mesh.h"
-
-#include "kernels/join.h"
+/* Checks strokes and makes their rows. */
+#include "points/rows.h"
 
 #include <assert.h>
+#include <math.h>
 
 static const float WIDEST_PX = 16384.0f;
 
@@ -72,16 +71,4 @@ camber_status camber_rows_create(camber_context *context, uint32_t row_count, co
         made[i] = make_row(desc->strokes + i, tolerance);
     *rows = made;
     return CAMBER_OK;
-}
-
-void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t point) {
-    const uint32_t kind = camber_join_kind(join);
-    info->undrawn_dots +=
-        kind == CAMBER_KIND_SENTINEL && (point & (CAMBER_POINT_REAL | CAMBER_POINT_AREA)) == CAMBER_POINT_REAL;
-    /* A ring's seam is one join, though two points have its word: the last point counts it. */
-    if (kind < CAMBER_KIND_CUT || kind > CAMBER_KIND_SPLIT || point & CAMBER_POINT_FIRST)
-        return;
-    info->joins++;
-    info->tight_joins += kind == CAMBER_KIND_TIGHT;
-    info->split_joins += kind == CAMBER_KIND_SPLIT;
 }

@@ -2,7 +2,7 @@
  *
  * Input: a tessellated mesh. Output: camber_stages, its points in the order of the polylines. Nothing that the device
  * left is trusted: a broken kernel must show up as a difference, never as a read outside of a buffer. */
-#include "tess/mesh.h"
+#include "vertices/vertices.h"
 
 /* A part's arrays, mapped into host memory. */
 typedef struct arrays {
@@ -64,7 +64,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
 camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) {
     camber_stages made = {.context = mesh->device->context};
     camber_status status = camber_check_process(made.context);
-    if (status == CAMBER_OK && mesh->draws_points)
+    if (status == CAMBER_OK && !mesh->output)
         status = camber_mesh_count_joins(mesh);
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
         camber_mesh_part *part = mesh->parts + i;
@@ -94,42 +94,6 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
     }
     *stages = made;
     return CAMBER_OK;
-}
-
-/* Reads words of a buffer into an array that is made for them. Does nothing after an earlier failure. */
-static void read_words(const camber_mesh *mesh, camber_buffer *buffer, size_t words, void *array,
-                       camber_status *status) {
-    void **made = array;
-    if (*status == CAMBER_OK && !(*made = camber_alloc(mesh->device->context, words, 4)))
-        *status = CAMBER_ERROR_MEMORY;
-    if (*status == CAMBER_OK)
-        *status = camber_buffer_read(mesh->device, buffer, 4 * words, *made);
-}
-
-camber_status camber_part_read_points(camber_mesh *mesh, camber_mesh_part *part, camber_part_points *points) {
-    camber_part_points made = {0};
-    camber_status status = camber_part_ensure_points(mesh, part);
-    const size_t words = part->slot_count + 2;
-    read_words(mesh, part->x, words, &made.x, &status);
-    read_words(mesh, part->y, words, &made.y, &status);
-    read_words(mesh, part->info, words, &made.info, &status);
-    read_words(mesh, part->joins, words, &made.joins, &status);
-    if (mesh->mesh_info.has_arc_length)
-        read_words(mesh, part->arc_lengths, 2 * part->slot_count, &made.arc_lengths, &status);
-    if (status == CAMBER_OK)
-        *points = made;
-    else
-        camber_part_points_free(mesh->device->context, &made);
-    return status;
-}
-
-void camber_part_points_free(camber_context *context, camber_part_points *points) {
-    camber_free(context, points->x);
-    camber_free(context, points->y);
-    camber_free(context, points->info);
-    camber_free(context, points->joins);
-    camber_free(context, points->arc_lengths);
-    *points = (camber_part_points){0};
 }
 
 void camber_stages_destroy(camber_stages *stages) {

@@ -1,7 +1,7 @@
-/* Where the slots of polylines, and what becomes of them, begin in a part. The scan stores where a slot's vertices and
- * indices begin within its block only for the first slot of each chunk that a work-item took. From there on the host
- * counts again, from the join words. */
-#include "tess/mesh.h"
+/* Where the output of polylines begins in a part. The scan stores where a slot's vertices and indices begin within its
+ * block only for the first slot of each chunk that a work-item took. From there on the host counts again, from the join
+ * words. */
+#include "vertices/vertices.h"
 
 #include "kernels/join.h"
 
@@ -11,41 +11,6 @@ static const uint32_t *map(const camber_mesh *mesh, camber_buffer *buffer, size_
     if (*status == CAMBER_OK)
         *status = camber_buffer_map(mesh->device, buffer, CAMBER_MAP_READ, 4 * count, &words);
     return words;
-}
-
-static camber_status map_places(camber_slot_finder *finder) {
-    const camber_mesh *mesh = finder->mesh;
-    camber_status status = CAMBER_OK;
-    if (mesh->has_offsets && !finder->places)
-        finder->places = map(mesh, finder->part->source_line.places, finder->part->given_count, &status);
-    return status;
-}
-
-/* Whether a polyline begins where its part does. */
-static bool is_first(const camber_slot_finder *finder, size_t polyline) {
-    return polyline <= finder->part->first_polyline || finder->part->slot_count == 0;
-}
-
-/* Whether it is the one after the part's last. */
-static bool is_end(const camber_slot_finder *finder, size_t polyline) {
-    return polyline >= finder->part->first_polyline + finder->part->polyline_count;
-}
-
-camber_status camber_slot_finder_find(camber_slot_finder *finder, size_t polyline, size_t *slot) {
-    if (is_first(finder, polyline) || is_end(finder, polyline)) {
-        *slot = is_first(finder, polyline) ? 0 : finder->part->used_slots;
-        return CAMBER_OK;
-    }
-    const camber_status status = map_places(finder);
-    if (status == CAMBER_OK)
-        *slot = camber_part_slot(finder->mesh, finder->part, finder->places, polyline);
-    return status;
-}
-
-void camber_slot_finder_close(camber_slot_finder *finder) {
-    if (finder->part)
-        camber_buffer_unmap(finder->mesh->device, finder->part->source_line.places, finder->places);
-    *finder = (camber_slot_finder){0};
 }
 
 camber_status camber_slot_starts_map(camber_slot_starts *starts) {
@@ -60,7 +25,7 @@ camber_status camber_slot_starts_map(camber_slot_starts *starts) {
     starts->info = map(mesh, part->info, slots + 1, &status);
     starts->offsets = map(mesh, part->offsets, (slots - 1) / chunk_slots + 1, &status);
     if (status == CAMBER_OK)
-        status = map_places(&starts->finder);
+        status = camber_slot_finder_map(&starts->finder);
     if (status != CAMBER_OK)
         camber_slot_starts_unmap(starts);
     return status;
@@ -95,10 +60,19 @@ size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline
     return camber_part_slot(starts->finder.mesh, starts->finder.part, starts->finder.places, polyline);
 }
 
+/* Whether a polyline begins where its part does, and whether it is the one after the part's last. */
+static bool is_first(const camber_slot_starts *starts, size_t polyline) {
+    return polyline <= starts->finder.part->first_polyline || starts->finder.part->slot_count == 0;
+}
+
+static bool is_end(const camber_slot_starts *starts, size_t polyline) {
+    return polyline >= starts->finder.part->first_polyline + starts->finder.part->polyline_count;
+}
+
 camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyline, uint64_t *index) {
     const camber_mesh_part *part = starts->finder.part;
-    if (is_first(&starts->finder, polyline) || is_end(&starts->finder, polyline)) {
-        *index = is_first(&starts->finder, polyline) ? 0 : part->index_count;
+    if (is_first(starts, polyline) || is_end(starts, polyline)) {
+        *index = is_first(starts, polyline) ? 0 : part->index_count;
         return CAMBER_OK;
     }
     const camber_status status = camber_slot_starts_map(starts);
@@ -113,8 +87,8 @@ camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyli
 camber_status camber_slot_starts_record(camber_slot_starts *starts, size_t polyline, size_t *record) {
     const camber_mesh *mesh = starts->finder.mesh;
     uint64_t index = 0;
-    if (is_first(&starts->finder, polyline) || is_end(&starts->finder, polyline)) {
-        *record = is_first(&starts->finder, polyline) ? 0 : starts->finder.part->record_count;
+    if (is_first(starts, polyline) || is_end(starts, polyline)) {
+        *record = is_first(starts, polyline) ? 0 : starts->finder.part->record_count;
         return CAMBER_OK;
     }
     camber_status status = camber_slot_starts_index(starts, polyline, &index);

@@ -3,9 +3,8 @@
  * On a device, arc_length_sum adds up each chunk of points, the host carries the sums from chunk to chunk, and
  * arc_length_scan writes every point's length. The CPU twin goes along each polyline from its first point to its last.
  * Both add up integers (kernels/arc_length.h), so that the order does not matter and they agree bit for bit. */
-#include "tess/arc_length.h"
+#include "stroke/arc_length.h"
 
-#include "gpu/launch.h"
 #include "kernels/arc_length.h"
 
 #include <string.h>

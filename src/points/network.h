@@ -1,9 +1,12 @@
-/* Networks as kernels read them (network.c), aiming at them (projection.c), and what lies on a device (sections.c). */
-#ifndef CAMBER_TESS_NETWORK_H
-#define CAMBER_TESS_NETWORK_H
+/* Networks as kernels read them (network.c), and aiming at them (projection.c). */
+#ifndef CAMBER_POINTS_NETWORK_H
+#define CAMBER_POINTS_NETWORK_H
 
+#include "base/base.h"
 #include "kernels/cull.h"
-#include "tess/mesh.h"
+#include "lines/lines.h"
+
+#include "camber_proof.h"
 
 /* Steps over the longer side of the box: differences of two of them are 32-bit numbers. */
 #define CAMBER_NETWORK_STEPS 2147483646.0
@@ -46,35 +49,7 @@ static inline size_t camber_network_first_point(const camber_network *network, s
     return network->stretches[network->entry_stretches[entry]].first;
 }
 
-/* Consecutive entries whose points are loaded to the device together. Most networks have one section; there are several
- * where the device's buffers or its bound on memory are too small. */
-typedef struct camber_section {
-    size_t first_entry, end_entry;
-    size_t first_point, end_point;
-    camber_buffer *x, *y, *importance, *stretches, *chunk_stretches; /* NULL: not on the device now */
-    camber_buffer *lengths, *totals;                                 /* NULL where the network has no arc lengths */
-    uint64_t held_bytes;
-} camber_section;
-
-/* A network that a mesh holds, its sections on the device, and how the camera last saw it. */
-struct camber_held_network {
-    camber_network *network;
-    camber_projection projection; /* of the last tessellation */
-    camber_program *program;
-    camber_section *sections;
-    size_t section_count, section_capacity;
-    camber_buffer *counts, *bases; /* one a chunk of the part in work: slots, and slots before; all parts take turns */
-    size_t chunk_capacity;
-    camber_event *projected; /* the launch of cull_emit, until its time has been added */
-};
-
 /* Adds a holder: the network lives until each has called camber_network_destroy. */
 void camber_network_hold(camber_network *network);
-/* How many bytes a section takes on the device. Not copied: the device reads the points where the host has them. */
-uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied);
-/* Uploads the section that a part's points lie in, unless it is there. */
-camber_status camber_part_upload_section(camber_mesh *mesh, const camber_mesh_part *part);
-void camber_section_count_bytes(const camber_mesh *mesh, camber_section *section);
-void camber_section_release(const camber_mesh *mesh, camber_section *section);
 
 #endif

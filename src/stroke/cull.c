@@ -8,55 +8,16 @@
  *     chunks        |   0   |   1   |   2   |   3   |
  *     cull_count        5       0       9       4          slots
  *     chunk_bases       0       5       5      14     18   slots before, and all */
-#include "gpu/launch.h"
-#include "tess/network.h"
-#include "tess/offset.h"
-
-/* ---- Parts ---- */
-
-void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part) {
-    const struct camber_held_network *held = mesh->held;
-    part->section = held->section_count - 1;
-    while (held->sections[part->section].first_entry > part->first_polyline)
-        part->section--;
-    part->first_point = camber_network_first_point(held->network, part->first_polyline);
-    part->end_point = camber_network_first_point(held->network, part->first_polyline + part->polyline_count);
-}
-
-/* The projection for a part's points, which are numbered from the start of their section. */
-static camber_projection projection_of(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const size_t first = mesh->held->sections[part->section].first_point;
-    camber_projection p = mesh->held->projection;
-    p.first_point = (uint32_t)first;
-    p.begin = (uint32_t)(part->first_point - first);
-    p.end = (uint32_t)(part->end_point - first);
-    return p;
-}
-
-/* How many chunks the points of the projection have. The first and the last may be incomplete. */
-static size_t part_chunks(const camber_projection *p) {
-    return camber_network_chunk_count(p->end) - p->begin / CAMBER_CULL_CHUNK;
-}
-
-size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
-    const camber_projection p = projection_of(mesh, part);
-    const size_t point = camber_network_first_point(mesh->held->network, polyline);
-    if (part->given_count == 0 || point >= part->end_point)
-        return part->given_count ? part->chunk_bases[part_chunks(&p)] : 0;
-    const size_t chunk = (point - p.first_point) / CAMBER_CULL_CHUNK, start = p.first_point + chunk * CAMBER_CULL_CHUNK;
-    const size_t begin = start > part->first_point ? start : part->first_point;
-    return part->chunk_bases[chunk - p.begin / CAMBER_CULL_CHUNK] +
-           (size_t)camber_network_count_slots(mesh->held->network, &p, begin, point);
-}
-
-/* ---- Stages ---- */
+#include "residency/memory.h"
+#include "residency/parts.h"
+#include "stroke/stroke.h"
 
 /* Describes a launch over the chunks of a part. */
 static camber_launch over_chunks(const camber_device *device, const camber_projection *p, const char *name,
                                  camber_kernel *kernel) {
     return (camber_launch){.name = name,
                            .kernel = kernel,
-                           .work_items = part_chunks(p),
+                           .work_items = camber_projection_chunks(p),
                            .group_size = device->block * CAMBER_WALKERS / CAMBER_BLOCK};
 }
 
@@ -93,7 +54,7 @@ static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part
     const camber_device *device = mesh->device;
     const struct camber_held_network *held = mesh->held;
     const camber_section *section = held->sections + part->section;
-    const size_t chunks = part_chunks(p);
+    const size_t chunks = camber_projection_chunks(p);
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(section->x),
                                       CAMBER_ARG_BUFFER(section->y),
                                       CAMBER_ARG_BUFFER(section->importance),
@@ -131,7 +92,7 @@ static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part
  *     5  write them (cull_emit) */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;
-    const camber_projection p = projection_of(mesh, part);
+    const camber_projection p = camber_part_projection(mesh, part);
     const size_t block = device->block;
     uint64_t slots = 0;
     part->given_count = part->slot_count = part->used_slots = part->record_count = part->vertex_count =
@@ -140,7 +101,7 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
         return CAMBER_OK;
     camber_status status = camber_part_upload_section(mesh, part);
     if (status == CAMBER_OK)
-        status = reserve_chunks(mesh, part, part_chunks(&p));
+        status = reserve_chunks(mesh, part, camber_projection_chunks(&p));
     if (status == CAMBER_OK)
         status = count_chunk_slots(mesh, part, &p, &slots);
     if (status != CAMBER_OK || slots == 0)
@@ -156,7 +117,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, padded)
                                : camber_part_reserve_with_spare(mesh, part, padded);
     if (status == CAMBER_OK)
-        status = camber_buffer_write_later(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
+        status = camber_buffer_write_later(device, mesh->held->bases, 0, 4 * (camber_projection_chunks(&p) + 1),
+                                           part->chunk_bases);
     if (status != CAMBER_OK)
         return status;
     const camber_section *section = mesh->held->sections + part->section;

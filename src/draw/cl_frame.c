@@ -59,7 +59,7 @@ static camber_status draw_in_place(camber_renderer *renderer, const camber_raste
     const camber_device *device = renderer->share.device;
     camber_raster_pixels pixels;
     camber_buffer *buffer = NULL;
-    camber_status status = camber_buffer_create(device, CAMBER_BUFFER_BORROWED, camber_raster_bytes(area),
+    camber_status status = camber_buffer_create(device, CAMBER_BUFFER_BORROWED_TO_WRITE, camber_raster_bytes(area),
                                                 to->place + 4 * (size_t)to->width * area->y, &buffer);
     if (status == CAMBER_OK)
         status = camber_raster_draw_into(renderer->raster, scene, area, buffer);

@@ -24,7 +24,8 @@ static camber_status reserve(void *user, camber_shared_buffer *output, size_t si
     if (!output->map)
         return camber_fail(share->device->context, CAMBER_ERROR_MEMORY,
                            "a GL buffer of %zu bytes cannot be mapped; draw less at once", size_bytes);
-    status = camber_buffer_create(share->device, CAMBER_BUFFER_BORROWED, size_bytes, output->map, &output->buffer);
+    status =
+        camber_buffer_create(share->device, CAMBER_BUFFER_BORROWED_TO_WRITE, size_bytes, output->map, &output->buffer);
     if (status == CAMBER_OK)
         output->capacity_bytes = size_bytes;
     return status;

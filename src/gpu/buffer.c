@@ -26,7 +26,7 @@ static void give_bytes(const camber_device *device, camber_buffer *buffer) {
 
 camber_status camber_buffer_create(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                    const void *bytes, camber_buffer **buffer) {
-    const bool counts = device->host_memory && kind != CAMBER_BUFFER_BORROWED;
+    const bool counts = device->host_memory && kind < CAMBER_BUFFER_BORROWED;
     camber_buffer *made = NULL;
     camber_status status = take_bytes(device, counts ? size_bytes : 0, &made);
     if (status != CAMBER_OK)

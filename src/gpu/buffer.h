@@ -10,8 +10,11 @@ typedef struct camber_buffer camber_buffer;
 typedef enum camber_buffer_kind {
     CAMBER_BUFFER_OWN,       /* memory of its own; what it holds is undefined */
     CAMBER_BUFFER_READ_BACK, /* the same, which the host will read often */
-    CAMBER_BUFFER_COPY,      /* a copy of the host's bytes */
-    CAMBER_BUFFER_BORROWED,  /* the host's bytes themselves (zero copy), which must live as long as the buffer */
+    CAMBER_BUFFER_COPY,      /* a copy of the host's bytes, which kernels only read */
+    /* The host's memory itself (zero copy), which must live as long as the buffer. Kernels only read it, or write it.
+     */
+    CAMBER_BUFFER_BORROWED,
+    CAMBER_BUFFER_BORROWED_TO_WRITE,
 } camber_buffer_kind;
 
 /* Bytes of a buffer. */

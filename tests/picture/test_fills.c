@@ -140,8 +140,10 @@ static void test_pieces(void **state) {
 static void compare_with_gl(const fixture *s, camber_renderer *cl, drawing *d, double bound) {
     picture p = draw(s, fixture_any(s), d, 0), q = draw(s, cl, d, 0);
     const difference apart = picture_compare(&p, &q);
+    /* The bodies of a fan's segments overlap on the inner side of joins. */
+    const size_t past_8_max = d->method == CAMBER_METHOD_FAN ? apart.drawn / 100 : apart.drawn / 1000;
     printf("# %.4f of 255 on average, %d at most, %zu pixels past 8\n", apart.mean, apart.most, apart.past_8);
-    assert_true(apart.mean < bound && apart.past_8 <= apart.drawn / 1000);
+    assert_true(apart.mean < bound && apart.past_8 <= past_8_max);
     picture_free(&q);
     picture_free(&p);
 }

@@ -10,12 +10,13 @@ static camber_status told(const camber_device *device, const char *call, cl_int 
 
 camber_status camber_opencl_make_buffer(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                         const void *bytes, void **native) {
-    const cl_mem_flags from[] = {[CAMBER_BUFFER_OWN] = 0,
-                                 [CAMBER_BUFFER_READ_BACK] = CL_MEM_ALLOC_HOST_PTR,
-                                 [CAMBER_BUFFER_COPY] = CL_MEM_COPY_HOST_PTR,
-                                 [CAMBER_BUFFER_BORROWED] = CL_MEM_USE_HOST_PTR};
-    const bool at_once = device->host_memory && kind != CAMBER_BUFFER_BORROWED;
-    const cl_mem_flags flags = CL_MEM_READ_WRITE | from[kind] | (at_once ? CL_MEM_ALLOC_HOST_PTR : 0);
+    const cl_mem_flags of_kind[] = {[CAMBER_BUFFER_OWN] = CL_MEM_READ_WRITE,
+                                    [CAMBER_BUFFER_READ_BACK] = CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
+                                    [CAMBER_BUFFER_COPY] = CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+                                    [CAMBER_BUFFER_BORROWED] = CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR,
+                                    [CAMBER_BUFFER_BORROWED_TO_WRITE] = CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR};
+    const bool at_once = device->host_memory && kind < CAMBER_BUFFER_BORROWED;
+    const cl_mem_flags flags = of_kind[kind] | (at_once ? CL_MEM_ALLOC_HOST_PTR : 0);
     cl_int code;
     /* OpenCL wants a pointer that may be written; kernels only read what callers give as const bytes. */
     cl_mem made = clCreateBuffer(opencl_of(device)->cl, flags, size_bytes, (void *)(uintptr_t)bytes, &code);

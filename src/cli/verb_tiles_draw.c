@@ -293,7 +293,7 @@ static int draw(job *j) {
         status = camber_input_open(&j->input, session);
     if (status == CAMBER_EXIT_DONE)
         status = read_region(j);
-    j->load_ms = camber_clock_ms() - session->start_ms;
+    j->load_ms = camber_now_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE)
         status = camber_session_need(session, session->options->format == CAMBER_FORMAT_GLB ? CAMBER_NEEDS_DEVICE
                                                                                             : CAMBER_NEEDS_RENDERER);
@@ -435,7 +435,7 @@ int camber_verb_tiles_draw(camber_session *session) {
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     j->session = session;
     int status = draw(j);
-    j->total_ms = camber_clock_ms() - session->start_ms;
+    j->total_ms = camber_now_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE)
         warn_empty(j);
     if (status == CAMBER_EXIT_DONE)

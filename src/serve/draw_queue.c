@@ -7,12 +7,13 @@
 
 #include "serve/draw_queue.h"
 
+#include "base/clock.h"
+
 #include "camber_tiles.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { LARGEST_PICTURE_PX = 2048, TILE_PX = 256 };
 
@@ -52,12 +53,6 @@ typedef struct encoding_thread {
     camber_context *context;
     camber_encoder *encoders[2][2]; /* by type, and whether it is opaque */
 } encoding_thread;
-
-static double now_s(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 bool camber_drawn_resize(camber_drawn *drawn) {
     const size_t bytes = 4 * (size_t)drawn->width * drawn->height, step = CAMBER_PIXELS_ALIGNMENT;
@@ -247,9 +242,9 @@ static void draw_unit(camber_draw_queue *drawing, unit *u) {
     u->generation = camber_tile_cache_get_generation(drawing->desc.cache);
     drawing->desc.metrics->queued = (int64_t)--drawing->queued;
     pthread_mutex_unlock(&drawing->mutex);
-    const double start_s = now_s();
+    const double start_ms = camber_now_ms();
     const camber_status status = drawing->desc.draw(drawing->desc.user, &u->request, &u->drawn);
-    camber_histogram_observe(&drawing->desc.metrics->draw, now_s() - start_s);
+    camber_histogram_observe(&drawing->desc.metrics->draw, 1e-3 * (camber_now_ms() - start_ms));
     pthread_mutex_lock(&drawing->mutex);
     if (status == CAMBER_OK) {
         u->state = UNIT_DRAWN;
@@ -344,9 +339,9 @@ static void encode_one(encoding_thread *self, unit *u) {
     camber_ask *asks = take_asks(u, is_same_tile, &request);
     u->users++;
     pthread_mutex_unlock(&drawing->mutex);
-    const double start_s = now_s();
+    const double start_ms = camber_now_ms();
     camber_body *body = encode(self, &u->drawn, &request);
-    camber_histogram_observe(&drawing->desc.metrics->encode, now_s() - start_s);
+    camber_histogram_observe(&drawing->desc.metrics->encode, 1e-3 * (camber_now_ms() - start_ms));
     if (body && request.route == CAMBER_ROUTE_TILE)
         camber_tile_cache_put(drawing->desc.cache, camber_draw_queue_key(&request), body, u->generation);
     tell(asks, body ? CAMBER_ASK_DONE : CAMBER_ASK_FAILED, body);

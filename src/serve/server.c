@@ -41,7 +41,7 @@ enum {
     MOST_QUEUED = 128,
     MOST_PICTURES = 24, /* of a tile each; of a metatile fewer */
     LEAST_PICTURES = 3, /* one is drawn, others are encoded */
-    LONGEST_END_S = 20,
+    LONGEST_END_MS = 20000,
 };
 
 static const double MOST_SECONDS = 30; /* that a phase of a connection takes */
@@ -278,7 +278,7 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
     if (!made)
         return ENOMEM;
     made->desc = fill_in(desc);
-    made->start_s = camber_server_now_s();
+    made->start_ms = camber_now_ms();
     made->page = (camber_listener){.server = made};
     made->metrics_page = (camber_listener){.server = made, .is_for_metrics = true};
     pthread_mutex_init(&made->mutex, NULL);
@@ -314,8 +314,8 @@ static void stop(camber_listener *listener) {
 
 static void wait_for_requests(const camber_server *server) {
     const struct timespec pause = {.tv_nsec = 5000000};
-    const double end_s = camber_server_now_s() + LONGEST_END_S;
-    while (server->in_flight > 0 && camber_server_now_s() < end_s)
+    const double end_ms = camber_now_ms() + LONGEST_END_MS;
+    while (server->in_flight > 0 && camber_now_ms() < end_ms)
         nanosleep(&pause, NULL);
 }
 

@@ -4,7 +4,7 @@
 #include "serve/tile_folder.h"
 
 #include "base/open_file.h"
-#include "serve/cached_file.h"
+#include "base/whole_file.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -77,7 +77,7 @@ void camber_tile_folder_put(camber_tile_folder *folder, uint64_t input, camber_t
     const camber_file_part parts[] = {{body->bytes, body->size_bytes}, {body->etag, TAG_BYTES}};
     name_tile(input, key, name);
     const int cause = snprintf(path, sizeof path, "%s/%s", folder->path, name) < (int)sizeof path
-                          ? camber_cached_file_write(path, strlen(folder->path) + 1, parts, 2)
+                          ? camber_whole_file_write(path, strlen(folder->path) + 1, 0644, parts, 2)
                           : ENAMETOOLONG;
     if (atomic_exchange(&folder->fails, cause != 0) || !cause)
         return;

@@ -9,7 +9,6 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
-#include <time.h>
 
 enum { MOST_JOBS = 8 };
 
@@ -32,12 +31,6 @@ typedef struct encode_thread {
     camber_encode_queue *queue;
     size_t number;
 } encode_thread;
-
-static double clock_ms(clockid_t clock) {
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 /* ---- One tile ---- */
 
@@ -279,10 +272,10 @@ void camber_encode_queue_put(camber_encode_queue *queue, camber_encode_job *job)
         job->left++;
     queue->put++;
     pthread_cond_broadcast(&queue->work);
-    const double start_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID);
+    const double start_ms = camber_clock_ms(CLOCK_THREAD_CPUTIME_ID);
     while (queue->thread_count == 0 && job->waiting)
         work_on(queue, 0, job);
-    queue->times.cpu_ms += queue->thread_count == 0 ? clock_ms(CLOCK_THREAD_CPUTIME_ID) - start_ms : 0.0;
+    queue->times.cpu_ms += queue->thread_count == 0 ? camber_clock_ms(CLOCK_THREAD_CPUTIME_ID) - start_ms : 0.0;
     pthread_mutex_unlock(&queue->mutex);
 }
 
@@ -318,7 +311,7 @@ camber_encode_times camber_encode_queue_get_times(camber_encode_queue *queue) {
     for (size_t i = 0; i < queue->thread_count; i++) {
         clockid_t clock;
         if (pthread_getcpuclockid(queue->threads[i], &clock) == 0)
-            times.cpu_ms += clock_ms(clock);
+            times.cpu_ms += camber_clock_ms(clock);
     }
     return times;
 }

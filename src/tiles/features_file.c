@@ -214,7 +214,7 @@ static camber_status put_polylines(stream *to, const camber_features *f) {
 
 camber_status camber_features_save(const camber_features *features, uint64_t input, const char *path, bool force) {
     camber_context *context = features->context;
-    camber_output_file output;
+    camber_whole_file output;
     json_t *json = make_json(features);
     char *text = json ? json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(json);
@@ -236,7 +236,7 @@ camber_status camber_features_save(const camber_features *features, uint64_t inp
             status = put(&to, text, strlen(text));
         if (status == CAMBER_OK)
             status = put_polylines(&to, features);
-        status = camber_output_end(&output, status, force);
+        status = camber_output_end(context, &output, status, force);
     }
     free(text);
     return status;

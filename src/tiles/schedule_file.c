@@ -111,7 +111,7 @@ static json_t *make_json(const camber_tiles_schedule *s) {
 
 camber_status camber_schedule_write(const camber_tiles_schedule *schedule, const char *path, bool force) {
     camber_context *context = schedule->context;
-    camber_output_file output;
+    camber_whole_file output;
     json_t *json = make_json(schedule);
     char *text = json ? json_dumps(json, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(json);
@@ -120,7 +120,7 @@ camber_status camber_schedule_write(const camber_tiles_schedule *schedule, const
     camber_status status = camber_output_begin(context, path, &output);
     if (status == CAMBER_OK) {
         status = camber_write_at(context, path, output.file, text, strlen(text), 0);
-        status = camber_output_end(&output, status, force);
+        status = camber_output_end(context, &output, status, force);
     }
     free(text);
     return status;

@@ -11,6 +11,7 @@
 
 #include "serve/server.h"
 
+#include "base/threads.h"
 #include "serve/answer.h"
 #include "serve/gzip.h"
 #include "serve/metatile_file.h"
@@ -195,14 +196,13 @@ static bool make_page(camber_server *server) {
 
 static camber_server_desc fill_in(const camber_server_desc *desc) {
     camber_server_desc made = *desc;
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     made.listen = desc->listen ? desc->listen : "127.0.0.1:8080";
     made.cors = desc->cors ? desc->cors : "*";
     made.cache_bytes = desc->cache_bytes ? desc->cache_bytes : DEFAULT_CACHE_BYTES;
     made.most_px = desc->most_px ? desc->most_px : DEFAULT_PX;
     made.most_ratio = desc->most_ratio ? desc->most_ratio : DEFAULT_RATIO;
     made.side = desc->side ? desc->side : desc->renderd ? RENDERD_SIDE : DEFAULT_SIDE;
-    made.threads = desc->threads ? desc->threads : cores > 1 ? (uint32_t)cores : 1;
+    made.threads = (uint32_t)camber_threads_count(desc->threads);
     return made;
 }
 

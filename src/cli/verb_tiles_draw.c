@@ -71,7 +71,7 @@ static int add_line(job *j, const char *path, char *line, size_t number) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Takes the tiles of --tile, and those of the file that --tiles names. */
+/* Takes the tiles of --tile, and those of the file that --renew names. */
 static int read_places(job *j) {
     const camber_options *options = j->session->options;
     const char *path = options->renewed;
@@ -134,7 +134,7 @@ static int find_output(job *j) {
         return CAMBER_EXIT_DONE;
     if (options->renewed && stat(j->output, &about) != 0)
         return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
-                                  "%s: no such archive, and --tiles renews one; draw it first", j->output);
+                                  "%s: no such archive, and --renew renews one; draw it first", j->output);
     j->files = (camber_tiles_files){.session = session, .first = 2}; /* finished units stay for --resume */
     status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
     if (status == CAMBER_EXIT_DONE)
@@ -385,7 +385,7 @@ static void warn_empty(const job *j) {
                                            : "");
 }
 
-/* Tiles of --tiles that the archive is not to get. */
+/* Tiles of --renew that the archive is not to get. */
 static void warn_left_out(const job *j) {
     const uint64_t count = j->stats.left_out;
     if (count)

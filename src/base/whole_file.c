@@ -64,6 +64,19 @@ int camber_file_name(const char *whole, const char *path, bool force) {
     return rename(whole, path) == 0 ? 0 : errno;
 }
 
+int camber_file_read(int file, void *bytes, size_t size_bytes, uint64_t offset, size_t *done) {
+    unsigned char *at = bytes;
+    for (*done = 0; *done < size_bytes;) {
+        const ssize_t got = pread(file, at + *done, size_bytes - *done, (off_t)(offset + *done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return got < 0 ? errno : 0;
+        *done += (size_t)got;
+    }
+    return 0;
+}
+
 int camber_file_write(int file, const void *bytes, size_t size_bytes, uint64_t offset) {
     const unsigned char *at = bytes;
     for (size_t done = 0; done < size_bytes;) {

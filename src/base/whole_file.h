@@ -35,6 +35,8 @@ int camber_whole_file_write(const char *path, size_t there, mode_t mode, const c
  * with files. Otherwise returns EEXIST, also if the name was taken just now; on a file system without hard links one
  * that is taken between a last look and the renaming is lost. */
 int camber_file_name(const char *whole, const char *path, bool force);
+/* Reads bytes at an offset of an open file: size_bytes, or *done of them up to its end. */
+int camber_file_read(int file, void *bytes, size_t size_bytes, uint64_t offset, size_t *done);
 /* Writes all bytes at an offset of an open file. */
 int camber_file_write(int file, const void *bytes, size_t size_bytes, uint64_t offset);
 /* Syncs an open file, if it is of a kind that can be synced. */

@@ -21,24 +21,13 @@ static void name_tile(uint64_t input, camber_tile_key key, char name[NAME_SIZE])
              key.place >> 56, key.place >> 28 & low, key.place & low);
 }
 
-static bool read_all(int file, unsigned char *bytes, size_t size_bytes) {
-    while (size_bytes > 0) {
-        const ssize_t got = read(file, bytes, size_bytes);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0)
-            return false;
-        bytes += got;
-        size_bytes -= (size_t)got;
-    }
-    return true;
-}
-
 static unsigned char *read_bytes(int file, const struct stat *about) {
     if (!S_ISREG(about->st_mode) || about->st_size <= 0 || about->st_size > LARGEST_TILE_BYTES)
         return NULL;
-    unsigned char *bytes = malloc((size_t)about->st_size);
-    if (bytes && read_all(file, bytes, (size_t)about->st_size))
+    const size_t size_bytes = (size_t)about->st_size;
+    unsigned char *bytes = malloc(size_bytes);
+    size_t done;
+    if (bytes && camber_file_read(file, bytes, size_bytes, 0, &done) == 0 && done == size_bytes)
         return bytes;
     free(bytes);
     return NULL;

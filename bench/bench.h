@@ -217,12 +217,16 @@ int bench_mosaic_child(bench *b, size_t points);
 
 /* NULL: it cannot be read; the reason is printed. */
 json_t *bench_document_load(const char *path);
+/* Copies of a document the rows that tables show and all figures. The document may be such a copy. */
+json_t *bench_document_keep(const json_t *document);
+bool bench_document_write(const json_t *document, const char *path);
 /* Every section measured, or the one of that name, and what on; each is printed as it comes. */
 json_t *bench_document_make(bench *b, const char *section);
 void bench_document_print(const json_t *document, FILE *to);
 /* SVG of the mosaic's curve; false: there is none, or gnuplot is not there, which is said. */
 bool bench_plot_mosaic(const json_t *document, const char *path);
-/* Measures again what looks like a loss against old. Gives the losses that stay; -1: the two cannot be compared. */
+/* Measures again what looks like a loss against old, a document that was kept. Gives the losses that stay; -1: the two
+ * cannot be compared. */
 int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to);
 /* Rewrites the numbers between the markers of a document at path: README.md has the table of frames,
  * docs/performance.md the rest. results: JSON files, each of one kind of processor. false: the document has no such

@@ -24,9 +24,16 @@ static const json_t *find(const json_t *result, const json_t *figure) {
     return NULL;
 }
 
+/* The value that a section of a kept document has of a figure; 0: it has none. */
+static double find_kept(const json_t *section, const json_t *figure) {
+    const json_t *items = json_object_get(section, "figures");
+    const json_t *whats = json_object_get(items, bench_text(figure, "item"));
+    return bench_number(json_object_get(whats, bench_text(figure, "what")), bench_text(figure, "against"));
+}
+
 /* How many times as good as before: above 1 is better. */
-static double gain_of(const json_t *figure, const json_t *old) {
-    const double ratio = bench_number(figure, "value") / bench_number(old, "value");
+static double gain_of(const json_t *figure, double old) {
+    const double ratio = bench_number(figure, "value") / old;
     return json_is_true(json_object_get(figure, "less")) ? 1 / ratio : ratio;
 }
 
@@ -34,22 +41,21 @@ static bool is_loss(const json_t *figure, double gain) {
     return gain * (*bench_text(figure, "against") ? TIMES_SLACK : COUNTS_SLACK) < 1;
 }
 
-static void tell(const char *word, const json_t *figure, const json_t *old, double gain, FILE *to) {
+static void tell(const char *word, const json_t *figure, double old, double gain, FILE *to) {
     const char *against = bench_text(figure, "against");
     fprintf(to, "%-6s %s: %s", word, bench_text(figure, "item"), bench_text(figure, "what"));
     if (*against)
-        fprintf(to, ", %s in the same run: %.3g, was %.3g (%+.0f %%)\n", against, bench_number(figure, "value"),
-                bench_number(old, "value"), 100 * (gain - 1));
-    else
-        fprintf(to, ": %.4g, was %.4g (%+.0f %%)\n", bench_number(figure, "value"), bench_number(old, "value"),
+        fprintf(to, ", %s in the same run: %.3g, was %.3g (%+.0f %%)\n", against, bench_number(figure, "value"), old,
                 100 * (gain - 1));
+    else
+        fprintf(to, ": %.4g, was %.4g (%+.0f %%)\n", bench_number(figure, "value"), old, 100 * (gain - 1));
 }
 
 /* ---- Measuring again ---- */
 
 typedef struct suspect {
-    const json_t *figure, *old;
-    double best; /* gain so far */
+    const json_t *figure;
+    double old, best; /* gain so far */
 } suspect;
 
 /* All suspects of one item share its new measurement. */
@@ -98,8 +104,8 @@ static bool compare_section(bench *b, const bench_section *section, const json_t
     if (!suspects)
         return false;
     json_array_foreach(figures, i, figure) {
-        const json_t *before = find(old, figure);
-        if (!before)
+        const double before = find_kept(old, figure);
+        if (before <= 0)
             continue;
         const double gain = gain_of(figure, before);
         sum->compared++;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 typedef struct request {
-    const char *json, *plot, *against, *section;
+    const char *json, *keep, *plot, *against, *section;
     long mosaic; /* points of the one mosaic that this process is a child for */
     bench_size size;
     unsigned fly_width, fly_height;
@@ -14,10 +14,10 @@ typedef struct request {
 } request;
 
 static int usage(void) {
-    fprintf(stderr,
-            "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--plot OUT.svg] [--against OLD.json]\n"
-            "                    [--section NAME] [--fly WIDTHxHEIGHT] [--country MILLIONS] [--cpu-features avx2]\n"
-            "       camber_bench --readme RESULTS.json... FILE...\n");
+    fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--keep OUT.json] [--plot OUT.svg]\n"
+                    "                    [--against OLD.json] [--section NAME] [--fly WIDTHxHEIGHT] [--country "
+                    "MILLIONS] [--cpu-features avx2]\n"
+                    "       camber_bench --readme RESULTS.json... FILE...\n");
     return 2;
 }
 
@@ -36,8 +36,11 @@ static bool parse(int argc, char **argv, request *r) {
         const struct {
             const char *option;
             const char **value;
-        } texts[] = {
-            {"--json", &r->json}, {"--plot", &r->plot}, {"--against", &r->against}, {"--section", &r->section}};
+        } texts[] = {{"--json", &r->json},
+                     {"--keep", &r->keep},
+                     {"--plot", &r->plot},
+                     {"--against", &r->against},
+                     {"--section", &r->section}};
         bool known = false;
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
             if (next && strcmp(argv[i], texts[k].option) == 0) {
@@ -81,6 +84,15 @@ static int keep(const json_t *document, const request *r) {
         perror(r->json);
         return 73;
     }
+    if (r->keep) {
+        json_t *kept = bench_document_keep(document);
+        const bool done = bench_document_write(kept, r->keep);
+        json_decref(kept);
+        if (!done) {
+            perror(r->keep);
+            return 73;
+        }
+    }
     if (r->plot)
         bench_plot_mosaic(document, r->plot);
     return 0;
@@ -89,8 +101,13 @@ static int keep(const json_t *document, const request *r) {
 static int measure_all(bench *b, const request *r) {
     json_t *old = NULL, *document = NULL;
     int status = 1;
-    if (r->against && !(old = bench_document_load(r->against)))
-        return 66;
+    if (r->against) {
+        json_t *loaded = bench_document_load(r->against);
+        if (!loaded)
+            return 66;
+        old = bench_document_keep(loaded);
+        json_decref(loaded);
+    }
     if (bench_scenes_make(b, NULL))
         document = bench_document_make(b, r->section);
     if (document)

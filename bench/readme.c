@@ -482,7 +482,7 @@ static void put_start(const page *p) {
                     bench_number(row, "ogr_ms") / 1e3);
         before = "; ";
     }
-    before = ".\n\nEverything measured: ";
+    before = ".\n\nRows and figures: ";
     for (i = 0; i < p->run_count; i++, before = ", ")
         fprintf(p->to, "%s[`%s.json`](../%s.json)", before, p->runs[i].results, p->runs[i].results);
     fputs(".\n", p->to);

@@ -16,9 +16,9 @@ enum { WARM_UPS = 10 };
 
 static const char *const cities[] = {"porto", "santa_cruz", NULL};
 
-typedef enum part { PART_SCENE = 0, PART_TESSELLATE, PART_DRAW, PART_READ, PART_FRAME, PART_OVERLAPPED, PARTS } part;
+typedef enum part { PART_SCENE = 0, PART_TESSELLATE, PART_DRAW, PART_READ, PART_FRAME, PARTS } part;
 
-static const char *const part_keys[PARTS] = {"scene", "tessellate", "draw", "read", "frame", "overlapped"};
+static const char *const part_keys[PARTS] = {"scene", "tessellate", "draw", "read", "frame"};
 
 typedef struct flight {
     bench *b;
@@ -96,34 +96,6 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
     return status;
 }
 
-/* The same frames with two in flight: a frame's time is from the end of the one before to its own. */
-static camber_status fly_overlapped(flight *f) {
-    camber_mesh *meshes[2] = {mesh_of(f), NULL};
-    camber_status status = camber_mesh_create(f->b->device, renderer_of(f), meshes + 1);
-    double last = camber_now_ms();
-    for (size_t i = 0; i < WARM_UPS + f->frames && status == CAMBER_OK; i++) {
-        const size_t n = i < WARM_UPS ? i : i - WARM_UPS;
-        const camber_view_desc view = view_at(f, (double)n / (double)(i < WARM_UPS ? WARM_UPS : f->frames));
-        status = move_to(f, &view);
-        if (status == CAMBER_OK)
-            status = camber_scene_tessellate(f->scene, meshes[i % 2], CAMBER_METHOD_STRIP);
-        if (status == CAMBER_OK) {
-            const camber_frame frame = camber_scene_get_frame(f->scene, meshes[i % 2]);
-            status = camber_renderer_begin(renderer_of(f), &frame);
-        }
-        if (status == CAMBER_OK && i > 0)
-            status = camber_renderer_end(renderer_of(f), take_rows, f, NULL);
-        const double now = camber_now_ms();
-        if (i >= WARM_UPS)
-            f->times[PART_OVERLAPPED][n] = now - last;
-        last = now;
-    }
-    if (status == CAMBER_OK)
-        status = camber_renderer_end(renderer_of(f), take_rows, f, NULL);
-    camber_mesh_destroy(meshes[1]);
-    return status;
-}
-
 static camber_status fly(flight *f) {
     camber_status status = CAMBER_OK;
     double times[PARTS];
@@ -132,10 +104,10 @@ static camber_status fly(flight *f) {
     f->draw_calls = f->points = 0;
     for (size_t i = 0; i < f->frames && status == CAMBER_OK; i++) {
         status = fly_frame(f, (double)i / (double)f->frames, times);
-        for (int k = 0; k < PART_OVERLAPPED; k++)
+        for (int k = 0; k < PARTS; k++)
             f->times[k][i] = times[k];
     }
-    return status == CAMBER_OK ? fly_overlapped(f) : status;
+    return status;
 }
 
 static camber_status open_flight(flight *f, const char *path) {
@@ -186,13 +158,11 @@ static void report(flight *f, const char *city, json_t *result) {
     }
     const bench_yardstick stick = bench_yardstick_measure(f->b);
     static const char *const shares[] = {"p50_ms", "p99_ms"};
-    for (int i = 0; i < 4; i++) {
-        const double ms = bench_number(json_object_get(row, i < 2 ? "frame" : "overlapped"), shares[i % 2]);
-        static const char *const names[2][4] = {
-            {"p50", "p99", "overlapped p50", "overlapped p99"},
-            {"in OpenCL p50", "in OpenCL p99", "in OpenCL overlapped p50", "in OpenCL overlapped p99"}};
-        const bench_figure figure = {"flight", names[f->in_cl][i], stick.name, stick.ms / ms, false};
-        bench_result_add_figure(result, &figure);
+    static const char *const names[2][2] = {{"p50", "p99"}, {"in OpenCL p50", "in OpenCL p99"}};
+    for (int i = 0; i < 2; i++) {
+        const double ms = bench_number(json_object_get(row, "frame"), shares[i]);
+        bench_result_add_figure(result,
+                                &(bench_figure){"flight", names[f->in_cl][i], stick.name, stick.ms / ms, false});
     }
     bench_result_add_row(result, row);
 }
@@ -238,13 +208,13 @@ static void print_flight(const json_t *row, FILE *to) {
             "Fly-through of %s, built-in style, %.0f frames of %.0f x %.0f px, pan and zoom, at %g px: %.0f points in "
             "view and %.1f\n"
             "draw calls a frame on average. scene: style, project, cull, simplify; frame: from the view to pixels in "
-            "memory;\noverlapped: from frame to frame with two in flight. Drawn by %s.\n\n"
+            "memory.\nDrawn by %s.\n\n"
             "%-10s %8s %8s %8s   ms\n",
             bench_text(row, "city"), bench_number(row, "frames"), bench_number(row, "width"),
             bench_number(row, "height"), BENCH_SIMPLIFY_PX, bench_number(row, "points_in_view"),
             bench_number(row, "draw_calls"), strcmp(bench_text(row, "by"), "cl") == 0 ? "kernels" : "GL", "", "p50",
             "p99", "max");
-    static const char *const keys[] = {"scene", "tessellate", "draw", "read", "frame", "overlapped"};
+    static const char *const keys[] = {"scene", "tessellate", "draw", "read", "frame"};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         const json_t *times = json_object_get(row, keys[i]);
         fprintf(to, "%-10s %8.2f %8.2f %8.2f\n", keys[i], bench_number(times, "p50_ms"), bench_number(times, "p99_ms"),

@@ -688,7 +688,7 @@ typedef struct camber_frame_stats {
  * stop the drawing. */
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
-/* Draws a frame and hands its rows over. No frame may be in flight (camber_renderer_begin).
+/* Draws a frame and hands its rows over.
  * rows may be NULL: the frame is drawn and finished, not read back. stats may be NULL.
  * Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, meshes of cameras with different pitches, a dash, a
  * ramp or an image that its own description does not allow, or any of these or a trim with a mesh without arc lengths),
@@ -710,27 +710,6 @@ CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const
 CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame,
                                                      uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
 
-#define CAMBER_FRAMES_IN_FLIGHT 2
-
-/* Draw a frame in two steps, so that the work that comes next overlaps the drawing. begin draws and does not wait; end
- * waits for the frame that began first and hands its rows over. With two meshes in turn,
- *
- *     tessellate mesh n + 1, begin frame n + 1, end frame n
- *
- * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended.
- *
- * The meshes, dashes, ramps and images that a frame names must live until its end; passes and paints are copied.
- * Tessellating a mesh before that end waits for the drawing, and so gains nothing. Where a picture takes several areas,
- * those after the first are drawn at the end, from the meshes as they are then; OpenCL draws all of them there.
- * Drawing in OpenCL gains nothing by two steps, since both run on one device: begin draws the frame and keeps it.
- *
- * rows and stats are as camber_renderer_render has them.
- * They return what camber_renderer_render returns. Where begin fails no frame has begun; where end fails the frame is
- * given up. Destroying the renderer gives up the frames in flight. */
-CAMBER_API camber_status camber_renderer_begin(camber_renderer *renderer, const camber_frame *frame);
-CAMBER_API camber_status camber_renderer_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
-                                             camber_frame_stats *stats);
-
 /* ---- Drawing into textures: for engines that draw more than lines ----------------------------------- */
 
 /* A texture of the surface's GL context, or of one that shares its objects (camber_surface_desc). Pixels are
@@ -743,8 +722,8 @@ typedef struct camber_texture {
 } camber_texture;
 
 /* Draws a frame into a texture and reads nothing back. So an engine's pictures can lie below the lines and above them.
- * Renderers of both kinds, GL and OpenCL, can draw into one texture in turn. No frame may be in flight. The surface's
- * context stays current: make your own one current again.
+ * Renderers of both kinds, GL and OpenCL, can draw into one texture in turn. The surface's context stays current: make
+ * your own one current again.
  * frame: the whole picture is one area, so its sides are the surface's largest_target_px at most.
  * drawn takes a GLsync behind the last command, which has been flushed. Another context waits for it by glWaitSync
  * before it uses the texture, and the caller deletes it. Where it is NULL after the call, all is done. Where drawn

@@ -95,8 +95,6 @@ typedef enum camber_encoding {
     CAMBER_ENCODING_WEBP,
 } camber_encoding;
 
-/* The encoding's short name, as in "png8"; never NULL. */
-CAMBER_API const char *camber_encoding_get_name(camber_encoding encoding);
 /* Whether this build has the encoding: WebP needs libwebp. */
 CAMBER_API bool camber_encoding_is_built(camber_encoding encoding);
 /* The longest side of a picture, px: 16383 of WebP, else 65535. */

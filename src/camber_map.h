@@ -33,8 +33,6 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 /* Makes the built-in style, "city". Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
-/* Leaves the style's fill layers out, for what takes lines alone. Call it before features are read for the style. */
-CAMBER_API void camber_style_leave_out_areas(camber_style *style);
 /* Effects that lines and backgrounds are drawn with, besides a width and a colour. */
 typedef enum camber_style_effect {
     CAMBER_STYLE_EFFECT_GAP = 1,

@@ -142,7 +142,7 @@ typedef struct camber_tiles_engine_desc {
  * and encode it while the next is drawn, each with a camber_encoder of a context of its own.
  *
  * The engine looks once a zoom where lines are, when it is first asked for that zoom. It keeps 4 bytes a line of each
- * metatile, until camber_tiles_engine_forget; on demand, of tiles of zoom 16 where those that are drawn are smaller. */
+ * metatile; on demand, of tiles of zoom 16 where those that are drawn are smaller. */
 typedef struct camber_tiles_engine camber_tiles_engine;
 
 /* Returns a hash of all that a picture of the features is made of, but for the desc: lines, the properties that the
@@ -154,8 +154,6 @@ CAMBER_API uint64_t camber_features_get_hash(const camber_features *features);
 CAMBER_API camber_status camber_tiles_engine_create(const camber_features *features,
                                                     const camber_tiles_engine_desc *desc, camber_tiles_engine **engine);
 CAMBER_API void camber_tiles_engine_destroy(camber_tiles_engine *engine);
-/* Forgets what is kept of a zoom. */
-CAMBER_API void camber_tiles_engine_forget(camber_tiles_engine *engine, int zoom);
 
 /* A metatile of tiles, drawn or to be drawn. */
 typedef struct camber_tiles_picture {

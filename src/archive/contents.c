@@ -8,7 +8,6 @@
 #include "archive/contents.h"
 #include "archive/output_file.h"
 
-#include <errno.h>
 #include <unistd.h>
 
 enum { TAIL_BYTES = 1 << 20, FIRST_TABLE = 1024 };
@@ -115,18 +114,13 @@ static camber_status append(camber_contents *contents, const void *bytes, size_t
 
 static camber_status read_file(camber_contents *contents, const camber_content_store *from, uint64_t offset,
                                unsigned char *bytes, size_t size_bytes) {
-    for (size_t done = 0; done < size_bytes;) {
-        const ssize_t got =
-            pread(from->descriptor, bytes + done, size_bytes - done, (off_t)(from->offset + offset + done));
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return camber_file_fail(contents->context, from->name, errno);
-        if (got == 0)
-            return camber_fail(contents->context, CAMBER_ERROR_INPUT,
-                               "%s: became shorter while it was read; get it again", from->name);
-        done += (size_t)got;
-    }
+    size_t done;
+    const int cause = camber_file_read(from->descriptor, bytes, size_bytes, from->offset + offset, &done);
+    if (cause)
+        return camber_file_fail(contents->context, from->name, cause);
+    if (done < size_bytes)
+        return camber_fail(contents->context, CAMBER_ERROR_INPUT, "%s: became shorter while it was read; get it again",
+                           from->name);
     return CAMBER_OK;
 }
 

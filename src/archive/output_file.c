@@ -18,15 +18,10 @@
 
 static const char *cure_of(int cause) {
     switch (cause) {
-    case ENOSPC:
-    case EDQUOT:
-    case EIO: return "free some space or write elsewhere";
-    case EFBIG: return "raise the limit of a file's size (ulimit -f), or make it smaller";
-    case EMFILE: return "raise ulimit -n";
     case ENOENT:
     case ENOTDIR: return "make its folder first";
     case ENAMETOOLONG: return "choose a shorter name: files beside it add 16 letters";
-    default: return "write elsewhere";
+    default: return camber_file_cure(cause, "write elsewhere");
     }
 }
 
@@ -37,30 +32,17 @@ camber_status camber_output_fail(camber_context *context, const char *name, int 
 
 camber_status camber_write_at(camber_context *context, const char *name, int file, const void *bytes, size_t size_bytes,
                               uint64_t offset) {
-    const unsigned char *at = bytes;
-    for (size_t done = 0; done < size_bytes;) {
-        const ssize_t put = pwrite(file, at + done, size_bytes - done, (off_t)(offset + done));
-        if (put < 0 && errno == EINTR)
-            continue;
-        if (put <= 0)
-            return camber_output_fail(context, name, put < 0 ? errno : ENOSPC);
-        done += (size_t)put;
-    }
-    return CAMBER_OK;
-}
-
-/* A file system that cannot sync says EINVAL. */
-static int sync_file(int file) {
-    return fsync(file) != 0 && errno != EINVAL ? errno : 0;
+    const int cause = camber_file_write(file, bytes, size_bytes, offset);
+    return cause ? camber_output_fail(context, name, cause) : CAMBER_OK;
 }
 
 camber_status camber_sync(camber_context *context, const char *name, int file) {
-    const int unsynced = sync_file(file);
-    return unsynced ? camber_output_fail(context, name, unsynced) : CAMBER_OK;
+    const int cause = camber_file_sync(file);
+    return cause ? camber_output_fail(context, name, cause) : CAMBER_OK;
 }
 
 camber_status camber_sync_and_close(camber_context *context, const char *name, int file) {
-    const int unsynced = sync_file(file);
+    const int unsynced = camber_file_sync(file);
     const int unclosed = close(file) != 0 ? errno : 0;
     if (!unsynced && !unclosed)
         return CAMBER_OK;
@@ -113,29 +95,12 @@ static int replace_folder(camber_context *context, const char *whole, const char
     return 0;
 }
 
-static int give_name(camber_context *context, const char *whole, const char *path, bool force) {
-    struct stat about, there;
-    if (stat(whole, &about) != 0)
-        return errno;
-    const bool taken = lstat(path, &there) == 0;
-    if (taken && !force)
-        return EEXIST;
-    if (taken && S_ISDIR(about.st_mode) && S_ISDIR(there.st_mode))
-        return replace_folder(context, whole, path);
-    if (force || S_ISDIR(about.st_mode))
-        return rename(whole, path) == 0 ? 0 : errno;
-    /* A link fails where a file has appeared meanwhile. */
-    if (link(whole, path) == 0) {
-        (void)unlink(whole);
-        return 0;
-    }
-    if (errno == EEXIST || errno == ENOSPC || errno == EIO)
-        return errno;
-    return rename(whole, path) == 0 ? 0 : errno;
+static bool is_folder(const char *path) {
+    struct stat about;
+    return lstat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-camber_status camber_give_name(camber_context *context, const char *whole, const char *path, bool force) {
-    const int cause = give_name(context, whole, path, force);
+static camber_status say_named(camber_context *context, const char *path, int cause) {
     if (cause == EEXIST)
         return camber_fail(context, CAMBER_ERROR_IO,
                            "%s: has appeared meanwhile; name another, or replace it with --force", path);
@@ -145,24 +110,19 @@ camber_status camber_give_name(camber_context *context, const char *whole, const
     return CAMBER_OK;
 }
 
-camber_status camber_output_begin(camber_context *context, const char *path, camber_output_file *output) {
-    output->context = context;
-    output->path = path;
-    if (snprintf(output->beside, sizeof output->beside, "%s.XXXXXX", path) >= (int)sizeof output->beside)
-        return camber_output_fail(context, path, ENAMETOOLONG);
-    output->file = mkstemp(output->beside);
-    if (output->file < 0)
-        return camber_output_fail(context, path, errno);
-    (void)fchmod(output->file, 0644);
-    return CAMBER_OK;
+camber_status camber_give_name(camber_context *context, const char *whole, const char *path, bool force) {
+    const bool replaces = force && is_folder(whole) && is_folder(path);
+    return say_named(context, path,
+                     replaces ? replace_folder(context, whole, path) : camber_file_name(whole, path, force));
 }
 
-camber_status camber_output_end(camber_output_file *output, camber_status status, bool force) {
-    const camber_status closed = camber_sync_and_close(output->context, output->path, output->file);
-    status = status == CAMBER_OK ? closed : status;
-    if (status == CAMBER_OK)
-        status = camber_give_name(output->context, output->beside, output->path, force);
-    if (status != CAMBER_OK)
-        (void)unlink(output->beside);
-    return status;
+camber_status camber_output_begin(camber_context *context, const char *path, camber_whole_file *output) {
+    const int cause = camber_whole_file_begin(output, path, 0644);
+    return cause ? camber_output_fail(context, path, cause) : CAMBER_OK;
+}
+
+camber_status camber_output_end(camber_context *context, camber_whole_file *output, camber_status status, bool force) {
+    int cause = status != CAMBER_OK ? ECANCELED : camber_file_sync(output->file);
+    cause = camber_whole_file_end(output, cause, force);
+    return status != CAMBER_OK ? status : say_named(context, output->path, cause);
 }

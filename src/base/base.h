@@ -3,6 +3,8 @@
 #ifndef CAMBER_BASE_BASE_H
 #define CAMBER_BASE_BASE_H
 
+#include "base/clock.h"
+
 #include "camber_files.h"
 
 #include <stdarg.h>
@@ -71,9 +73,6 @@ typedef struct camber_soft_log {
 void camber_log_soften(camber_context *context, camber_soft_log *kept);
 void camber_log_restore(camber_context *context, const camber_soft_log *kept);
 void camber_progress(camber_context *context, const char *stage, double fraction);
-
-/* Milliseconds of a monotonic clock. */
-double camber_now_ms(void);
 
 /* Tells who has named a file: the caller, or a style, whose files must be inside the context's root. */
 typedef enum camber_file_naming {

@@ -5,6 +5,7 @@
 #define _GNU_SOURCE /* dladdr, F_OFD_SETLK, realpath */
 
 #include "base/base.h"
+#include "base/whole_file.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -60,17 +61,6 @@ static bool is_trusted(const struct stat *about, uid_t owner) {
     return is_owners && (about->st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
-static bool make_folders(char *folder, mode_t mode) {
-    for (char *slash = strchr(folder + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = 0;
-        const int made = mkdir(folder, mode);
-        *slash = '/';
-        if (made != 0 && errno != EEXIST)
-            return false;
-    }
-    return mkdir(folder, mode) == 0 || errno == EEXIST;
-}
-
 bool camber_cache_is_on(const camber_context *context) {
     char folder[PATH_SIZE];
     return users_folder(context, folder);
@@ -97,7 +87,8 @@ bool camber_cache_folder(const camber_context *context, char folder[PATH_SIZE]) 
     uid_t owner;
     if (context->saves_shared)
         return shared_folder(folder, &owner);
-    return users_folder(context, folder) && make_folders(folder, 0700);
+    return users_folder(context, folder) && camber_file_make_folders(folder, 1, 0700) == 0 &&
+           (mkdir(folder, 0700) == 0 || errno == EEXIST);
 }
 
 bool camber_cache_can_save(const camber_context *context) {
@@ -155,27 +146,12 @@ bool camber_cache_load_shared(camber_context *context, const char *name, char **
 }
 
 bool camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes) {
-    char folder[PATH_SIZE], path[PATH_SIZE + 256], beside[PATH_SIZE + 320];
+    const camber_file_part part = {bytes, size_bytes};
+    char folder[PATH_SIZE], path[PATH_SIZE + 256];
     if (!camber_cache_folder(context, folder))
         return false;
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    snprintf(beside, sizeof beside, "%s.XXXXXX", path);
-    const int handle = mkstemp(beside);
-    if (handle < 0)
-        return false;
-    FILE *file = fdopen(handle, "wb");
-    if (!file) {
-        close(handle);
-        unlink(beside);
-        return false;
-    }
-    bool whole = !context->saves_shared || fchmod(handle, 0644) == 0;
-    whole = fwrite(bytes, 1, size_bytes, file) == size_bytes && whole;
-    whole = fclose(file) == 0 && whole;
-    whole = whole && rename(beside, path) == 0;
-    if (!whole)
-        unlink(beside);
-    return whole;
+    const int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+    return camber_whole_file_write(path, (size_t)length, context->saves_shared ? 0644 : 0600, &part, 1) == 0;
 }
 
 /* ---- Locks ---- */

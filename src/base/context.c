@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static void *reallocate_libc(void *user, void *block, size_t size_bytes) {
     (void)user;
@@ -255,10 +254,4 @@ void camber_log_restore(camber_context *context, const camber_soft_log *kept) {
 void camber_progress(camber_context *context, const char *stage, double fraction) {
     if (context->desc.progress)
         context->desc.progress(context->desc.progress_user, stage, fraction);
-}
-
-double camber_now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }

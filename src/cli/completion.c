@@ -170,11 +170,12 @@ static void print_escaped(const char *text, FILE *file) {
 }
 
 /* The action by which zsh completes an option's value. */
-static void print_zsh_value(const camber_option_spec *spec, FILE *file) {
-    if (!spec->argument)
+static void print_zsh_value(const camber_option_spec *spec, camber_verb verb, FILE *file) {
+    const char *argument = camber_option_argument(spec, verb);
+    if (!argument)
         return;
     fputc(':', file);
-    print_escaped(spec->argument, file);
+    print_escaped(argument, file);
     fputc(':', file);
     switch (spec->kind) {
     case CAMBER_OPTION_FILE: fputs("_files", file); break;
@@ -183,7 +184,7 @@ static void print_zsh_value(const camber_option_spec *spec, FILE *file) {
     case CAMBER_OPTION_DEVICE: fputs("(cpu gpu)", file); break;
     case CAMBER_OPTION_CHOICE:
         fputc('(', file);
-        print_choice(spec->argument, file);
+        print_choice(argument, file);
         fputc(')', file);
         break;
     default: break;
@@ -202,7 +203,7 @@ static void print_zsh_option(const camber_option_spec *spec, camber_verb verb, F
                 name, is);
     print_escaped(camber_option_help(spec, verb), file);
     fputc(']', file);
-    print_zsh_value(spec, file);
+    print_zsh_value(spec, verb, file);
     fputc('\'', file);
 }
 

@@ -4,6 +4,7 @@
 #include "cli/input.h"
 
 #include "base/open_file.h"
+#include "base/whole_file.h"
 #include "cli/plain.h"
 
 #include <errno.h>
@@ -38,7 +39,7 @@ int camber_input_read_all(camber_report *report, const char *path, char **bytes,
                                   path);
     if (!file)
         return camber_report_fail(report, errno == ENOENT || errno == ENOTDIR ? CAMBER_EXIT_NO_INPUT : CAMBER_EXIT_IO,
-                                  "%s: %s; %s", path, strerror(errno), camber_report_cure(errno, "check the name"));
+                                  "%s: %s; %s", path, strerror(errno), camber_file_cure(errno, "check the name"));
     char *block = NULL;
     size_t size = 0, capacity = 0, read = 0;
     bool held = true;
@@ -257,7 +258,7 @@ static int read_for_view(const camber_input *input, bool *done) {
 
 static int open_map(camber_input *input) {
     camber_session *session = input->session;
-    const double start_ms = camber_clock_ms();
+    const double start_ms = camber_now_ms();
     bool done = false;
     int status = open_style(input);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
@@ -283,7 +284,7 @@ static int open_map(camber_input *input) {
     const camber_features_stats stats = camber_features_get_stats(input->features);
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
-    input->read_ms = camber_clock_ms() - start_ms;
+    input->read_ms = camber_now_ms() - start_ms;
     return CAMBER_EXIT_DONE;
 }
 
@@ -358,7 +359,7 @@ void camber_input_close(camber_input *input) {
 }
 
 int camber_input_project(camber_input *input) {
-    const double start_ms = camber_clock_ms();
+    const double start_ms = camber_now_ms();
     camber_status status;
 #ifdef CAMBER_MAP
     if (input->features)
@@ -366,7 +367,7 @@ int camber_input_project(camber_input *input) {
     else
 #endif
         status = project_polylines(input);
-    input->scene_ms = camber_clock_ms() - start_ms;
+    input->scene_ms = camber_now_ms() - start_ms;
     return camber_report_status(input->session->report, status);
 }
 

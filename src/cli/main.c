@@ -58,7 +58,7 @@ static int run_guarded(void *user) {
 }
 
 int main(int argc, char **argv) {
-    const double start_ms = camber_clock_ms();
+    const double start_ms = camber_now_ms();
     camber_options options;
     camber_report report;
     char message[4096];

@@ -16,11 +16,22 @@ enum { NAME_LETTERS = 32 }; /* of the longest option that a mistyped one is comp
 
 /* ---- Help ---- */
 
-const char *camber_option_help(const camber_option_spec *spec, camber_verb verb) {
+/* NULL: the verb has no note of its own. */
+static const camber_option_note *find_note(const camber_option_spec *spec, camber_verb verb) {
     for (size_t i = 0; verb != CAMBER_VERB_NONE && i < sizeof spec->notes / sizeof *spec->notes; i++)
         if (spec->notes[i].verbs & 1 << verb)
-            return spec->notes[i].help;
-    return spec->help;
+            return &spec->notes[i];
+    return NULL;
+}
+
+const char *camber_option_help(const camber_option_spec *spec, camber_verb verb) {
+    const camber_option_note *note = find_note(spec, verb);
+    return note ? note->help : spec->help;
+}
+
+const char *camber_option_argument(const camber_option_spec *spec, camber_verb verb) {
+    const camber_option_note *note = find_note(spec, verb);
+    return note && note->argument ? note->argument : spec->argument;
 }
 
 /* The tool's help lists the options of all verbs. */
@@ -32,8 +43,9 @@ static void print_options(camber_verb verb, FILE *file) {
             continue;
         char left[64];
         const char letter[] = {'-', spec->letter, ',', ' ', 0};
-        snprintf(left, sizeof left, "%s--%s%s%s", spec->letter ? letter : "    ", spec->name, spec->argument ? " " : "",
-                 spec->argument ? spec->argument : "");
+        const char *argument = camber_option_argument(spec, verb);
+        snprintf(left, sizeof left, "%s--%s%s%s", spec->letter ? letter : "    ", spec->name, argument ? " " : "",
+                 argument ? argument : "");
         fprintf(file, strlen(left) < 32 ? "  %-32s%s\n" : "  %s\n                                  %s\n", left, help);
     }
 }

@@ -35,6 +35,7 @@ typedef enum camber_option_kind {
 typedef struct camber_option_note {
     int verbs; /* 0: no more notes */
     const char *help;
+    const char *argument; /* NULL: the option's */
 } camber_option_note;
 
 typedef struct camber_option_spec {
@@ -44,7 +45,8 @@ typedef struct camber_option_spec {
     int verbs; /* 1 << camber_verb of those that take it; CAMBER_VERB_NONE: the tool itself */
     size_t offset;
     const char *argument; /* NULL: the option takes no value */
-    const char *help;     /* in the tool's help, and in that of verbs without a note */
+    const char *help;     /* in the tool's help, and in that of verbs without a note. "": neither has it, since the
+                           * option is the former name of another, which scripts may still use */
     double least, most;
     camber_option_note notes[4];
 } camber_option_spec;
@@ -56,6 +58,8 @@ extern const size_t camber_option_count;
 
 /* An option's help in that of a verb, or in the tool's (CAMBER_VERB_NONE). "": the verb's help leaves it out. */
 const char *camber_option_help(const camber_option_spec *spec, camber_verb verb);
+/* An option's argument as that help shows it: the words that the verb takes. */
+const char *camber_option_argument(const camber_option_spec *spec, camber_verb verb);
 
 /* ---- Reading and checking ---- */
 

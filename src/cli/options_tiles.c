@@ -125,7 +125,7 @@ static int check_schedule(const camber_option_reader *p) {
     if (!options->schedule)
         return CAMBER_EXIT_DONE;
     if (options->renewed)
-        return camber_options_refuse(p, "--schedule and --tiles: renewing looks where lines are; leave out one");
+        return camber_options_refuse(p, "--schedule and --renew: renewing looks where lines are; leave out one");
     if (options->shard && options->dry_run)
         return camber_options_refuse(p, "--schedule and --shard: a dry run makes the schedule of all shards; leave out "
                                         "--shard");
@@ -142,13 +142,13 @@ static int check_run(const camber_option_reader *p) {
     const camber_options *options = p->options;
     if (options->renewed && (options->shard || options->resume || options->force || options->dry_run))
         return camber_options_refuse(
-            p, "--tiles and --%s: an archive that is there is renewed, at once and in place; leave out one",
+            p, "--renew and --%s: an archive that is there is renewed, at once and in place; leave out one",
             options->shard    ? "shard"
             : options->resume ? "resume"
             : options->force  ? "force"
                               : "dry-run");
     if (options->shards && (!options->shard || strcmp(options->shard, "auto") != 0))
-        return camber_options_refuse(p, "--shards %u: is for --shard auto; give --shard auto, or --shard K/%u",
+        return camber_options_refuse(p, "--shard-count %u: is for --shard auto; give --shard auto, or --shard K/%u",
                                      options->shards, options->shards);
     return CAMBER_EXIT_DONE;
 }

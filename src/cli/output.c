@@ -5,6 +5,7 @@
 
 #include "cli/output.h"
 
+#include "base/whole_file.h"
 #include "cli/environment.h"
 #include "cli/temp_files.h"
 
@@ -69,11 +70,6 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
     return -1;
 }
 
-/* Whether the error would also hit a file with another name. */
-static bool system_refuses(int cause) {
-    return cause == ENOSPC || cause == EDQUOT || cause == EIO || cause == EMFILE || cause == ENFILE || cause == EFBIG;
-}
-
 static int cannot_create(camber_output *output, int cause) {
     const char *cure = "name another file";
     if (cause == ENOENT || cause == ENOTDIR)
@@ -82,11 +78,11 @@ static int cannot_create(camber_output *output, int cause) {
         cure = "name a folder that you may write to";
     else if (cause == ENOMEM)
         cure = "give it more memory";
-    const int status = cause == ENOMEM         ? CAMBER_EXIT_INTERNAL
-                       : system_refuses(cause) ? CAMBER_EXIT_IO
-                                               : CAMBER_EXIT_CREATE;
+    const int status = cause == ENOMEM                   ? CAMBER_EXIT_INTERNAL
+                       : camber_file_fails_anyway(cause) ? CAMBER_EXIT_IO
+                                                         : CAMBER_EXIT_CREATE;
     return camber_report_fail(output->report, status, "%s: cannot be created (%s); %s", output->path, strerror(cause),
-                              camber_report_cure(cause, cure));
+                              camber_file_cure(cause, cure));
 }
 
 static int open_stream(camber_output *output, int descriptor) {
@@ -178,7 +174,7 @@ int camber_output_status(camber_output *output, camber_status status) {
     if (output->error == 0)
         return camber_report_status(output->report, status);
     return camber_report_fail(output->report, CAMBER_EXIT_IO, "%s: %s; %s", output->path, strerror(output->error),
-                              camber_report_cure(output->error, "write elsewhere"));
+                              camber_file_cure(output->error, "write elsewhere"));
 }
 
 static void close_mark(int *mark) {
@@ -187,29 +183,11 @@ static void close_mark(int *mark) {
     *mark = 0;
 }
 
-/* Gives the temporary file its final name. Without force, link fails if another file has appeared in the meantime, and
- * that file stays. */
-static int give_name(camber_output *output) {
-    if (output->force)
-        return rename(output->temporary, output->target) == 0 ? 0 : errno;
-    if (link(output->temporary, output->target) == 0) {
-        unlink(output->temporary);
-        return 0;
-    }
-    if (errno == EEXIST || system_refuses(errno))
-        return errno;
-    /* The file system has no hard links: a file that appears between this look and the rename is lost. */
-    if (access(output->target, F_OK) == 0)
-        return EEXIST;
-    return rename(output->temporary, output->target) == 0 ? 0 : errno;
-}
-
 int camber_output_publish(camber_output *output) {
     if (fflush(output->file) != 0 && output->error == 0)
         output->error = errno;
-    /* Pipes and devices have nothing to sync; a file system that cannot sync returns EINVAL. */
-    if (output->error == 0 && output->temporary && fsync(fileno(output->file)) != 0 && errno != EINVAL)
-        output->error = errno;
+    if (output->error == 0 && output->temporary)
+        output->error = camber_file_sync(fileno(output->file));
     const int closed = fclose(output->file);
     output->file = NULL;
     if (closed != 0 && output->error == 0)
@@ -219,7 +197,7 @@ int camber_output_publish(camber_output *output) {
     if (!output->temporary)
         return CAMBER_EXIT_DONE;
     camber_guard_lock(output->guard);
-    const int cause = give_name(output);
+    const int cause = camber_file_name(output->temporary, output->target, output->force);
     if (cause == 0)
         camber_guard_remove(output->guard, output->temporary);
     camber_guard_unlock(output->guard);
@@ -261,7 +239,7 @@ static int cannot_spool(camber_report *report, const char *folder, int cause) {
     return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: no copy in %s (%s); %s", folder, strerror(cause),
                               cause == ENOSPC || cause == EDQUOT
                                   ? "set TMPDIR to a larger folder"
-                                  : camber_report_cure(cause, "set TMPDIR to a folder that you may write to"));
+                                  : camber_file_cure(cause, "set TMPDIR to a folder that you may write to"));
 }
 
 /* Copies the rest of standard input after the block that has been read. Returns errnos; 0: no failure. */

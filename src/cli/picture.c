@@ -26,9 +26,9 @@ static camber_status keep_rows(writer *w, const uint8_t *rgba, uint32_t first_ro
 
 static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
     writer *w = user;
-    const double start_ms = camber_clock_ms();
+    const double start_ms = camber_now_ms();
     w->status = w->png ? camber_png_write_rows(w->png, rgba, row_count) : keep_rows(w, rgba, first_row, row_count);
-    w->write_ms += camber_clock_ms() - start_ms;
+    w->write_ms += camber_now_ms() - start_ms;
     camber_report_progress(w->report, "writing", (double)(first_row + row_count) / w->height);
     /* The error that the drawing stops is not reported: the failed write has been. */
     w->report->sealed = w->status != CAMBER_OK;
@@ -85,14 +85,14 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
                 .width = frame.width,
                 .height = frame.height,
                 .status = CAMBER_OK};
-    const double start_ms = camber_clock_ms();
+    const double start_ms = camber_now_ms();
     camber_status status = begin(&w, session->options, camber_input_opaque(input), input->attribution);
-    w.write_ms = camber_clock_ms() - start_ms;
+    w.write_ms = camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
         status = camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
     if (w.status != CAMBER_OK)
         status = w.status;
-    const double finish_ms = camber_clock_ms();
+    const double finish_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = finish(&w);
     end(&w);
@@ -101,7 +101,7 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
         exit_status = camber_output_status(output, status);
     else
         exit_status = camber_output_publish(output);
-    times->write_ms = w.write_ms + camber_clock_ms() - finish_ms;
+    times->write_ms = w.write_ms + camber_now_ms() - finish_ms;
     camber_report_erase_bar(session->report);
     return exit_status;
 }

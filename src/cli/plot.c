@@ -4,6 +4,8 @@
 
 #include "cli/plot.h"
 
+#include "base/whole_file.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -107,7 +109,7 @@ int camber_plot_check(camber_report *report) {
         close(nowhere);
     if (cause)
         return camber_report_fail(report, CAMBER_EXIT_UNAVAILABLE, "gnuplot: %s, and --plot draws with it; %s",
-                                  strerror(cause), camber_report_cure(cause, "apt install gnuplot-nox"));
+                                  strerror(cause), camber_file_cure(cause, "apt install gnuplot-nox"));
     if (status != 0)
         return camber_report_fail(report, CAMBER_EXIT_UNAVAILABLE,
                                   "gnuplot: does not run (%s), and --plot draws with it; apt install gnuplot-nox",

@@ -2,12 +2,13 @@
  * itself; JSON on standard output. A status of the library becomes an exit status here. */
 #include "cli/report.h"
 
+#include "base/whole_file.h"
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 #define BAR_CELLS 30
@@ -54,7 +55,7 @@ void camber_report_progress(void *user, const char *stage, double fraction) {
         say_compiles(report, stage);
         return;
     }
-    const double now_ms = camber_clock_ms();
+    const double now_ms = camber_now_ms();
     if (!report->bars || (report->bar_drawn && now_ms - report->bar_ms < BAR_EVERY_MS))
         return;
     report->bar_drawn = true;
@@ -106,19 +107,6 @@ int camber_report_fail(camber_report *report, int exit_status, const char *forma
     else
         print_line(report, "camber: ", text);
     return exit_status;
-}
-
-const char *camber_report_cure(int cause, const char *otherwise) {
-    switch (cause) {
-    case EMFILE: return "raise ulimit -n";
-    case ENFILE: return "end other programs, or raise the system's limit (fs.file-max)";
-    case EFBIG: return "raise the limit of a file's size (ulimit -f), or make it smaller";
-    case ENOSPC:
-    case EDQUOT:
-    case EIO: return "free some space or write elsewhere";
-    case EPIPE: return "its reader has gone; keep it running";
-    default: return otherwise;
-    }
 }
 
 int camber_report_input(camber_report *report, int cause) {
@@ -228,13 +216,7 @@ int camber_report_flush(camber_report *report) {
         return CAMBER_EXIT_DONE;
     const int cause = errno;
     return camber_report_fail(report, CAMBER_EXIT_IO, "standard output: %s; %s", strerror(cause),
-                              camber_report_cure(cause, "write to a file or a pipe that takes it"));
-}
-
-double camber_clock_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+                              camber_file_cure(cause, "write to a file or a pipe that takes it"));
 }
 
 size_t camber_peak_rss_bytes(void) {

@@ -2,6 +2,7 @@
 #ifndef CAMBER_CLI_REPORT_H
 #define CAMBER_CLI_REPORT_H
 
+#include "base/clock.h"
 #include "cli/options.h"
 
 #include <jansson.h>
@@ -39,8 +40,6 @@ int camber_report_fail(camber_report *report, int exit_status, const char *forma
 int camber_report_status(camber_report *report, camber_status status);
 /* Standard input cannot be read, for the reason that errno gave. Returns the exit status, its line printed. */
 int camber_report_input(camber_report *report, int cause);
-/* The cure for an errno that is one of the system's limits; for any other it is otherwise. */
-const char *camber_report_cure(int cause, const char *otherwise);
 void camber_report_warn(camber_report *report, const char *format, ...) CAMBER_PRINTF(2, 3);
 
 /* A line of people's text on standard error, unless quiet. */
@@ -60,8 +59,6 @@ int camber_report_json(camber_report *report, json_t *object);
 /* Flushes standard output; CAMBER_EXIT_IO where it did not take what was printed. */
 int camber_report_flush(camber_report *report);
 
-/* Milliseconds of a monotonic clock. */
-double camber_clock_ms(void);
 /* The most memory that the process has held. */
 size_t camber_peak_rss_bytes(void);
 

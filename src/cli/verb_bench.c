@@ -36,7 +36,7 @@ typedef struct job {
 /* Times a whole frame, from the lines to pixels in memory, and then its stages alone with their input already on the
  * device. */
 static int time_run(job *j, run_times *times) {
-    const double start_ms = camber_clock_ms();
+    const double start_ms = camber_now_ms();
     const int projected = camber_input_project(&j->input);
     if (projected != CAMBER_EXIT_DONE)
         return projected;
@@ -44,11 +44,11 @@ static int time_run(job *j, run_times *times) {
     camber_frame frame = camber_input_frame(&j->input, j->mesh);
     if (status == CAMBER_OK)
         status = camber_renderer_render_into(j->session->renderer, &frame, j->pixels, 0, NULL);
-    times->frame = camber_clock_ms() - start_ms;
-    const double resident_ms = camber_clock_ms();
+    times->frame = camber_now_ms() - start_ms;
+    const double resident_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = camber_input_tessellate(&j->input, j->mesh);
-    times->tessellate = camber_clock_ms() - resident_ms;
+    times->tessellate = camber_now_ms() - resident_ms;
     const camber_mesh_info info = camber_mesh_get_info(j->mesh);
     times->cull_count = camber_stage_times_get_ms(&info.times, "cull_count");
     times->project = camber_stage_times_get_ms(&info.times, "cull_emit");

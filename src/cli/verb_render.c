@@ -42,11 +42,11 @@ static int draw(job *j) {
         return status;
     camber_input_warn_empty(&j->input, "nothing is drawn");
     camber_report_progress(session->report, "tessellating", -1);
-    const double began_ms = camber_clock_ms();
+    const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
     if (made == CAMBER_OK)
         made = camber_input_tessellate(&j->input, j->mesh);
-    j->tessellate_ms = camber_clock_ms() - began_ms;
+    j->tessellate_ms = camber_now_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
     status = camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
@@ -178,7 +178,7 @@ static void print_text(const job *j) {
 int camber_verb_render(camber_session *session) {
     job j = {.session = session};
     int status = draw(&j);
-    j.total_ms = camber_clock_ms() - session->start_ms;
+    j.total_ms = camber_now_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE && session->options->json)
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)

@@ -20,6 +20,7 @@ int camber_verb_serve(camber_session *session) {
 #elif defined(CAMBER_MAP)
 
 #include "base/base.h"
+#include "base/whole_file.h"
 #include "serve/address.h"
 #include "serve/server.h"
 
@@ -115,11 +116,7 @@ static bool was_saved(wishes *w) {
 
 /* The mutex is held. */
 static void wait_for_ms(wishes *w, long ms) {
-    struct timespec end;
-    clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_nsec += ms * 1000000L;
-    end.tv_sec += end.tv_nsec / 1000000000L;
-    end.tv_nsec %= 1000000000L;
+    const struct timespec end = camber_time_in(ms);
     (void)pthread_cond_timedwait(&w->changed, &w->mutex, &end);
 }
 
@@ -137,8 +134,8 @@ static bool wait_for_wish(wishes *w, camber_server *server) {
     while (!w->stop && !w->reload) {
         wait_a_moment(w);
         w->reload = was_saved(w) || w->reload;
-        if (w->edited && camber_clock_ms() - w->beat_ms > BEAT_MS) {
-            w->beat_ms = camber_clock_ms();
+        if (w->edited && camber_now_ms() - w->beat_ms > BEAT_MS) {
+            w->beat_ms = camber_now_ms();
             camber_server_beat(server);
         }
     }
@@ -356,8 +353,8 @@ static bool wait_for_reading(wishes *w, rereading *r) {
         pthread_cond_wait(&w->changed, &w->mutex);
     if (!r->done)
         camber_budget_allow(r->it->own.budget, 0);
-    const double end_ms = camber_clock_ms() + (w->stop ? LAST_WAIT_AT_END_MS : LAST_WAIT_MS);
-    while (!r->done && camber_clock_ms() < end_ms)
+    const double end_ms = camber_now_ms() + (w->stop ? LAST_WAIT_AT_END_MS : LAST_WAIT_MS);
+    while (!r->done && camber_now_ms() < end_ms)
         wait_for_ms(w, LOOK_MS);
     r->is_left = !r->done;
     pthread_mutex_unlock(&w->mutex);
@@ -529,7 +526,7 @@ static int listen_there(camber_session *session, camber_server **server, char ur
     if (cause)
         return camber_report_fail(session->report, cause == EMFILE ? CAMBER_EXIT_IO : CAMBER_EXIT_INTERNAL,
                                   "serve: %s; %s", strerror(cause),
-                                  camber_report_cure(cause, "give it more memory, or threads (ulimit -u)"));
+                                  camber_file_cure(cause, "give it more memory, or threads (ulimit -u)"));
     return CAMBER_EXIT_DONE;
 }
 
@@ -559,7 +556,7 @@ static void tell_ready(camber_session *session, const camber_server *server) {
         camber_report_say(session->report, "%s/", camber_server_get_url(server));
     if (!session->options->json && metrics)
         camber_report_say(session->report, "http://%s/metrics", metrics);
-    camber_report_say(session->report, "ready after %.2f s", 1e-3 * (camber_clock_ms() - session->start_ms));
+    camber_report_say(session->report, "ready after %.2f s", 1e-3 * (camber_now_ms() - session->start_ms));
 }
 
 static void set_begins(wishes *w, bool begins) {

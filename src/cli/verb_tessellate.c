@@ -41,7 +41,7 @@ static bool gather_paints(job *j, size_t count) {
 
 static int write_mesh(job *j) {
     camber_session *session = j->session;
-    const double began_ms = camber_clock_ms();
+    const double began_ms = camber_now_ms();
     camber_glb_desc desc = {.copyright = j->input.attribution};
     desc.strokes = camber_input_strokes(&j->input, &desc.stroke_count);
     if (!gather_paints(j, desc.stroke_count))
@@ -54,7 +54,7 @@ static int write_mesh(job *j) {
         return camber_output_status(&j->output, status);
     j->written_bytes = j->output.size_bytes;
     const int published = camber_output_publish(&j->output);
-    j->write_ms = camber_clock_ms() - began_ms;
+    j->write_ms = camber_now_ms() - began_ms;
     camber_report_erase_bar(session->report);
     return published;
 }
@@ -72,7 +72,7 @@ static int run(job *j) {
     if (status != CAMBER_EXIT_DONE)
         return status;
     camber_report_progress(session->report, "tessellating", -1);
-    const double began_ms = camber_clock_ms();
+    const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, NULL, &j->mesh);
     if (made == CAMBER_OK)
         made = camber_input_tessellate(&j->input, j->mesh);
@@ -80,7 +80,7 @@ static int run(job *j) {
         made = camber_mesh_read(j->mesh, &j->data);
     if (made == CAMBER_OK)
         made = camber_scene_triangulate(j->input.scene, &j->areas);
-    j->tessellate_ms = camber_clock_ms() - began_ms;
+    j->tessellate_ms = camber_now_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
     if (j->areas.index_count == 0)
@@ -145,7 +145,7 @@ static void print_text(const job *j) {
 int camber_verb_tessellate(camber_session *session) {
     job j = {.session = session};
     int status = run(&j);
-    j.total_ms = camber_clock_ms() - session->start_ms;
+    j.total_ms = camber_now_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE && session->options->json)
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)

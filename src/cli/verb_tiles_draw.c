@@ -71,7 +71,7 @@ static int add_line(job *j, const char *path, char *line, size_t number) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Takes the tiles of --tile, and those of the file that --tiles names. */
+/* Takes the tiles of --tile, and those of the file that --renew names. */
 static int read_places(job *j) {
     const camber_options *options = j->session->options;
     const char *path = options->renewed;
@@ -134,7 +134,7 @@ static int find_output(job *j) {
         return CAMBER_EXIT_DONE;
     if (options->renewed && stat(j->output, &about) != 0)
         return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
-                                  "%s: no such archive, and --tiles renews one; draw it first", j->output);
+                                  "%s: no such archive, and --renew renews one; draw it first", j->output);
     j->files = (camber_tiles_files){.session = session, .first = 2}; /* finished units stay for --resume */
     status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
     if (status == CAMBER_EXIT_DONE)
@@ -293,7 +293,7 @@ static int draw(job *j) {
         status = camber_input_open(&j->input, session);
     if (status == CAMBER_EXIT_DONE)
         status = read_region(j);
-    j->load_ms = camber_clock_ms() - session->start_ms;
+    j->load_ms = camber_now_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE)
         status = camber_session_need(session, session->options->format == CAMBER_FORMAT_GLB ? CAMBER_NEEDS_DEVICE
                                                                                             : CAMBER_NEEDS_RENDERER);
@@ -385,7 +385,7 @@ static void warn_empty(const job *j) {
                                            : "");
 }
 
-/* Tiles of --tiles that the archive is not to get. */
+/* Tiles of --renew that the archive is not to get. */
 static void warn_left_out(const job *j) {
     const uint64_t count = j->stats.left_out;
     if (count)
@@ -435,7 +435,7 @@ int camber_verb_tiles_draw(camber_session *session) {
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     j->session = session;
     int status = draw(j);
-    j->total_ms = camber_clock_ms() - session->start_ms;
+    j->total_ms = camber_now_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE)
         warn_empty(j);
     if (status == CAMBER_EXIT_DONE)

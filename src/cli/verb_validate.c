@@ -160,7 +160,7 @@ static void say_what_was_left(const run *r) {
     const camber_results *results = &r->validation.results;
     camber_report_say(
         r->session->report, "%zu checks in %.0f s: %zu failed, %zu skipped%s", results->count,
-        (camber_clock_ms() - r->session->start_ms) / 1e3, results->failed, results->skipped,
+        (camber_now_ms() - r->session->start_ms) / 1e3, results->failed, results->skipped,
         r->session->options->full
             ? ""
             : "; --full draws by every method, with every join and cap on each back end, and with 1, 8 and 16 lanes");

@@ -62,7 +62,7 @@ static json_t *describe(camber_session *session, const camber_warmed *warmed, do
 
 int camber_warm(camber_session *session) {
     camber_warmed warmed;
-    const double begin_ms = camber_clock_ms();
+    const double begin_ms = camber_now_ms();
     warm_side_by_side(session);
     const camber_status status = warm_share(session, 0, 1, &warmed);
     if (status != CAMBER_OK)
@@ -75,7 +75,7 @@ int camber_warm(camber_session *session) {
         return camber_report_fail(session->report, CAMBER_EXIT_IO,
                                   "%s: %zu of %zu programs could not be kept; make room", warmed.folder,
                                   warmed.programs - warmed.kept, warmed.programs);
-    const double ms = camber_clock_ms() - begin_ms;
+    const double ms = camber_now_ms() - begin_ms;
     if (session->options->json)
         return camber_report_json(session->report, describe(session, &warmed, ms));
     printf("kernels   %zu programs for %s, ready in %.1f s\n          %s\n", warmed.programs,

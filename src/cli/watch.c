@@ -25,11 +25,6 @@ static void unlock(camber_watch *watch) {
 
 /* ---- Looking ---- */
 
-static double clock_s(clockid_t clock) {
-    struct timespec now;
-    return clock_gettime(clock, &now) == 0 ? (double)now.tv_sec + (double)now.tv_nsec * 1e-9 : 0;
-}
-
 static uint64_t resident_bytes(void) {
     unsigned long long all, resident = 0;
     FILE *file = fopen("/proc/self/statm", "re");
@@ -67,7 +62,7 @@ static void look_at_memory(camber_watch *watch) {
 }
 
 static void look_at_reading(camber_watch *watch) {
-    if (!watch->path || watch->line[0] || clock_s(watch->clock) - watch->beat_s <= watch->allowed_s)
+    if (!watch->path || watch->line[0] || camber_clock_ms(watch->clock) - watch->beat_ms <= 1e3 * watch->allowed_s)
         return;
     snprintf(watch->line, sizeof watch->line,
              "%.200s: its reader has worked for %.0f s and has no more of it; get the file from a source that you "
@@ -122,7 +117,7 @@ void camber_watch_begin(camber_watch *watch, const char *path) {
     watch->path = path;
     watch->clock = clock;
     watch->allowed_s = is_known ? READING_S + READING_S_A_MB * (double)about.st_size / 1e6 : READING_S_UNKNOWN;
-    watch->beat_s = clock_s(clock);
+    watch->beat_ms = camber_clock_ms(clock);
     unlock(watch);
 }
 
@@ -131,7 +126,7 @@ void camber_watch_beat(camber_watch *watch) {
         return;
     lock(watch);
     if (watch->path)
-        watch->beat_s = clock_s(watch->clock);
+        watch->beat_ms = camber_clock_ms(watch->clock);
     unlock(watch);
 }
 

@@ -20,7 +20,7 @@ typedef struct camber_watch {
     struct camber_watch *before; /* the one that looked */
     const char *path;            /* the file that is being read. NULL: none */
     clockid_t clock;             /* of the thread that reads */
-    double allowed_s, beat_s;
+    double allowed_s, beat_ms;
 } camber_watch;
 
 /* give_up and its user are set before. */

@@ -168,31 +168,3 @@ camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame 
     camber_frame_stats stats;
     return render_to(renderer, frame, &to, &stats);
 }
-
-/* ---- Frames in two steps ---- */
-
-camber_status camber_cl_begin_frame(camber_renderer *renderer, camber_flight *flight) {
-    camber_context *context = renderer->share.device->context;
-    const camber_frame *frame = &flight->frame;
-    const camber_raster_area area = first_area(renderer, frame);
-    if (area.width < frame->width || area.height < frame->height)
-        return CAMBER_OK; /* the end draws it */
-    flight->rgba = camber_alloc(context, (size_t)frame->width * frame->height, 4);
-    if (!flight->rgba)
-        return CAMBER_ERROR_MEMORY;
-    const size_t row_bytes = 4 * (size_t)frame->width;
-    camber_place place = {flight->rgba, row_bytes, row_bytes};
-    const camber_status status = camber_cl_render(renderer, frame, camber_place_rows, &place, &flight->stats);
-    flight->is_drawn = status == CAMBER_OK;
-    if (!flight->is_drawn) {
-        camber_free(context, flight->rgba);
-        flight->rgba = NULL;
-    }
-    return status;
-}
-
-camber_status camber_cl_end_frame(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user) {
-    if (!flight->rgba)
-        return camber_cl_render(renderer, &flight->frame, rows, user, &flight->stats);
-    return !rows || rows(user, flight->rgba, 0, flight->frame.height) ? CAMBER_OK : CAMBER_ERROR_IO;
-}

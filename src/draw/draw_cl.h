@@ -12,17 +12,12 @@
 
 /* ---- cl_frame.c ---- */
 
-struct camber_flight;
 struct camber_place;
 /* Draws a frame, whose list the renderer has, and hands over its rows. */
 camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
 camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, struct camber_place *place,
                                     camber_frame_stats *stats);
-/* Draws the frame of a flight and keeps the picture, where it is one area. */
-camber_status camber_cl_begin_frame(camber_renderer *renderer, struct camber_flight *flight);
-camber_status camber_cl_end_frame(camber_renderer *renderer, struct camber_flight *flight, camber_rows_fn *rows,
-                                  void *user);
 /* Calls draw for each area of a frame from the top down, in place of drawing it. */
 typedef camber_status camber_area_fn(camber_renderer *renderer, const camber_raster_scene *scene,
                                      const camber_raster_area *area, void *user);

@@ -26,10 +26,9 @@ typedef struct camber_target {
 
 enum {
     CAMBER_TARGET_PICTURE,
-    CAMBER_TARGET_NEXT_PICTURE, /* of the second frame in flight */
-    CAMBER_TARGET_COVERAGE,     /* layers of one colour */
-    CAMBER_TARGET_LAYER,        /* layers of colours */
-    CAMBER_TARGET_MASKED,       /* layers of translucent colours */
+    CAMBER_TARGET_COVERAGE, /* layers of one colour */
+    CAMBER_TARGET_LAYER,    /* layers of colours */
+    CAMBER_TARGET_MASKED,   /* layers of translucent colours */
     CAMBER_TARGET_GROUP,
     CAMBER_TARGET_COUNTS,
     CAMBER_TARGET_GIVEN, /* the caller's texture, while a call draws into it */
@@ -101,19 +100,15 @@ typedef struct camber_gl_area {
 
 /* ---- gl_frame.c ---- */
 
-struct camber_flight;
 /* Frees all that GL draws with. is_current: the GL context is; else GL's own objects go with it. */
 void camber_gl_release(camber_renderer *renderer, bool is_current);
 /* Logs what GL reports; CAMBER_OK where it reports nothing. */
 camber_status camber_gl_check(camber_renderer *renderer, const char *what);
-/* Begins to draw the first area of a flight's frame, whose list the renderer has, into a target. */
-camber_status camber_gl_begin_frame(camber_renderer *renderer, int target, struct camber_flight *flight);
-/* Draws what is left of it and hands over its rows, which may be NULL. */
-camber_status camber_gl_end_frame(camber_renderer *renderer, struct camber_flight *flight, camber_rows_fn *rows,
-                                  void *user);
+/* Draws a frame, whose list the renderer has, and hands over its rows, which may be NULL. */
+camber_status camber_gl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
+                               camber_frame_stats *stats);
 /* Draws all of a frame, whose list the renderer has, as one area into a target. */
 camber_status camber_gl_draw_frame(camber_renderer *renderer, const camber_frame *frame, int target);
-void camber_gl_drop_fence(camber_renderer *renderer, struct camber_flight *flight);
 
 /* ---- gl_commands.c ---- */
 

@@ -1,5 +1,4 @@
-/* Frames that GL draws: areas of the picture, drawn one after the other, waited for, and read back as rows. The first
- * area of a frame is drawn when it begins; the others are drawn when it ends. */
+/* Frames that GL draws: areas of the picture, drawn one after the other, waited for, and read back as rows. */
 #include "draw/renderer.h"
 
 enum { AREA_PX = 16 * 1024 * 1024 };
@@ -22,38 +21,34 @@ void camber_gl_release(camber_renderer *renderer, bool is_current) {
     camber_free(context, drawing->rows.texels);
 }
 
-/* Sets the size of a flight's areas to the largest: whole rows where the target reaches, and no more memory than
+/* The area of this size in the top left corner of the picture. */
+static camber_gl_area make_area(const camber_renderer *renderer, const camber_frame *frame, uint32_t width,
+                                uint32_t height, size_t *draw_calls) {
+    return (camber_gl_area){.width = width,
+                            .height = height,
+                            .target = CAMBER_TARGET_PICTURE,
+                            .coverage = frame->coverage,
+                            .thinnest_px = renderer->list.thinnest_px,
+                            .view = renderer->list.view,
+                            .draw_calls = draw_calls};
+}
+
+/* The first area of a frame, as large as it can be: whole rows where the target reaches, and no more memory than
  * needed. */
-static void set_area_size(const camber_renderer *renderer, camber_flight *flight) {
-    const camber_frame *frame = &flight->frame;
+static camber_gl_area first_area(const camber_renderer *renderer, const camber_frame *frame, size_t *draw_calls) {
     uint32_t side = renderer->share.surface->info.largest_target_px;
     if (frame->largest_area_px && frame->largest_area_px < side)
         side = frame->largest_area_px;
     const uint32_t width = frame->width < side ? frame->width : side;
     const uint32_t fitting = (uint32_t)AREA_PX / (width ? width : 1);
     const uint32_t rows = fitting < side ? fitting : side;
-    flight->area_width = width;
-    flight->area_height = frame->height < rows ? frame->height : rows;
-}
-
-/* The area of this size in the top left corner of the picture. */
-static camber_gl_area first_area(const camber_renderer *renderer, camber_flight *flight, uint32_t width,
-                                 uint32_t height) {
-    return (camber_gl_area){.width = width,
-                            .height = height,
-                            .target = flight->target,
-                            .coverage = flight->frame.coverage,
-                            .thinnest_px = renderer->list.thinnest_px,
-                            .view = renderer->list.view,
-                            .draw_calls = &flight->stats.draw_calls};
+    return make_area(renderer, frame, width, frame->height < rows ? frame->height : rows, draw_calls);
 }
 
 /* ---- An area ---- */
 
-/* Draws an area, and leaves a fence behind its commands. */
-static camber_status draw_area(camber_renderer *renderer, camber_flight *flight, const camber_gl_area *area) {
+static camber_status draw_area(camber_renderer *renderer, const camber_frame *frame, const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const camber_frame *frame = &flight->frame;
     const camber_color back = frame->background;
     camber_status status = camber_target_bind(renderer, area->target, (GLsizei)area->width, (GLsizei)area->height);
     if (status != CAMBER_OK)
@@ -67,31 +62,7 @@ static camber_status draw_area(camber_renderer *renderer, camber_flight *flight,
     status = camber_atlas_begin(renderer);
     if (status == CAMBER_OK)
         status = camber_gl_draw_commands(renderer, area);
-    flight->drawn = status == CAMBER_OK ? gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : NULL;
-    if (flight->drawn)
-        gl->Flush();
-    else
-        gl->Finish();
-    flight->stats.areas++;
     return status == CAMBER_OK ? camber_gl_check(renderer, "drawing") : status;
-}
-
-void camber_gl_drop_fence(camber_renderer *renderer, camber_flight *flight) {
-    if (flight->drawn)
-        renderer->share.surface->gl.DeleteSync(flight->drawn);
-    flight->drawn = NULL;
-}
-
-static camber_status wait_for_area(camber_renderer *renderer, camber_flight *flight) {
-    const camber_gl *gl = &renderer->share.surface->gl;
-    const GLuint64 second_ns = 1000000000;
-    GLenum seen = GL_TIMEOUT_EXPIRED;
-    while (flight->drawn && seen == GL_TIMEOUT_EXPIRED) /* a context that is lost answers, too */
-        seen = gl->ClientWaitSync(flight->drawn, GL_SYNC_FLUSH_COMMANDS_BIT, second_ns);
-    camber_gl_drop_fence(renderer, flight);
-    if (seen == GL_WAIT_FAILED)
-        gl->Finish();
-    return camber_gl_check(renderer, "drawing");
 }
 
 /* Reads an area into rows of the picture, which is so wide. */
@@ -111,45 +82,26 @@ static camber_status read_area(camber_renderer *renderer, const camber_gl_area *
 /* ---- A frame ---- */
 
 camber_status camber_gl_draw_frame(camber_renderer *renderer, const camber_frame *frame, int target) {
-    camber_flight flight = {.frame = *frame, .target = target};
-    const camber_gl_area area = first_area(renderer, &flight, frame->width, frame->height);
-    const camber_status status = draw_area(renderer, &flight, &area);
-    camber_gl_drop_fence(renderer, &flight);
-    return status;
-}
-
-camber_status camber_gl_begin_frame(camber_renderer *renderer, int target, camber_flight *flight) {
-    camber_status status = camber_surface_make_current(renderer->share.surface);
-    if (status != CAMBER_OK)
-        return status;
-    const double start = camber_now_ms();
-    set_area_size(renderer, flight);
-    flight->is_drawn = flight->area_width == flight->frame.width && flight->area_height == flight->frame.height;
-    flight->target = target;
-    flight->number = ++renderer->share.frames_begun;
-    const camber_gl_area area = first_area(renderer, flight, flight->area_width, flight->area_height);
-    status = draw_area(renderer, flight, &area);
-    flight->stats.draw_ms = camber_now_ms() - start;
-    if (status != CAMBER_OK) {
-        camber_gl_drop_fence(renderer, flight);
-        camber_surface_forget_errors(renderer->share.surface); /* the next frame's are its own */
-    }
-    return status;
+    size_t draw_calls = 0;
+    camber_gl_area area = make_area(renderer, frame, frame->width, frame->height, &draw_calls);
+    area.target = target;
+    return draw_area(renderer, frame, &area);
 }
 
 /* Draws areas from left to right, of which area is the first, and reads them into rgba, which may be NULL. */
-static camber_status draw_across(camber_renderer *renderer, camber_flight *flight, camber_gl_area area, uint8_t *rgba) {
-    const uint32_t widest = area.width, width = flight->frame.width;
-    camber_frame_stats *stats = &flight->stats;
+static camber_status draw_across(camber_renderer *renderer, const camber_frame *frame, camber_gl_area area,
+                                 uint8_t *rgba, camber_frame_stats *stats) {
+    const uint32_t widest = area.width, width = frame->width;
     camber_status status = CAMBER_OK;
     for (area.x = 0; area.x < width && status == CAMBER_OK; area.x += widest) {
         area.width = width - area.x < widest ? width - area.x : widest;
         const double begin = camber_now_ms();
-        if (area.x > 0 || area.y > 0) /* the first was drawn when the frame began */
-            status = draw_area(renderer, flight, &area);
+        status = draw_area(renderer, frame, &area);
+        renderer->share.surface->gl.Finish();
         if (status == CAMBER_OK)
-            status = wait_for_area(renderer, flight);
+            status = camber_gl_check(renderer, "drawing");
         const double drawn = camber_now_ms();
+        stats->areas++;
         stats->draw_ms += drawn - begin;
         if (rgba && status == CAMBER_OK) {
             status = read_area(renderer, &area, rgba, width);
@@ -159,30 +111,31 @@ static camber_status draw_across(camber_renderer *renderer, camber_flight *fligh
     return status;
 }
 
-camber_status camber_gl_end_frame(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user) {
+camber_status camber_gl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
+                               camber_frame_stats *stats) {
     camber_context *context = renderer->share.device->context;
-    camber_gl_area area = first_area(renderer, flight, flight->area_width, flight->area_height);
-    const uint32_t tallest = area.height, width = flight->frame.width, height = flight->frame.height;
+    *stats = (camber_frame_stats){0};
+    camber_gl_area area = first_area(renderer, frame, &stats->draw_calls);
+    const uint32_t tallest = area.height, width = frame->width, height = frame->height;
     uint8_t *rgba = NULL;
     camber_status status = camber_surface_make_current(renderer->share.surface);
-    if (status == CAMBER_OK && rows && !(rgba = camber_alloc(context, (size_t)width * tallest, 4)))
+    if (status != CAMBER_OK)
+        return status;
+    renderer->share.frames_begun++;
+    if (rows && !(rgba = camber_alloc(context, (size_t)width * tallest, 4)))
         status = CAMBER_ERROR_MEMORY;
     for (area.y = 0; area.y < height && status == CAMBER_OK; area.y += tallest) {
         area.height = height - area.y < tallest ? height - area.y : tallest;
-        status = draw_across(renderer, flight, area, rgba);
+        status = draw_across(renderer, frame, area, rgba, stats);
         if (status == CAMBER_OK && rows && !rows(user, rgba, area.y, area.height))
             status = CAMBER_ERROR_IO;
         if (area.height < height)
             camber_progress(context, "drawing", (double)(area.y + area.height) / height);
     }
     camber_free(context, rgba);
-    if (status == CAMBER_OK) {
-        if (renderer->share.frames_done < flight->number)
-            renderer->share.frames_done = flight->number;
-    } else {
-        if (camber_surface_try_current(renderer->share.surface))
-            camber_gl_drop_fence(renderer, flight);
-        camber_surface_forget_errors(renderer->share.surface);
-    }
+    if (status == CAMBER_OK)
+        renderer->share.frames_done = renderer->share.frames_begun;
+    else
+        camber_surface_forget_errors(renderer->share.surface); /* the next frame's are its own */
     return status;
 }

@@ -8,7 +8,6 @@
 
 static void close_gl(camber_renderer *renderer) {
     const bool is_current = camber_surface_try_current(renderer->share.surface);
-    camber_renderer_drop_flights(renderer, is_current);
     if (!is_current)
         renderer->pixels.gl_name = 0; /* it goes with its context */
     if (renderer->path)
@@ -63,8 +62,6 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     camber_context *context = renderer->share.device->context;
     if (renderer->share.surface)
         close_gl(renderer);
-    else
-        camber_renderer_drop_flights(renderer, false);
     camber_raster_destroy(renderer->raster);
     camber_raster_destroy(renderer->areas);
     camber_draw_list_free(&renderer->list);

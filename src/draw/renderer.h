@@ -19,20 +19,6 @@ typedef struct camber_place {
 /* A camber_rows_fn that copies rows to a place. */
 bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
-/* A frame that camber_renderer_begin has begun, and that has not ended. */
-typedef struct camber_flight {
-    camber_frame frame;
-    bool is_drawn; /* all of the picture is, or will be when the fence is passed. Else the end draws what is left */
-    uint32_t area_width, area_height; /* GL: of the first area, which is drawn when the frame begins */
-    int target;                       /* GL: that areas are drawn into */
-    GLsync drawn;                     /* GL: a fence behind the first area. NULL: it is finished */
-    uint64_t number;                  /* of the frames that have begun */
-    camber_pass *passes;              /* copies of the caller's, where the end draws what is left */
-    camber_paint *paints;
-    uint8_t *rgba; /* OpenCL: the picture, where it is drawn */
-    camber_frame_stats stats;
-} camber_flight;
-
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path; /* NULL: without a surface */
@@ -42,14 +28,9 @@ struct camber_renderer {
     struct camber_raster *areas; /* fills areas where GL draws the rest. NULL: none so far */
     camber_shared_buffer pixels; /* that the rasterizer writes and GL reads */
     camber_gl_drawing gl;        /* what GL draws with. Without a surface nothing */
-    camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];
-    size_t first_flight, flight_count; /* a ring */
 };
 
 /* Checks a frame and resolves it into the renderer's list. */
 camber_status camber_renderer_resolve(camber_renderer *renderer, const camber_frame *frame);
-
-/* Drops all frames in flight. */
-void camber_renderer_drop_flights(camber_renderer *renderer, bool is_current);
 
 #endif

@@ -151,7 +151,6 @@ static void end(camber_renderer *renderer, void **drawn) {
 
 camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
                                              const camber_texture *texture, void **drawn) {
-    assert(renderer->flight_count == 0);
     camber_status status = camber_renderer_resolve(renderer, frame);
     if (status == CAMBER_OK)
         status = check_size(renderer, frame);

@@ -31,7 +31,7 @@ static bool take_bytes(void *user, const void *bytes, size_t size_bytes) {
 
 /* ---- Encodings ---- */
 
-const char *camber_encoding_get_name(camber_encoding encoding) {
+static const char *name_of(camber_encoding encoding) {
     return encoding == CAMBER_ENCODING_WEBP ? "webp" : encoding == CAMBER_ENCODING_PNG8 ? "png8" : "png";
 }
 
@@ -61,7 +61,7 @@ static camber_status check_desc(camber_context *context, const camber_encoder_de
     if (!camber_encoding_is_built(desc->encoding))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "this build has no %s; build camber with libwebp (Debian: libwebp-dev), or write a PNG",
-                           camber_encoding_get_name(desc->encoding));
+                           name_of(desc->encoding));
     if (desc->quality < 0 || desc->quality > 100)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a quality of %d; it must be 1 to 100, or 0 for 80",
                            desc->quality);
@@ -73,13 +73,12 @@ static camber_status check_size(const camber_encoder *self, const camber_pixels 
     if (pixels->width < 1 || pixels->width > longest || pixels->height < 1 || pixels->height > longest)
         return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
                            "a picture of %u x %u px as %s; each side must be 1 to %u", pixels->width, pixels->height,
-                           camber_encoding_get_name(self->desc.encoding), longest);
+                           name_of(self->desc.encoding), longest);
     if ((uint64_t)pixels->width * pixels->height > CAMBER_PIXELS_MOST)
         return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
                            "a picture of %u x %u px as %s, which is encoded as a whole; it may have %d px, so draw a "
                            "smaller one, or write it as png",
-                           pixels->width, pixels->height, camber_encoding_get_name(self->desc.encoding),
-                           CAMBER_PIXELS_MOST);
+                           pixels->width, pixels->height, name_of(self->desc.encoding), CAMBER_PIXELS_MOST);
     return CAMBER_OK;
 }
 

@@ -6,8 +6,8 @@
 #include "osm/blobs.h"
 
 #include "base/open_file.h"
+#include "base/whole_file.h"
 
-#include <errno.h>
 #include <stdio.h>
 
 enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20 };
@@ -22,18 +22,8 @@ enum { BLOCK_STRINGS = 1, BLOCK_GROUP = 2, BLOCK_GRANULARITY = 17, BLOCK_LATITUD
 
 /* Reads up to size bytes; fewer where the file ends. Below 0: an error. */
 static ssize_t read_at(int file, uint8_t *bytes, size_t size, uint64_t offset) {
-    size_t done = 0;
-    while (done < size) {
-        const ssize_t got = pread(file, bytes + done, size - done, (off_t)(offset + done));
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return -1;
-        if (got == 0)
-            break;
-        done += (size_t)got;
-    }
-    return (ssize_t)done;
+    size_t done;
+    return camber_file_read(file, bytes, size, offset, &done) ? -1 : (ssize_t)done;
 }
 
 static uint32_t header_size(const uint8_t bytes[4]) {

@@ -6,6 +6,8 @@
  * makes room in a worker's block. */
 #include "osm/pass.h"
 
+#include "base/threads.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -27,6 +29,8 @@ struct camber_osm_pass {
     pthread_cond_t moved;
     size_t taken, committed;
     bool stopped;
+    camber_status status;
+    bool *declined;
     size_t slot_count;
     slot_state *states;
     char *slots;
@@ -106,8 +110,7 @@ static void work(camber_osm_pass *pass, size_t part) {
     pthread_cond_broadcast(&pass->moved);
 }
 
-static void *run_worker(void *user) {
-    camber_osm_pass *pass = user;
+static void run_worker(camber_osm_pass *pass) {
     pthread_mutex_lock(&pass->lock);
     while (!pass->stopped && pass->taken < pass->desc->part_count) {
         size_t part;
@@ -117,13 +120,12 @@ static void *run_worker(void *user) {
             pthread_cond_wait(&pass->moved, &pass->lock);
     }
     pthread_mutex_unlock(&pass->lock);
-    return NULL;
 }
 
 /* ---- The caller's thread ---- */
 
-static camber_status report(const camber_osm_pass *pass, const camber_osm_failure *failure, bool *declined) {
-    *declined = failure->declined;
+static camber_status report(const camber_osm_pass *pass, const camber_osm_failure *failure) {
+    *pass->declined = failure->declined;
     if (failure->declined)
         return CAMBER_OK;
     if (failure->status == CAMBER_ERROR_MEMORY)
@@ -137,24 +139,22 @@ static camber_status report(const camber_osm_pass *pass, const camber_osm_failur
 }
 
 /* Called with the lock held. */
-static camber_status commit(camber_osm_pass *pass, bool *declined) {
+static void commit(camber_osm_pass *pass) {
     const size_t part = pass->committed;
     slot_state *state = &pass->states[part % pass->slot_count];
     void *slot = pass->slots + part % pass->slot_count * pass->desc->slot_bytes;
-    camber_status status = CAMBER_OK;
     pthread_mutex_unlock(&pass->lock);
     pthread_mutex_lock(&pass->context_lock);
     if (state->failed)
-        status = report(pass, &state->failure, declined);
+        pass->status = report(pass, &state->failure);
     else if (pass->desc->commit)
-        status = pass->desc->commit(pass->desc->user, part, slot);
+        pass->status = pass->desc->commit(pass->desc->user, part, slot);
     pthread_mutex_unlock(&pass->context_lock);
     pthread_mutex_lock(&pass->lock);
     state->ready = false;
     pass->committed++;
-    pass->stopped = status != CAMBER_OK || *declined;
+    pass->stopped = pass->status != CAMBER_OK || *pass->declined;
     pthread_cond_broadcast(&pass->moved);
-    return status;
 }
 
 static void show_progress(camber_osm_pass *pass, double *shown_ms) {
@@ -168,14 +168,13 @@ static void show_progress(camber_osm_pass *pass, double *shown_ms) {
     pthread_mutex_unlock(&pass->context_lock);
 }
 
-static camber_status run(camber_osm_pass *pass, bool *declined) {
-    camber_status status = CAMBER_OK;
+static void run(camber_osm_pass *pass) {
     double shown_ms = 0.0;
     pthread_mutex_lock(&pass->lock);
     while (!pass->stopped && pass->committed < pass->desc->part_count) {
         size_t part;
         if (pass->states[pass->committed % pass->slot_count].ready)
-            status = commit(pass, declined);
+            commit(pass);
         else if (take(pass, &part))
             work(pass, part);
         else
@@ -187,13 +186,18 @@ static camber_status run(camber_osm_pass *pass, bool *declined) {
     pass->stopped = true;
     pthread_cond_broadcast(&pass->moved);
     pthread_mutex_unlock(&pass->lock);
-    return status;
+}
+
+static void run_thread(void *user, size_t number) {
+    if (number == 0)
+        run(user);
+    else
+        run_worker(user);
 }
 
 camber_status camber_osm_pass_run(const camber_osm_pass_desc *desc, bool *declined) {
-    camber_osm_pass pass = {.desc = desc};
-    pthread_t threads[MOST_THREADS];
-    unsigned started = 0, wanted = desc->threads < MOST_THREADS ? desc->threads : MOST_THREADS;
+    camber_osm_pass pass = {.desc = desc, .declined = declined};
+    unsigned wanted = desc->threads < MOST_THREADS ? desc->threads : MOST_THREADS;
     *declined = false;
     if (desc->part_count == 0)
         return CAMBER_OK;
@@ -208,12 +212,7 @@ camber_status camber_osm_pass_run(const camber_osm_pass_desc *desc, bool *declin
     pthread_mutex_init(&pass.context_lock, NULL);
     pthread_mutex_init(&pass.lock, NULL);
     pthread_cond_init(&pass.moved, NULL);
-    /* A thread that does not start is one fewer. */
-    while (started + 1 < wanted && pthread_create(&threads[started], NULL, run_worker, &pass) == 0)
-        started++;
-    const camber_status status = run(&pass, declined);
-    for (unsigned i = 0; i < started; i++)
-        pthread_join(threads[i], NULL);
+    camber_threads_run(wanted, run_thread, &pass);
     pthread_cond_destroy(&pass.moved);
     pthread_mutex_destroy(&pass.lock);
     pthread_mutex_destroy(&pass.context_lock);
@@ -221,5 +220,5 @@ camber_status camber_osm_pass_run(const camber_osm_pass_desc *desc, bool *declin
         desc->free_slot(desc->context, pass.slots + i * desc->slot_bytes);
     camber_free(desc->context, pass.slots);
     camber_free(desc->context, pass.states);
-    return status;
+    return pass.status;
 }

@@ -4,8 +4,6 @@
 
 #include "base/base.h"
 
-#include <pthread.h>
-
 /* Why a part failed. The thread that made the call logs it, for the first part that fails. */
 typedef struct camber_osm_failure {
     camber_status status;

@@ -10,6 +10,7 @@
  * coast's ways as well (coast.h). */
 #include "osm/osm.h"
 
+#include "base/threads.h"
 #include "osm/beyond.h"
 #include "osm/coast.h"
 #include "osm/nodes.h"
@@ -21,7 +22,6 @@
 #include "source/world_lines.h"
 
 #include <math.h>
-#include <unistd.h>
 
 static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* of the progress */
 /* OGR's names of the layers. */
@@ -48,11 +48,6 @@ bool camber_osm_reads(const camber_source_desc *desc) {
     camber_osm_where where;
     return (!desc->where || camber_osm_where_parse(desc->where, &where)) &&
            (!desc->layer || strcmp(desc->layer, LAYER) == 0) && camber_osm_knows(desc->path);
-}
-
-static unsigned count_threads(const camber_source_desc *desc) {
-    const long cores = desc->threads ? (long)desc->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    return cores > 0 ? (unsigned)(cores < 1024 ? cores : 1024) : 1;
 }
 
 /* ---- Ways become lines, on any thread ---- */
@@ -571,7 +566,10 @@ static void add_stats(const reader *self) {
 camber_status camber_osm_read(camber_features *features, const camber_source_desc *desc, bool *declined) {
     const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
-    reader self = {.context = features->context, .features = features, .desc = desc, .threads = count_threads(desc)};
+    reader self = {.context = features->context,
+                   .features = features,
+                   .desc = desc,
+                   .threads = (unsigned)camber_threads_count(desc->threads)};
     self.coast.context = features->context;
     *declined = false;
     camber_status status = read_lines(&self, declined);
@@ -599,7 +597,7 @@ camber_status camber_osm_check_for_gdal(camber_context *context, const camber_so
     camber_status status = camber_osm_file_open(context, desc->path, &file, &declined);
     if (status != CAMBER_OK || declined)
         return status;
-    status = camber_osm_find_beyond(&file, count_threads(desc), &beyond);
+    status = camber_osm_find_beyond(&file, (unsigned)camber_threads_count(desc->threads), &beyond);
     camber_osm_file_close(&file);
     if (status != CAMBER_OK || !camber_osm_is_beyond(&beyond))
         return status;

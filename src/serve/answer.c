@@ -39,12 +39,6 @@ typedef struct reply {
     char last_modified[CAMBER_DATE_SIZE];
 } reply;
 
-double camber_server_now_s(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* ---- Sending ---- */
 
 static const char *header_of(const request *r, const char *name) {
@@ -316,7 +310,7 @@ static enum MHD_Result answer_metrics(request *r) {
     const camber_metrics_now now = {.cache = camber_tile_cache_get_stats(server->cache),
                                     .ready = look(server, false, NULL).ready,
                                     .in_flight = server->in_flight,
-                                    .uptime_s = camber_server_now_s() - server->start_s};
+                                    .uptime_s = 1e-3 * (camber_now_ms() - server->start_ms)};
     char *text = NULL;
     size_t size_bytes = 0;
     FILE *file = open_memstream(&text, &size_bytes);
@@ -401,7 +395,7 @@ void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *c
     if (length < sizeof client->path)
         memcpy(client->path, path, length);
     client->path_end = (uintptr_t)uri + strlen(uri);
-    client->start_s = camber_server_now_s();
+    client->start_ms = camber_now_ms();
     return NULL;
 }
 
@@ -491,7 +485,7 @@ static void log_request(const request *r) {
     append_json(text, sizeof text - 200, r->client->path);
     snprintf(text + strlen(text), sizeof text - strlen(text),
              "\",\"route\":\"%s\",\"status\":%d,\"bytes\":%zu,\"ms\":%.3f}", camber_route_get_name(r->route.route),
-             r->status, r->sent_bytes, 1e3 * (camber_server_now_s() - r->client->start_s));
+             r->status, r->sent_bytes, camber_now_ms() - r->client->start_ms);
     server->desc.log_request(server->desc.user, text);
 }
 

@@ -2,6 +2,7 @@
 #ifndef CAMBER_SERVE_ANSWER_H
 #define CAMBER_SERVE_ANSWER_H
 
+#include "base/clock.h"
 #include "serve/acceptor.h"
 #include "serve/address.h"
 #include "serve/clients.h"
@@ -48,7 +49,7 @@ struct camber_server {
     camber_renderd *renderd; /* NULL: none */
     camber_events *events;   /* NULL: the style is not edited */
     camber_metrics metrics;
-    double start_s;
+    double start_ms;
     atomic_bool stopping;
     _Atomic int64_t in_flight; /* requests that are here, and not answered yet */
     camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
@@ -60,8 +61,6 @@ struct camber_server {
     void (*close_reader)(void *owner);
     void *reader_owner;
 };
-
-double camber_server_now_s(void);
 
 /* Callbacks of a daemon; user is its listener. */
 void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *connection);

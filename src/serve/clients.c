@@ -4,10 +4,11 @@
 
 #include "serve/clients.h"
 
+#include "base/clock.h"
+
 #include <pthread.h>
 #include <stdlib.h>
 #include <sys/socket.h>
-#include <time.h>
 
 enum { LOOK_MS = 500 };
 
@@ -16,19 +17,13 @@ struct camber_clients {
     pthread_cond_t stop;
     pthread_t thread;
     bool stops;
-    int64_t most_ms;
+    double most_ms;
     camber_client *first;
     _Atomic int64_t count;
 };
 
-static int64_t now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
-
 static void shut_late(camber_clients *clients) {
-    const int64_t now = now_ms();
+    const double now = camber_now_ms();
     for (camber_client *client = clients->first; client; client = client->next)
         if (client->phase != CAMBER_CLIENT_LISTENS && now - client->since_ms > clients->most_ms)
             (void)shutdown(client->socket, SHUT_RDWR);
@@ -38,11 +33,7 @@ static void *look(void *user) {
     camber_clients *clients = user;
     pthread_mutex_lock(&clients->mutex);
     while (!clients->stops) {
-        struct timespec end;
-        clock_gettime(CLOCK_REALTIME, &end);
-        end.tv_nsec += LOOK_MS * 1000000L;
-        end.tv_sec += end.tv_nsec / 1000000000L;
-        end.tv_nsec %= 1000000000L;
+        const struct timespec end = camber_time_in(LOOK_MS);
         (void)pthread_cond_timedwait(&clients->stop, &clients->mutex, &end);
         shut_late(clients);
     }
@@ -54,7 +45,7 @@ camber_clients *camber_clients_create(double seconds) {
     camber_clients *made = calloc(1, sizeof *made);
     if (!made)
         return NULL;
-    made->most_ms = (int64_t)(seconds * 1e3);
+    made->most_ms = seconds * 1e3;
     pthread_mutex_init(&made->mutex, NULL);
     pthread_cond_init(&made->stop, NULL);
     if (pthread_create(&made->thread, NULL, look, made) == 0)
@@ -109,7 +100,7 @@ void camber_clients_remove(camber_clients *clients, camber_client *client) {
 }
 
 void camber_client_enter(camber_client *client, camber_client_phase phase) {
-    client->since_ms = now_ms();
+    client->since_ms = camber_now_ms();
     client->phase = (int)phase;
 }
 

@@ -19,10 +19,10 @@ typedef struct camber_client {
     int socket;
     char path[CAMBER_PATH_BYTES]; /* of the request that comes, as it came. "": it is longer than any route */
     uintptr_t path_end;           /* where the path as it came has its end */
-    double start_s;               /* when its first line was here */
+    double start_ms;              /* when its first line was here */
     void *request;                /* that is being answered. NULL: none */
     atomic_int phase;
-    _Atomic int64_t since_ms;
+    _Atomic double since_ms;
     struct camber_client *next, *before;
 } camber_client;
 

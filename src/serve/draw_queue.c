@@ -7,12 +7,13 @@
 
 #include "serve/draw_queue.h"
 
+#include "base/clock.h"
+#include "base/threads.h"
+
 #include "camber_tiles.h"
 
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { LARGEST_PICTURE_PX = 2048, TILE_PX = 256 };
 
@@ -42,8 +43,7 @@ struct camber_draw_queue {
     size_t unit_count, queued;
     uint64_t clock;
     bool stops, woken;
-    pthread_t *threads; /* the first one draws */
-    size_t thread_count;
+    camber_threads threads; /* the first one draws */
 };
 
 /* A thread that encodes: its encoders, made when they are first needed. */
@@ -52,12 +52,6 @@ typedef struct encoding_thread {
     camber_context *context;
     camber_encoder *encoders[2][2]; /* by type, and whether it is opaque */
 } encoding_thread;
-
-static double now_s(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 bool camber_drawn_resize(camber_drawn *drawn) {
     const size_t bytes = 4 * (size_t)drawn->width * drawn->height, step = CAMBER_PIXELS_ALIGNMENT;
@@ -247,9 +241,9 @@ static void draw_unit(camber_draw_queue *drawing, unit *u) {
     u->generation = camber_tile_cache_get_generation(drawing->desc.cache);
     drawing->desc.metrics->queued = (int64_t)--drawing->queued;
     pthread_mutex_unlock(&drawing->mutex);
-    const double start_s = now_s();
+    const double start_ms = camber_now_ms();
     const camber_status status = drawing->desc.draw(drawing->desc.user, &u->request, &u->drawn);
-    camber_histogram_observe(&drawing->desc.metrics->draw, now_s() - start_s);
+    camber_histogram_observe(&drawing->desc.metrics->draw, 1e-3 * (camber_now_ms() - start_ms));
     pthread_mutex_lock(&drawing->mutex);
     if (status == CAMBER_OK) {
         u->state = UNIT_DRAWN;
@@ -286,8 +280,7 @@ static void serve_unit(camber_draw_queue *drawing, unit *u) {
         pthread_cond_wait(&drawing->picture, &drawing->mutex);
 }
 
-static void *run_drawing(void *user) {
-    camber_draw_queue *drawing = user;
+static void run_drawing(camber_draw_queue *drawing) {
     bool prepares = true;
     pthread_mutex_lock(&drawing->mutex);
     while (!drawing->stops) {
@@ -307,7 +300,6 @@ static void *run_drawing(void *user) {
         pthread_mutex_lock(&drawing->mutex);
     }
     pthread_mutex_unlock(&drawing->mutex);
-    return NULL;
 }
 
 /* ---- Threads that encode ---- */
@@ -344,9 +336,9 @@ static void encode_one(encoding_thread *self, unit *u) {
     camber_ask *asks = take_asks(u, is_same_tile, &request);
     u->users++;
     pthread_mutex_unlock(&drawing->mutex);
-    const double start_s = now_s();
+    const double start_ms = camber_now_ms();
     camber_body *body = encode(self, &u->drawn, &request);
-    camber_histogram_observe(&drawing->desc.metrics->encode, now_s() - start_s);
+    camber_histogram_observe(&drawing->desc.metrics->encode, 1e-3 * (camber_now_ms() - start_ms));
     if (body && request.route == CAMBER_ROUTE_TILE)
         camber_tile_cache_put(drawing->desc.cache, camber_draw_queue_key(&request), body, u->generation);
     tell(asks, body ? CAMBER_ASK_DONE : CAMBER_ASK_FAILED, body);
@@ -361,9 +353,8 @@ static void encode_one(encoding_thread *self, unit *u) {
     pthread_cond_broadcast(&drawing->picture);
 }
 
-static void *run_encoding(void *user) {
-    encoding_thread self = {.drawing = user};
-    camber_draw_queue *drawing = self.drawing;
+static void run_encoding(camber_draw_queue *drawing) {
+    encoding_thread self = {.drawing = drawing};
     const camber_context_desc desc = {.log = drawing->desc.log, .log_user = drawing->desc.log_user, .cache_dir = ""};
     if (camber_context_create(&desc, &self.context) != CAMBER_OK)
         self.context = NULL;
@@ -379,21 +370,21 @@ static void *run_encoding(void *user) {
     for (int i = 0; i < 4; i++)
         camber_encoder_destroy(self.encoders[i / 2][i % 2]);
     camber_context_destroy(self.context);
-    return NULL;
 }
 
 /* ---- The drawing ---- */
 
+static void run(void *user, size_t number) {
+    if (number == 0)
+        run_drawing(user);
+    else
+        run_encoding(user);
+}
+
+/* One thread has to draw, and one to encode. */
 static bool start_threads(camber_draw_queue *drawing) {
-    const size_t count = 1 + (size_t)drawing->desc.threads;
-    if (!(drawing->threads = calloc(count, sizeof *drawing->threads)))
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        if (pthread_create(&drawing->threads[i], NULL, i ? run_encoding : run_drawing, drawing) != 0)
-            return i > 1;
-        drawing->thread_count++;
-    }
-    return true;
+    camber_threads_start(&drawing->threads, 1 + (size_t)drawing->desc.threads, run, drawing);
+    return drawing->threads.count > 1;
 }
 
 camber_draw_queue *camber_draw_queue_create(const camber_draw_queue_desc *desc) {
@@ -417,9 +408,7 @@ void camber_draw_queue_stop(camber_draw_queue *drawing) {
     pthread_cond_broadcast(&drawing->work);
     pthread_cond_broadcast(&drawing->picture);
     pthread_mutex_unlock(&drawing->mutex);
-    for (size_t i = 0; i < drawing->thread_count; i++)
-        pthread_join(drawing->threads[i], NULL);
-    drawing->thread_count = 0;
+    camber_threads_join(&drawing->threads);
     for (size_t i = 0; drawing->units && i < drawing->unit_count; i++) {
         camber_ask *asks = drawing->units[i].asks;
         drawing->units[i].asks = NULL;
@@ -436,7 +425,6 @@ void camber_draw_queue_destroy(camber_draw_queue *drawing) {
     pthread_cond_destroy(&drawing->picture);
     pthread_cond_destroy(&drawing->work);
     pthread_mutex_destroy(&drawing->mutex);
-    free(drawing->threads);
     free(drawing->units);
     free(drawing);
 }

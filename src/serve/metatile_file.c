@@ -1,7 +1,7 @@
 /* Writes metatiles for mod_tile; the layout is in the header. */
 #include "serve/metatile_file.h"
 
-#include "serve/cached_file.h"
+#include "base/whole_file.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -53,5 +53,5 @@ int camber_metatile_file_write(const camber_metatile_file *file) {
     parts[0] = (camber_file_part){&header, sizeof header};
     if (!camber_metatile_file_name(file, path, sizeof path))
         return ENAMETOOLONG;
-    return camber_cached_file_write(path, strlen(file->folder) + 1, parts, sizeof parts / sizeof *parts);
+    return camber_whole_file_write(path, strlen(file->folder) + 1, 0644, parts, sizeof parts / sizeof *parts);
 }

@@ -7,6 +7,7 @@
 
 #include "serve/renderd.h"
 
+#include "base/clock.h"
 #include "serve/acceptor.h"
 #include "serve/metatile_file.h"
 
@@ -55,9 +56,9 @@ static const size_t sizes[] = {0, 20, 64, sizeof(protocol_message)};
 typedef struct renderd_client {
     camber_renderd *renderd;
     pthread_t thread;
-    int socket;               /* -1: the place is free */
-    atomic_bool ends;         /* the thread is to be joined */
-    _Atomic int64_t waits_ms; /* since when it waits for a request. 0: it answers one */
+    int socket;              /* -1: the place is free */
+    atomic_bool ends;        /* the thread is to be joined */
+    _Atomic double waits_ms; /* since when it waits for a request. 0: it answers one */
 } renderd_client;
 
 struct camber_renderd {
@@ -68,12 +69,6 @@ struct camber_renderd {
     pthread_mutex_t mutex; /* of clients' sockets */
     renderd_client clients[MOST_CLIENTS];
 };
-
-static int64_t now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
 
 /* ---- A metatile ---- */
 
@@ -215,7 +210,7 @@ static bool send_message(const renderd_client *client, const protocol_message *m
     const char *at = (const char *)message;
     size_t left = sizes[message->version];
     struct pollfd there = {.fd = client->socket, .events = POLLOUT};
-    int64_t begin_ms = now_ms();
+    double begin_ms = camber_now_ms();
     bool stops = false;
     while (left > 0) {
         const ssize_t sent = send(client->socket, at, left, MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -228,9 +223,9 @@ static bool send_message(const renderd_client *client, const protocol_message *m
             return false;
         if (!stops && client->renderd->stopping) {
             stops = true;
-            begin_ms = now_ms();
+            begin_ms = camber_now_ms();
         }
-        if (now_ms() - begin_ms > (stops ? LONGEST_LAST_SEND_MS : LONGEST_SEND_MS))
+        if (camber_now_ms() - begin_ms > (stops ? LONGEST_LAST_SEND_MS : LONGEST_SEND_MS))
             return false;
         (void)poll(&there, 1, LOOK_MS);
     }
@@ -241,7 +236,7 @@ static void *serve_client(void *user) {
     renderd_client *client = user;
     protocol_message message;
     for (;;) {
-        client->waits_ms = now_ms();
+        client->waits_ms = camber_now_ms();
         if (!receive_message(client->socket, &message))
             break;
         client->waits_ms = 0;
@@ -279,7 +274,7 @@ static renderd_client *find_room(camber_renderd *renderd) {
         else if (client->waits_ms && (!silent || client->waits_ms < silent->waits_ms))
             silent = client;
     }
-    if (place || !silent || now_ms() - silent->waits_ms < LEAST_WAIT_MS)
+    if (place || !silent || camber_now_ms() - silent->waits_ms < LEAST_WAIT_MS)
         return place;
     (void)shutdown(silent->socket, SHUT_RDWR);
     close_client(renderd, silent);
@@ -293,7 +288,7 @@ static void take_client(void *user, int socket) {
     if (place) {
         pthread_mutex_lock(&renderd->mutex);
         place->socket = socket;
-        place->waits_ms = now_ms();
+        place->waits_ms = camber_now_ms();
         if (pthread_create(&place->thread, NULL, serve_client, place) != 0)
             place->socket = -1;
         pthread_mutex_unlock(&renderd->mutex);

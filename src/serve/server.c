@@ -11,6 +11,7 @@
 
 #include "serve/server.h"
 
+#include "base/threads.h"
 #include "serve/answer.h"
 #include "serve/gzip.h"
 #include "serve/metatile_file.h"
@@ -41,7 +42,7 @@ enum {
     MOST_QUEUED = 128,
     MOST_PICTURES = 24, /* of a tile each; of a metatile fewer */
     LEAST_PICTURES = 3, /* one is drawn, others are encoded */
-    LONGEST_END_S = 20,
+    LONGEST_END_MS = 20000,
 };
 
 static const double MOST_SECONDS = 30; /* that a phase of a connection takes */
@@ -195,14 +196,13 @@ static bool make_page(camber_server *server) {
 
 static camber_server_desc fill_in(const camber_server_desc *desc) {
     camber_server_desc made = *desc;
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     made.listen = desc->listen ? desc->listen : "127.0.0.1:8080";
     made.cors = desc->cors ? desc->cors : "*";
     made.cache_bytes = desc->cache_bytes ? desc->cache_bytes : DEFAULT_CACHE_BYTES;
     made.most_px = desc->most_px ? desc->most_px : DEFAULT_PX;
     made.most_ratio = desc->most_ratio ? desc->most_ratio : DEFAULT_RATIO;
     made.side = desc->side ? desc->side : desc->renderd ? RENDERD_SIDE : DEFAULT_SIDE;
-    made.threads = desc->threads ? desc->threads : cores > 1 ? (uint32_t)cores : 1;
+    made.threads = (uint32_t)camber_threads_count(desc->threads);
     return made;
 }
 
@@ -278,7 +278,7 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
     if (!made)
         return ENOMEM;
     made->desc = fill_in(desc);
-    made->start_s = camber_server_now_s();
+    made->start_ms = camber_now_ms();
     made->page = (camber_listener){.server = made};
     made->metrics_page = (camber_listener){.server = made, .is_for_metrics = true};
     pthread_mutex_init(&made->mutex, NULL);
@@ -314,8 +314,8 @@ static void stop(camber_listener *listener) {
 
 static void wait_for_requests(const camber_server *server) {
     const struct timespec pause = {.tv_nsec = 5000000};
-    const double end_s = camber_server_now_s() + LONGEST_END_S;
-    while (server->in_flight > 0 && camber_server_now_s() < end_s)
+    const double end_ms = camber_now_ms() + LONGEST_END_MS;
+    while (server->in_flight > 0 && camber_now_ms() < end_ms)
         nanosleep(&pause, NULL);
 }
 

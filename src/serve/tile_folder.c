@@ -4,7 +4,7 @@
 #include "serve/tile_folder.h"
 
 #include "base/open_file.h"
-#include "serve/cached_file.h"
+#include "base/whole_file.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -21,24 +21,13 @@ static void name_tile(uint64_t input, camber_tile_key key, char name[NAME_SIZE])
              key.place >> 56, key.place >> 28 & low, key.place & low);
 }
 
-static bool read_all(int file, unsigned char *bytes, size_t size_bytes) {
-    while (size_bytes > 0) {
-        const ssize_t got = read(file, bytes, size_bytes);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0)
-            return false;
-        bytes += got;
-        size_bytes -= (size_t)got;
-    }
-    return true;
-}
-
 static unsigned char *read_bytes(int file, const struct stat *about) {
     if (!S_ISREG(about->st_mode) || about->st_size <= 0 || about->st_size > LARGEST_TILE_BYTES)
         return NULL;
-    unsigned char *bytes = malloc((size_t)about->st_size);
-    if (bytes && read_all(file, bytes, (size_t)about->st_size))
+    const size_t size_bytes = (size_t)about->st_size;
+    unsigned char *bytes = malloc(size_bytes);
+    size_t done;
+    if (bytes && camber_file_read(file, bytes, size_bytes, 0, &done) == 0 && done == size_bytes)
         return bytes;
     free(bytes);
     return NULL;
@@ -77,7 +66,7 @@ void camber_tile_folder_put(camber_tile_folder *folder, uint64_t input, camber_t
     const camber_file_part parts[] = {{body->bytes, body->size_bytes}, {body->etag, TAG_BYTES}};
     name_tile(input, key, name);
     const int cause = snprintf(path, sizeof path, "%s/%s", folder->path, name) < (int)sizeof path
-                          ? camber_cached_file_write(path, strlen(folder->path) + 1, parts, 2)
+                          ? camber_whole_file_write(path, strlen(folder->path) + 1, 0644, parts, 2)
                           : ENAMETOOLONG;
     if (atomic_exchange(&folder->fails, cause != 0) || !cause)
         return;

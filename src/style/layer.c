@@ -469,16 +469,3 @@ bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     camber_compiler_leave(c);
     return true;
 }
-
-void camber_style_leave_out_areas(camber_style *style) {
-    size_t count = 0;
-    for (size_t i = 0; i < style->layer_count; i++) {
-        camber_style_layer *layer = style->layers + i;
-        count += layer->kind == CAMBER_LAYER_FILL && layer->visible;
-        layer->visible = layer->visible && layer->kind != CAMBER_LAYER_FILL;
-    }
-    find_wants(style);
-    if (count)
-        camber_log(style->context, CAMBER_LOG_INFO, "style: %zu layer%s of areas left out; lines alone are taken here",
-                   count, count == 1 ? " is" : "s are");
-}

@@ -258,19 +258,19 @@ typedef struct taking_census {
     camber_workers *workers;
     share *shares;
     size_t share_count;
-    atomic_size_t next; /* the first share that no thread has taken */
+    atomic_size_t next;   /* the first share that no thread has taken */
+    atomic_size_t failed; /* 1 + the number of a worker that ran out of memory; 0: none */
 } taking_census;
 
-static camber_status walk_shares(void *user, size_t number) {
+static void walk_shares(void *user, size_t number) {
     taking_census *taking = user;
-    for (size_t i; (i = atomic_fetch_add(&taking->next, 1)) < taking->share_count;) {
+    for (size_t i; !taking->failed && (i = atomic_fetch_add(&taking->next, 1)) < taking->share_count;) {
         share *s = taking->shares + i;
         s->context = taking->workers->contexts[number];
-        for (size_t k = s->first; k < s->end; k++)
+        for (size_t k = s->first; k < s->end && !taking->failed; k++)
             if (!mark_polyline(s, k))
-                return CAMBER_ERROR_MEMORY;
+                taking->failed = number + 1;
     }
-    return CAMBER_OK;
 }
 
 /* Divides the polylines by their points. */
@@ -375,9 +375,9 @@ camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_
     if (!(taking.shares = camber_alloc_zero(workers->context, taking.share_count, sizeof *taking.shares)))
         return CAMBER_ERROR_MEMORY;
     divide(plan, side, zoom, &taking);
-    camber_status status = camber_workers_run(workers, walk_shares, &taking);
-    if (status == CAMBER_OK)
-        status = unite(census, taking.shares, taking.share_count);
+    camber_threads_run(workers->count, walk_shares, &taking);
+    const camber_status status = taking.failed ? camber_workers_tell(workers, taking.failed - 1, CAMBER_ERROR_MEMORY)
+                                               : unite(census, taking.shares, taking.share_count);
     for (size_t i = 0; i < taking.share_count; i++) {
         const share *s = taking.shares + i;
         camber_free(s->context, s->metatiles);

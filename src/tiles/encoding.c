@@ -6,10 +6,8 @@
 
 #include "tiles/mesh_area.h"
 
-#include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
-#include <time.h>
 
 enum { MOST_JOBS = 8 };
 
@@ -17,8 +15,7 @@ struct camber_encode_queue {
     camber_workers *workers;
     camber_encoder **encoders; /* one a worker; NULL where tiles are meshes */
     camber_mesh_tile *meshes;  /* one a worker */
-    pthread_t *threads;
-    size_t thread_count;
+    camber_threads threads;    /* none where there is one worker: the caller encodes */
     camber_encode_job jobs[MOST_JOBS];
     size_t job_count;
     uint64_t put, taken; /* how many jobs were: job n is jobs[n % job_count] */
@@ -27,17 +24,6 @@ struct camber_encode_queue {
     pthread_mutex_t mutex;
     pthread_cond_t work, done;
 };
-
-typedef struct encode_thread {
-    camber_encode_queue *queue;
-    size_t number;
-} encode_thread;
-
-static double clock_ms(clockid_t clock) {
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 /* ---- One tile ---- */
 
@@ -154,11 +140,8 @@ static void give_way(void) {
     }
 }
 
-static void *run_thread(void *user) {
-    const encode_thread *self = user;
-    camber_encode_queue *queue = self->queue;
-    const size_t number = self->number;
-    camber_free(queue->workers->contexts[number], user);
+static void run_thread(void *user, size_t number) {
+    camber_encode_queue *queue = user;
     give_way();
     pthread_mutex_lock(&queue->mutex);
     while (!queue->stops) {
@@ -169,22 +152,6 @@ static void *run_thread(void *user) {
             pthread_cond_wait(&queue->work, &queue->mutex);
     }
     pthread_mutex_unlock(&queue->mutex);
-    return NULL;
-}
-
-/* One thread more is no use where one is all that there may be: its caller encodes. */
-static void start_threads(camber_encode_queue *queue) {
-    for (size_t i = 0; queue->workers->count > 1 && i < queue->workers->count; i++) {
-        encode_thread *self = camber_alloc(queue->workers->contexts[i], 1, sizeof *self);
-        if (!self)
-            return;
-        *self = (encode_thread){queue, i};
-        if (pthread_create(&queue->threads[queue->thread_count], NULL, run_thread, self) != 0) {
-            camber_free(queue->workers->contexts[i], self);
-            return;
-        }
-        queue->thread_count++;
-    }
 }
 
 /* ---- The queue ---- */
@@ -220,8 +187,7 @@ camber_status camber_encode_queue_create(camber_workers *workers, const camber_e
     camber_status status = CAMBER_ERROR_MEMORY;
     const size_t jobs = workers->count == 1 ? 1 : 2 + (workers->count + 7) / 8;
     if (!(made->encoders = camber_alloc_zero(context, workers->count, sizeof(camber_encoder *))) ||
-        !(made->meshes = camber_alloc_zero(context, workers->count, sizeof *made->meshes)) ||
-        !(made->threads = camber_alloc(context, workers->count, sizeof *made->threads)))
+        !(made->meshes = camber_alloc_zero(context, workers->count, sizeof *made->meshes)))
         goto done;
     for (made->job_count = 0; made->job_count < jobs && made->job_count < MOST_JOBS; made->job_count++)
         if (!make_place(context, picture_bytes, &made->jobs[made->job_count]))
@@ -232,7 +198,8 @@ done:
         camber_encode_queue_destroy(made);
         return status;
     }
-    start_threads(made);
+    if (workers->count > 1)
+        camber_threads_start(&made->threads, workers->count, run_thread, made);
     *queue = made;
     return CAMBER_OK;
 }
@@ -245,8 +212,7 @@ void camber_encode_queue_destroy(camber_encode_queue *queue) {
     queue->stops = true;
     pthread_cond_broadcast(&queue->work);
     pthread_mutex_unlock(&queue->mutex);
-    for (size_t i = 0; i < queue->thread_count; i++)
-        pthread_join(queue->threads[i], NULL);
+    camber_threads_join(&queue->threads);
     for (size_t i = 0; queue->encoders && i < queue->workers->count; i++)
         camber_encoder_destroy(queue->encoders[i]);
     for (size_t i = 0; queue->meshes && i < queue->workers->count; i++)
@@ -260,7 +226,6 @@ void camber_encode_queue_destroy(camber_encode_queue *queue) {
     pthread_cond_destroy(&queue->done);
     pthread_cond_destroy(&queue->work);
     pthread_mutex_destroy(&queue->mutex);
-    camber_free(context, queue->threads);
     camber_free(context, queue->encoders);
     camber_free(context, queue->meshes);
     camber_free(context, queue);
@@ -279,10 +244,10 @@ void camber_encode_queue_put(camber_encode_queue *queue, camber_encode_job *job)
         job->left++;
     queue->put++;
     pthread_cond_broadcast(&queue->work);
-    const double start_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID);
-    while (queue->thread_count == 0 && job->waiting)
+    const double start_ms = camber_clock_ms(CLOCK_THREAD_CPUTIME_ID);
+    while (queue->threads.count == 0 && job->waiting)
         work_on(queue, 0, job);
-    queue->times.cpu_ms += queue->thread_count == 0 ? clock_ms(CLOCK_THREAD_CPUTIME_ID) - start_ms : 0.0;
+    queue->times.cpu_ms += queue->threads.count == 0 ? camber_clock_ms(CLOCK_THREAD_CPUTIME_ID) - start_ms : 0.0;
     pthread_mutex_unlock(&queue->mutex);
 }
 
@@ -315,10 +280,10 @@ camber_encode_times camber_encode_queue_get_times(camber_encode_queue *queue) {
     pthread_mutex_lock(&queue->mutex);
     camber_encode_times times = queue->times;
     pthread_mutex_unlock(&queue->mutex);
-    for (size_t i = 0; i < queue->thread_count; i++) {
+    for (size_t i = 0; i < queue->threads.count; i++) {
         clockid_t clock;
-        if (pthread_getcpuclockid(queue->threads[i], &clock) == 0)
-            times.cpu_ms += clock_ms(clock);
+        if (pthread_getcpuclockid(queue->threads.threads[i].id, &clock) == 0)
+            times.cpu_ms += camber_clock_ms(clock);
     }
     return times;
 }

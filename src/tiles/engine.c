@@ -86,7 +86,7 @@ camber_status camber_tiles_engine_create(const camber_features *features, const 
     return status;
 }
 
-void camber_tiles_engine_forget(camber_tiles_engine *engine, int zoom) {
+void camber_engine_forget_zoom(camber_tiles_engine *engine, int zoom) {
     if (zoom < 0 || zoom > CAMBER_LARGEST_TILE_ZOOM)
         return;
     camber_census_free(&engine->zooms[zoom].census);
@@ -103,7 +103,7 @@ void camber_tiles_engine_destroy(camber_tiles_engine *engine) {
         return;
     camber_mesh_destroy(engine->mesh);
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
-        camber_tiles_engine_forget(engine, zoom);
+        camber_engine_forget_zoom(engine, zoom);
     camber_workers_free(&engine->workers);
     camber_free(engine->context, engine);
 }
@@ -183,7 +183,7 @@ camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, cam
             status = find_background(engine, it);
         }
         if (status != CAMBER_OK)
-            camber_tiles_engine_forget(engine, zoom);
+            camber_engine_forget_zoom(engine, zoom);
     }
     engine->census_ms += camber_now_ms() - start_ms;
     *planned = it;
@@ -198,7 +198,7 @@ camber_status camber_engine_open_zoom(camber_tiles_engine *engine, int zoom, cam
                                     camber_engine_side(engine, census_zoom(engine, zoom)), &engine->workers,
                                     &(*opened)->census);
     if (status != CAMBER_OK)
-        camber_tiles_engine_forget(engine, zoom);
+        camber_engine_forget_zoom(engine, zoom);
     engine->census_ms += camber_now_ms() - start_ms;
     return status;
 }

@@ -25,6 +25,8 @@ struct camber_tiles_engine {
     double census_ms, make_ms, draw_ms;
 };
 
+/* Forgets what is kept of a zoom. */
+void camber_engine_forget_zoom(camber_tiles_engine *engine, int zoom);
 /* Evaluates the style for the zoom, unless that is done. */
 camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **planned);
 /* Does the same, and takes the census of the zoom. */

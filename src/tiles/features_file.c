@@ -16,7 +16,6 @@
 #include "archive/contents.h"
 #include "archive/output_file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -214,7 +213,7 @@ static camber_status put_polylines(stream *to, const camber_features *f) {
 
 camber_status camber_features_save(const camber_features *features, uint64_t input, const char *path, bool force) {
     camber_context *context = features->context;
-    camber_output_file output;
+    camber_whole_file output;
     json_t *json = make_json(features);
     char *text = json ? json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(json);
@@ -236,7 +235,7 @@ camber_status camber_features_save(const camber_features *features, uint64_t inp
             status = put(&to, text, strlen(text));
         if (status == CAMBER_OK)
             status = put_polylines(&to, features);
-        status = camber_output_end(&output, status, force);
+        status = camber_output_end(context, &output, status, force);
     }
     free(text);
     return status;
@@ -253,14 +252,10 @@ static camber_status fail_damaged(const stream *from) {
 static camber_status get(stream *from, void *bytes, uint64_t size_bytes) {
     if (size_bytes > from->size_bytes - from->at)
         return fail_damaged(from);
-    for (uint64_t done = 0; done < size_bytes;) {
-        const ssize_t got = pread(from->file, (char *)bytes + done, size_bytes - done, (off_t)(from->at + done));
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0)
-            return got < 0 ? camber_file_fail(from->context, from->path, errno) : fail_damaged(from);
-        done += (uint64_t)got;
-    }
+    size_t done;
+    const int cause = camber_file_read(from->file, bytes, size_bytes, from->at, &done);
+    if (cause || done < size_bytes)
+        return cause ? camber_file_fail(from->context, from->path, cause) : fail_damaged(from);
     from->at += size_bytes;
     if (size_bytes)
         from->hash = camber_mix(from->hash, camber_content_hash(bytes, size_bytes));

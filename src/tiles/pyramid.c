@@ -214,7 +214,7 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
     while (status == CAMBER_OK && p->engine->desc.meshes && camber_encode_queue_is_busy(p->queue))
         status = write_ready(p, true); /* meshes are encoded by the zoom's plan */
     if (status == CAMBER_OK)
-        camber_tiles_engine_forget(p->engine, s->tasks[first].zoom);
+        camber_engine_forget_zoom(p->engine, s->tasks[first].zoom);
     return status;
 }
 
@@ -318,7 +318,7 @@ static camber_status try_all(pyramid *p) {
         const double more = all > 0.0 ? TRIED_MORE * guess_all(s, i, end) / all : 0.0;
         status = try_zoom(p, i, end, p->desc->schedule_path ? 0 : TRIED_EACH + (size_t)(more + 0.5));
         if (status == CAMBER_OK)
-            camber_tiles_engine_forget(p->engine, s->tasks[i].zoom);
+            camber_engine_forget_zoom(p->engine, s->tasks[i].zoom);
     }
     p->stats.tiles = p->stats.background = 0;
     for (size_t i = 0; i < s->count; i++)
@@ -639,7 +639,7 @@ camber_status camber_tiles_draw(camber_tiles_engine *engine, const camber_tiles_
     camber_tiles_area_free(&p.area);
     camber_free(p.context, p.blank);
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
-        camber_tiles_engine_forget(engine, zoom);
+        camber_engine_forget_zoom(engine, zoom);
     p.stats.census_ms += engine->census_ms;
     p.stats.make_ms = engine->make_ms;
     p.stats.draw_ms = engine->draw_ms;

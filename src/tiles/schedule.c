@@ -183,7 +183,7 @@ camber_status camber_schedule_make(camber_tiles_engine *engine, const camber_til
         for (size_t i = 0; i < opened->census.metatile_count; i++)
             kept += opened->census.metatiles[i].end - opened->census.metatiles[i].first;
         if (kept > MOST_KEPT)
-            camber_tiles_engine_forget(engine, zoom);
+            camber_engine_forget_zoom(engine, zoom);
     }
     return status == CAMBER_OK ? camber_schedule_choose(schedule, 1, 1) : status;
 }

@@ -29,15 +29,10 @@ enum { PIECE_BYTES = 64 << 10, MOST_PIECES = 1024, TASK_TEXT = 128, NUMBERS = 7 
 
 static camber_status hash_piece(camber_context *context, const char *path, int file, uint64_t at, uint8_t *bytes,
                                 uint64_t *hash) {
-    size_t done = 0;
-    while (done < PIECE_BYTES) {
-        const ssize_t got = pread(file, bytes + done, PIECE_BYTES - done, (off_t)(at + done));
-        if (got < 0 && errno != EINTR)
-            return camber_file_fail(context, path, errno);
-        if (got == 0)
-            break;
-        done += got > 0 ? (size_t)got : 0;
-    }
+    size_t done;
+    const int cause = camber_file_read(file, bytes, PIECE_BYTES, at, &done);
+    if (cause)
+        return camber_file_fail(context, path, cause);
     *hash = camber_mix(*hash, camber_content_hash(bytes, done));
     return CAMBER_OK;
 }
@@ -111,7 +106,7 @@ static json_t *make_json(const camber_tiles_schedule *s) {
 
 camber_status camber_schedule_write(const camber_tiles_schedule *schedule, const char *path, bool force) {
     camber_context *context = schedule->context;
-    camber_output_file output;
+    camber_whole_file output;
     json_t *json = make_json(schedule);
     char *text = json ? json_dumps(json, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(json);
@@ -120,7 +115,7 @@ camber_status camber_schedule_write(const camber_tiles_schedule *schedule, const
     camber_status status = camber_output_begin(context, path, &output);
     if (status == CAMBER_OK) {
         status = camber_write_at(context, path, output.file, text, strlen(text), 0);
-        status = camber_output_end(&output, status, force);
+        status = camber_output_end(context, &output, status, force);
     }
     free(text);
     return status;

@@ -1,26 +1,20 @@
 #include "validate/picture_error.h"
 
-#include <pthread.h>
+#include "base/threads.h"
+
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <unistd.h>
 
-enum { SHARE_ROWS = 32, THREADS_MAX = 64 };
+enum { SHARE_ROWS = 32 };
 
+/* Shares are taken one after the other, whoever comes first: what is in them differs a lot. */
 typedef struct crew {
     const camber_picture_error_desc *desc;
     int shares;
     atomic_int next, done;
     atomic_bool failed;
+    camber_difference differences[CAMBER_MOST_THREADS][CAMBER_PICTURES_MAX]; /* of each thread */
 } crew;
-
-/* Shares are taken one after the other, whoever comes first: what is in them differs a lot. */
-typedef struct worker {
-    crew *crew;
-    pthread_t thread;
-    bool leads; /* the calling thread, which tells the progress */
-    camber_difference differences[CAMBER_PICTURES_MAX];
-} worker;
 
 /* The first pixel of the picture that differs most, whichever thread has met it. */
 static void add(camber_difference *sum, const camber_difference *more) {
@@ -29,8 +23,8 @@ static void add(camber_difference *sum, const camber_difference *more) {
     camber_difference_add(sum, more);
 }
 
-static bool measure_share(worker *w, int share, float *coverage) {
-    const camber_picture_error_desc *desc = w->crew->desc;
+static bool measure_share(const camber_picture_error_desc *desc, int share, float *coverage,
+                          camber_difference *differences) {
     const int y0 = share * SHARE_ROWS, height = desc->height - y0 < SHARE_ROWS ? desc->height - y0 : SHARE_ROWS;
     const camber_window window = {0, y0, desc->width, height};
     const size_t first = (size_t)y0 * (size_t)desc->width, count = (size_t)height * (size_t)desc->width;
@@ -39,51 +33,35 @@ static bool measure_share(worker *w, int share, float *coverage) {
     for (size_t i = 0; i < desc->picture_count; i++) {
         camber_difference d = camber_difference_of(coverage, desc->pictures[i] + first, count);
         d.max_at += first;
-        add(&w->differences[i], &d);
+        add(&differences[i], &d);
     }
     return true;
 }
 
-static void *work(void *user) {
-    worker *w = user;
-    crew *c = w->crew;
+static void work(void *user, size_t number) {
+    crew *c = user;
     float *coverage = malloc((size_t)c->desc->width * SHARE_ROWS * sizeof *coverage);
     if (!coverage)
         atomic_store(&c->failed, true);
     for (int share; !atomic_load(&c->failed) && (share = atomic_fetch_add(&c->next, 1)) < c->shares;) {
-        if (!measure_share(w, share, coverage))
+        if (!measure_share(c->desc, share, coverage, c->differences[number]))
             atomic_store(&c->failed, true);
         const int done = atomic_fetch_add(&c->done, 1) + 1;
-        if (w->leads && c->desc->progress)
+        if (number == 0 && c->desc->progress) /* on the calling thread */
             c->desc->progress(c->desc->user, (double)done / c->shares);
     }
     free(coverage);
-    return NULL;
-}
-
-static int threads_of(const camber_picture_error_desc *desc, int shares) {
-    const long cores = desc->threads ? (long)desc->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    const long least = cores < shares ? cores : shares;
-    return least < 1 ? 1 : least > THREADS_MAX ? THREADS_MAX : (int)least;
 }
 
 bool camber_picture_errors_measure(const camber_picture_error_desc *desc, camber_difference *differences) {
     crew c = {.desc = desc, .shares = (desc->height + SHARE_ROWS - 1) / SHARE_ROWS};
-    worker workers[THREADS_MAX] = {{.crew = &c, .leads = true}};
-    const int wanted = threads_of(desc, c.shares);
-    int made = 1;
-    for (; made < wanted; made++) {
-        workers[made].crew = &c;
-        if (pthread_create(&workers[made].thread, NULL, work, &workers[made]) != 0)
-            break; /* fewer do as well */
-    }
-    work(&workers[0]);
-    for (int i = 1; i < made; i++)
-        pthread_join(workers[i].thread, NULL);
+    const size_t most = camber_threads_count(desc->threads),
+                 threads = most < (size_t)c.shares ? most : (size_t)c.shares;
+    camber_threads_run(threads, work, &c);
     for (size_t i = 0; i < desc->picture_count; i++) {
         differences[i] = (camber_difference){0};
-        for (int k = 0; k < made; k++)
-            add(&differences[i], &workers[k].differences[i]);
+        for (size_t k = 0; k < threads; k++)
+            add(&differences[i], &c.differences[k][i]);
     }
     return !atomic_load(&c.failed);
 }

@@ -1,17 +1,12 @@
 #include "validate/results.h"
 
+#include "base/clock.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static double now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 camber_value_text camber_value_print(double value) {
     camber_value_text made;
@@ -43,7 +38,7 @@ bool camber_results_group(camber_results *results, const char *format, ...) {
 /* ---- Checks ---- */
 
 camber_check camber_check_start(const char *device, const char *backend, const char *format, ...) {
-    camber_check check = {.device = device, .backend = backend, .start_ms = now_ms()};
+    camber_check check = {.device = device, .backend = backend, .start_ms = camber_now_ms()};
     va_list list;
     va_start(list, format);
     vsnprintf(check.name, sizeof check.name, format, list);
@@ -67,7 +62,7 @@ void camber_results_add(camber_results *results, const camber_check *check) {
     }
     camber_check *kept = &results->list[results->count++];
     *kept = *check;
-    kept->ms = now_ms() - kept->start_ms;
+    kept->ms = camber_now_ms() - kept->start_ms;
     if (results->listener.check)
         results->listener.check(results->listener.user, kept, results->count);
 }

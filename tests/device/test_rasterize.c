@@ -393,30 +393,6 @@ static void test_spills(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
-static void test_steps(void **state) {
-    const fixture *e = *state;
-    drawing d = begin_drawing();
-    camber_scene_add_rings(&d.lines, &(uint64_t){5});
-    for (int i = 0; i < 2; i++) {
-        camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
-        d.frame.largest_area_px = i ? 96 : 0;
-        const camber_frame *frame = end_drawing(&d, mesh, 2);
-        picture whole = picture_draw(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), p = whole;
-        p.rgba = malloc(4 * (size_t)p.width * p.height);
-        p.rows = 0;
-        assert_non_null(p.rgba);
-        assert_int_equal(camber_renderer_begin(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), CAMBER_OK);
-        assert_int_equal(camber_renderer_begin(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), CAMBER_OK);
-        assert_int_equal(camber_renderer_end(e->on.renderer[CAMBER_FIXTURE_OPENCL], picture_rows, &p, NULL), CAMBER_OK);
-        picture_assert_same(&whole, &p);
-        assert_int_equal(camber_renderer_end(e->on.renderer[CAMBER_FIXTURE_OPENCL], NULL, NULL, NULL), CAMBER_OK);
-        picture_free(&whole);
-        picture_free(&p);
-        camber_mesh_destroy(mesh);
-    }
-    camber_made_scene_free(&d.lines);
-}
-
 /* Vectors of every width, whatever the device has: the bytes of the device's own width, which test_twin compares with
  * the twin's, and the same picture, in slices too. */
 static void compare_lanes(const fixture *e, uint32_t lanes) {
@@ -532,11 +508,12 @@ static void test_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),   cmocka_unit_test(test_lanes),         cmocka_unit_test(test_groups),
-        cmocka_unit_test(test_gl),     cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),
-        cmocka_unit_test(test_steps),  cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_slices), cmocka_unit_test(test_bound),         cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_spills),
+        cmocka_unit_test(test_twin),          cmocka_unit_test(test_lanes),
+        cmocka_unit_test(test_groups),        cmocka_unit_test(test_gl),
+        cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_slices),        cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_refused),       cmocka_unit_test(test_spills),
     };
     return FIXTURE_CL_RUN(tests);
 }

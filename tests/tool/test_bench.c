@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #define MADE CAMBER_BENCH_OUT "/made.json"
+#define KEPT CAMBER_BENCH_OUT "/kept.json"
 #define OLD CAMBER_BENCH_OUT "/old.json"
 #define AGAIN CAMBER_BENCH_OUT "/again.json"
 #define SAID CAMBER_BENCH_OUT "/said.txt"
@@ -169,7 +170,7 @@ static void check_many(const json_t *document) {
 
 static void test_document(void **state) {
     (void)state;
-    assert_int_equal(run("--tiny --json '" MADE "'"), 0);
+    assert_int_equal(run("--tiny --json '" MADE "' --keep '" KEPT "'"), 0);
     json_t *document = load(MADE);
     assert_true(strlen(json_string_value(json_object_get(document, "date"))) == 20);
     assert_non_null(json_object_get(json_object_get(document, "device"), "driver"));
@@ -300,14 +301,18 @@ static void write_second(void) {
     json_decref(document);
 }
 
+static void read_readme(char *text, size_t size) {
+    FILE *file = fopen(README, "r");
+    assert_non_null(file);
+    text[fread(text, 1, size - 1, file)] = 0;
+    fclose(file);
+}
+
 /* Publishes MADE and OLD into a file of that text, and reads it back. */
 static void publish(const char *before, char *after, size_t size) {
     write_text(README, before);
     assert_int_equal(run("--readme '" MADE "' '" OLD "' '" README "'"), 0);
-    FILE *file = fopen(README, "r");
-    assert_non_null(file);
-    after[fread(after, 1, size - 1, file)] = 0;
-    fclose(file);
+    read_readme(after, size);
     assert_null(strstr(after, "\nold\n"));
     assert_null(strstr(after, "nan"));
     for (const char *line = after; *line; line += strcspn(line, "\n") + 1)
@@ -358,6 +363,39 @@ static void test_readme(void **state) {
     assert_int_equal(run("--readme '" MADE "'"), 2);
 }
 
+/* KEPT, which has less, makes the same tables as MADE. Its figures are those of MADE, and the comparison finds them. */
+static void test_kept(void **state) {
+    static const char text[] = "<!-- frames: made by ./dev bench --readme -->\n<!-- /frames -->\n"
+                               "<!-- areas: made by ./dev bench --readme -->\n<!-- /areas -->\n"
+                               "<!-- measured: made by ./dev bench --readme -->\n<!-- /measured -->\n";
+    (void)state;
+    char made[32768], kept[32768];
+    write_text(README, text);
+    assert_int_equal(shell("cp '" MADE "' '" AGAIN "'"), 0); /* the tables name the file that they are made of */
+    assert_int_equal(run("--readme '" AGAIN "' '" README "'"), 0);
+    read_readme(made, sizeof made);
+    write_text(README, text);
+    assert_int_equal(shell("cp '" KEPT "' '" AGAIN "'"), 0);
+    assert_int_equal(run("--readme '" AGAIN "' '" README "'"), 0);
+    read_readme(kept, sizeof kept);
+    assert_string_equal(made, kept);
+    assert_int_equal(shell("test $(wc -l < '" KEPT "') -lt $(($(wc -l < '" MADE "') / 5))"), 0);
+    json_t *all = load(MADE), *document = load(KEPT), *figure;
+    const json_t *figures = json_object_get(section_of(all, "stages"), "figures");
+    size_t i;
+    json_array_foreach(figures, i, figure) {
+        const char *against = json_string_value(json_object_get(figure, "against"));
+        const json_t *value = json_object_get(section_of(document, "stages"), "figures");
+        value = json_object_get(value, json_string_value(json_object_get(figure, "item")));
+        value = json_object_get(value, json_string_value(json_object_get(figure, "what")));
+        assert_true(number_of(value, against ? against : "") == number_of(figure, "value"));
+    }
+    assert_true(i > 0);
+    assert_int_equal(run("--tiny --section stages --against '" KEPT "'") & ~1, 0);
+    json_decref(document);
+    json_decref(all);
+}
+
 /* The numbers of a document of the tree are what the results of the tree say: made again, it is the same. */
 static void test_documents(void **state) {
     static const char *const paths[] = {"README.md", "docs/areas.md", "docs/performance.md"};
@@ -380,6 +418,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_document),     cmocka_unit_test(test_machine),
                                        cmocka_unit_test(test_loss),         cmocka_unit_test(test_gain),
                                        cmocka_unit_test(test_incomparable), cmocka_unit_test(test_readme),
-                                       cmocka_unit_test(test_documents)};
+                                       cmocka_unit_test(test_kept),         cmocka_unit_test(test_documents)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -196,6 +196,15 @@ for verb in '' render tessellate compare validate bench info; do
         sed 's/\\-/-/g' "$here/../src/cli/camber.1" | grep -q -e "$option\b" || fail "the man page lacks $option"
     done <"$tmp/options"
 done
+# A verb's help has the words that the verb takes, and not the former names of options.
+expect 0 "help of render, for its formats" render --help
+has "$tmp/stdout" '^      --format png|png8|webp  '
+lacks "$tmp/stdout" 'glb'
+expect 0 "help of tessellate, for its format" tessellate --help
+has "$tmp/stdout" '^      --format glb  '
+expect 0 "help of all verbs, for former names" --help
+has "$tmp/stdout" '--renew FILE' '--shard-count N' '--cache-memory SIZE' '--format png|png8|webp|glb'
+lacks "$tmp/stdout" '--tiles \|--shards \|--cache '
 expect 0 "version" --version
 has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "version of a verb" render --version

@@ -107,7 +107,7 @@ def cases():
     yield ["camber", "te"], ["tessellate"], ["render"]
     yield ["camber", "help", ""], ["render", "bench"], ["roads.gpkg"]
     yield ["camber", "render", ""], ["roads.gpkg", "two words.json"], ["render", "--size"]
-    yield ["camber", "render", "--format", ""], ["png", "png8", "webp", "glb"], ["roads.gpkg"]
+    yield ["camber", "render", "--format", ""], ["png", "png8", "webp"], ["roads.gpkg"]
     yield ["camber", "render", "--format", "p"], ["png", "png8"], ["glb"]
     yield ["camber", "render", "roads.gpkg", "--method", ""], ["strip", "kite", "fan"], ["roads.gpkg"]
     yield ["camber", "validate", "--backend", ""], ["auto", "egl", "osmesa"], ["gl"]
@@ -170,7 +170,7 @@ def test_zsh():
     zsh = Zsh()
     for words, has, lacks in cases():
         check("zsh", words, [word.split()[-1] for word in has], lacks, zsh.complete(words))
-    check("zsh", "--format=", ["png", "glb"], ["roads.gpkg"], zsh.complete(["camber", "render", "--format="]))
+    check("zsh", "--format=", ["png", "webp"], ["roads.gpkg", "glb"], zsh.complete(["camber", "render", "--format="]))
     check("zsh", "--root", [], ["roads.gpkg"], zsh.complete(["camber", "render", "--root", ""]))
     for verb in ("render", "compare", "validate", "info"):
         found = {word.rstrip("=") for word in zsh.complete(["camber", verb, "--"])}

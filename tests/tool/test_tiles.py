@@ -341,7 +341,7 @@ def test_auto():
                ({"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3", "SLURM_PROCID": "0"}, (), "2-of-3"),
                ({"PMI_RANK": "0", "PMI_SIZE": "2"}, (), "1-of-2"),
                ({"SLURM_PROCID": "1", "SLURM_NTASKS": "2"}, (), "2-of-2"),
-               ({"JOB_COMPLETION_INDEX": "2"}, ("--shards", "5"), "3-of-5"),
+               ({"JOB_COMPLETION_INDEX": "2"}, ("--shard-count", "5"), "3-of-5"),
                ({"AWS_BATCH_JOB_ARRAY_INDEX": "0"}, ("--shards", "2"), "1-of-2")]
     for variables, more, part in engines:
         tiles(*common, *more, env={**ENVIRONMENT, **variables})
@@ -349,16 +349,16 @@ def test_auto():
         os.unlink(f"auto.{part}.pmtiles")
     tiles(*common, status=2)
     tiles(*common, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
-    tiles(*common, "--shards", 2, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
+    tiles(*common, "--shard-count", 2, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
     tiles(*common, status=2, env={**ENVIRONMENT, "PMI_RANK": "x", "PMI_SIZE": "2"})
     # Some of the parts: whether 3 is the third or the fourth nobody can tell.
     array = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_ARRAY_TASK_MIN": "3", "SLURM_ARRAY_TASK_MAX": "7",
              "SLURM_ARRAY_TASK_COUNT": "2", "SLURM_ARRAY_TASK_STEP": "1"}
-    for more in (("--shards", 8), ("--shards", 2), ()):
+    for more in (("--shard-count", 8), ("--shard-count", 2), ()):
         done = tiles(*common, *more, status=2, env={**ENVIRONMENT, **array})
         expect("--shard K/N" in done.stderr and not glob.glob("auto.*"), f"{more}: {done.stderr}")
-    tiles(*common, "--shards", 8, status=2, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_MAX": "4"})
-    tiles(*common, "--shards", 8, status=2, env={**ENVIRONMENT, "OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"})
+    tiles(*common, "--shard-count", 8, status=2, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_MAX": "4"})
+    tiles(*common, "--shard-count", 8, status=2, env={**ENVIRONMENT, "OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"})
     tiles(*common, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_STEP": "4"})
     expect(glob.glob("auto.*") == ["auto.1-of-2.pmtiles"], glob.glob("auto.*"))
 
@@ -454,10 +454,10 @@ def test_other_run():
     tiles("lines.geojson", "-o", "there.pmtiles", "--style", style, "--max-zoom", 8)
     with open("list", "w") as file:
         file.write("8/134/86\n")
-    line = tiles("lines.geojson", "-o", "there.pmtiles", "--tiles", "list", status=65).stderr
+    line = tiles("lines.geojson", "-o", "there.pmtiles", "--renew", "list", status=65).stderr
     expect("style" in line, line)
     tiles("lines.geojson", "-o", "there.pmtiles", "--style", style, "--max-zoom", 8, status=73)
-    tiles("lines.geojson", "-o", "missing.pmtiles", "--style", style, "--tiles", "list", status=66)
+    tiles("lines.geojson", "-o", "missing.pmtiles", "--style", style, "--renew", "list", status=66)
 
 
 def test_renew():
@@ -476,7 +476,7 @@ def test_renew():
     listed = [(ZOOM, COLUMN + 2, ROW + 1), (ZOOM, COLUMN - 3, ROW - 2), (ZOOM, COLUMN + 20, ROW)]
     with open("list", "w") as file:
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
-    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "list").stderr
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
     expect(re.search(r"^1 tile taken out", said, re.M) and "1 tile of the list lies outside" in said, said)
     made = archive("map.mbtiles")
     wanted = {**old, **{key: new.get(key) for key in listed}}
@@ -485,43 +485,43 @@ def test_renew():
     with open("list", "w") as file:
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in {**old, **new})
     for name in ("map.mbtiles", "map.mbtiles"):
-        tiles(*options, "-o", name, "--tiles", "list")
+        tiles(*options, "-o", name, "--tiles", "list")  # the former name of --renew
         expect(archive(name) == new, "all tiles renewed are not all tiles drawn")
-    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "list").stderr
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
     expect("taken out" not in said and "left out" not in said, said)
     with open("outside", "w") as file:
         file.write(f"{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2000}/{ROW}\n2/1/1\n")
-    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside").stderr
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside").stderr
     expect("2 tiles of the list lie outside" in said and archive("map.mbtiles") == new, said)
     camber("tiles", "verify", "map.mbtiles")
     with open("outside", "w") as file:
         file.write("2/1/1\n")
-    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside").stderr
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside").stderr
     expect("1 tile of the list lies outside" in said and "nothing to renew" in said, said)
     # Zooms that are named, or a box: they say what the archive is to have.
     with open("outside", "w") as file:
         file.write(f"2/2/1\n{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2}/{ROW + 1}\n")
-    said = camber("tiles", *options, "-o", "map.mbtiles", "--tiles", "outside", *RANGE).stderr
+    said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside", *RANGE).stderr
     expect("1 tile of the list lies outside" in said and archive("map.mbtiles") == new, said)
     tiles(*options, "-o", "wider.mbtiles", *RANGE)
-    said = camber("tiles", *options, "-o", "wider.mbtiles", "--tiles", "outside", "--min-zoom", 0, "--max-zoom", 20).stderr
+    said = camber("tiles", *options, "-o", "wider.mbtiles", "--renew", "outside", "--min-zoom", 0, "--max-zoom", 20).stderr
     expect("outside" not in said and (2, 2, 1) in archive("wider.mbtiles"), said)
     write_lines("far.geojson", after + [(1, [(COLUMN + 31.5, ROW + 1.5), (COLUMN + 33.5, ROW + 1.5)])])
     with open("outside", "w") as file:
         file.write(f"{ZOOM}/{COLUMN + 32}/{ROW + 1}\n")
     far, box = ("far.geojson", *options[1:]), [*place(COLUMN - 50, ROW + 50), *place(COLUMN + 50, ROW - 50)]
-    said = camber("tiles", *far, "-o", "wider.mbtiles", "--tiles", "outside").stderr
+    said = camber("tiles", *far, "-o", "wider.mbtiles", "--renew", "outside").stderr
     expect("nothing to renew" in said and (ZOOM, COLUMN + 32, ROW + 1) not in archive("wider.mbtiles"), said)
-    tiles(*far, "-o", "wider.mbtiles", "--tiles", "outside", "--bbox", ",".join(map(str, box)))
+    tiles(*far, "-o", "wider.mbtiles", "--renew", "outside", "--bbox", ",".join(map(str, box)))
     expect((ZOOM, COLUMN + 32, ROW + 1) in archive("wider.mbtiles"), "a tile of the box that is named")
     camber("tiles", "verify", "wider.mbtiles")
     # Another input, by mistake: it would empty the archive.
     write_lines("far.geojson", [(1, [(COLUMN + 901.5, ROW + 1.5), (COLUMN + 903.5, ROW + 1.5)])])
-    said = tiles("far.geojson", *options[1:], "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
+    said = tiles("far.geojson", *options[1:], "-o", "map.mbtiles", "--renew", "list", status=65).stderr
     expect("lies outside of its bounds" in said and archive("map.mbtiles") == new, said)
     with open("list", "w") as file:
         file.write("13/1/1\n13/1\n")
-    line = tiles(*options, "-o", "map.mbtiles", "--tiles", "list", status=65).stderr
+    line = tiles(*options, "-o", "map.mbtiles", "--renew", "list", status=65).stderr
     expect("line 2" in line, line)
 
 
@@ -751,8 +751,8 @@ def test_usage():
            ([*good, "--quality", "50"], "--quality"), ([*good, "--tile", "3/8/0"], "--tile"),
            ([*good, "--tile", "3/1"], "--tile"), ([*good, "--tile", "3/1/1", "--max-zoom", "4"], "--tile"),
            ([*good, "--shard", "0/3"], "--shard"), ([*good, "--shard", "4/3"], "--shard"),
-           ([*good, "--shard", "a"], "--shard"), ([*good, "--shards", "3"], "--shards"),
-           ([*good, "--bbox", "1,2,3"], "--bbox"), ([*good, "--tiles", "list", "--resume"], "--tiles"),
+           ([*good, "--shard", "a"], "--shard"), ([*good, "--shard-count", "3"], "--shard-count"),
+           ([*good, "--bbox", "1,2,3"], "--bbox"), ([*good, "--renew", "list", "--resume"], "--renew"),
            ([*good, "--center", "1,1"], "--center"), (["shwo", "x.pmtiles"], "show, verify, merge"),
            (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]
     for arguments, word in bad:

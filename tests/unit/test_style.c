@@ -478,11 +478,6 @@ static void test_builtin(void **state) {
         assert_false(f.style->wants_polygons || f.style->directed || f.style->wants_all_properties);
         check_city(f.style);
         check_city_roads(which);
-        camber_style_leave_out_areas(f.style);
-        assert_false(f.style->wants_areas);
-        char ids[256];
-        assert_string_equal(drawn_by(f.style, CAMBER_LAYER_FILL, "", "natural=water", ids), "");
-        assert_string_equal(drawn_by(f.style, CAMBER_LAYER_LINE, "", "railway=rail", ids), "rail");
         teardown(&f);
     }
 }

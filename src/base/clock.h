@@ -1,0 +1,28 @@
+/* The clock. Inline, because the tool, the server and the checks measure time, too, and libcamber hides its own. */
+#ifndef CAMBER_BASE_CLOCK_H
+#define CAMBER_BASE_CLOCK_H
+
+#include <time.h>
+
+/* Milliseconds of a clock; 0 if it has gone. */
+static inline double camber_clock_ms(clockid_t clock) {
+    struct timespec now;
+    return clock_gettime(clock, &now) == 0 ? (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6 : 0.0;
+}
+
+/* Milliseconds of a monotonic clock. */
+static inline double camber_now_ms(void) {
+    return camber_clock_ms(CLOCK_MONOTONIC);
+}
+
+/* The time of day in so many milliseconds, up to which pthread_cond_timedwait waits. */
+static inline struct timespec camber_time_in(long ms) {
+    struct timespec end;
+    clock_gettime(CLOCK_REALTIME, &end);
+    end.tv_nsec += ms % 1000 * 1000000L;
+    end.tv_sec += ms / 1000 + end.tv_nsec / 1000000000L;
+    end.tv_nsec %= 1000000000L;
+    return end;
+}
+
+#endif

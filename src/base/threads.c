@@ -1,0 +1,47 @@
+#include "base/threads.h"
+
+#include <unistd.h>
+
+size_t camber_threads_count(size_t asked) {
+    const long cores = asked ? 0 : sysconf(_SC_NPROCESSORS_ONLN);
+    const size_t wanted = cores > 0 ? (size_t)cores : asked ? asked : 1;
+    return wanted < CAMBER_MOST_THREADS ? wanted : CAMBER_MOST_THREADS;
+}
+
+static void *run_one(void *user) {
+    const camber_thread *self = user;
+    self->work(self->user, self->number);
+    return NULL;
+}
+
+/* Starts the threads of the numbers from first on, up to count. */
+static void start_from(camber_threads *threads, size_t first, size_t count, void (*work)(void *user, size_t number),
+                       void *user) {
+    threads->count = 0;
+    for (size_t number = first; number < count && threads->count < CAMBER_MOST_THREADS; number++) {
+        camber_thread *made = threads->threads + threads->count;
+        *made = (camber_thread){.work = work, .user = user, .number = number};
+        if (pthread_create(&made->id, NULL, run_one, made) != 0)
+            return;
+        threads->count++;
+    }
+}
+
+void camber_threads_start(camber_threads *threads, size_t count, void (*work)(void *user, size_t number), void *user) {
+    start_from(threads, 0, count, work, user);
+}
+
+void camber_threads_join(camber_threads *threads) {
+    for (size_t i = 0; i < threads->count; i++)
+        pthread_join(threads->threads[i].id, NULL);
+    threads->count = 0;
+}
+
+void camber_threads_run(size_t count, void (*work)(void *user, size_t number), void *user) {
+    camber_threads threads;
+    start_from(&threads, 1, count, work, user);
+    work(user, 0);
+    for (size_t number = 1 + threads.count; number < count; number++)
+        work(user, number);
+    camber_threads_join(&threads);
+}

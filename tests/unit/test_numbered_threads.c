@@ -1,0 +1,91 @@
+/* Threads with numbers, also if the system has fewer than are wanted: pthread_create is wrapped, and refuses from some
+ * call on. */
+#include "base/threads.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static int allowed;
+
+int __real_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
+int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
+int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user) {
+    return allowed-- > 0 ? __real_pthread_create(id, how, work, user) : EAGAIN;
+}
+
+typedef struct calls {
+    atomic_int of[CAMBER_MOST_THREADS + 8];
+    pthread_t by[CAMBER_MOST_THREADS + 8];
+    pthread_mutex_t gate; /* held until all may end */
+    bool waits;
+} calls;
+
+static void work(void *user, size_t number) {
+    calls *c = user;
+    atomic_fetch_add(&c->of[number], 1);
+    c->by[number] = pthread_self();
+    if (c->waits) {
+        pthread_mutex_lock(&c->gate);
+        pthread_mutex_unlock(&c->gate);
+    }
+}
+
+static void run(size_t count, int threads) {
+    static calls c;
+    c = (calls){.waits = false};
+    allowed = threads;
+    camber_threads_run(count, work, &c);
+    for (size_t i = 0; i < sizeof c.of / sizeof *c.of; i++)
+        assert_int_equal(c.of[i], i < count);
+    for (size_t i = 0; i < count; i++) /* number 0, and those without a thread of their own */
+        assert_int_equal(pthread_equal(c.by[i], pthread_self()) != 0, i == 0 || i > (size_t)threads);
+}
+
+static void test_run(void **state) {
+    (void)state;
+    run(1, 8);
+    run(5, 8);
+    run(5, 2);
+    run(5, 0);
+    run(CAMBER_MOST_THREADS, 10);
+    run(CAMBER_MOST_THREADS + 8, 3);
+}
+
+static void test_start(void **state) {
+    (void)state;
+    static calls c;
+    camber_threads threads;
+    c = (calls){.waits = true};
+    allowed = 3;
+    pthread_mutex_init(&c.gate, NULL);
+    pthread_mutex_lock(&c.gate);
+    camber_threads_start(&threads, 6, work, &c);
+    assert_int_equal(threads.count, 3);
+    while (c.of[0] + c.of[1] + c.of[2] < 3) /* all of them run at the same time */
+        continue;
+    pthread_mutex_unlock(&c.gate);
+    camber_threads_join(&threads);
+    assert_int_equal(threads.count, 0);
+    assert_int_equal(c.of[3], 0);
+    camber_threads_join(&threads);
+    pthread_mutex_destroy(&c.gate);
+}
+
+static void test_count(void **state) {
+    (void)state;
+    assert_in_range(camber_threads_count(0), 1, CAMBER_MOST_THREADS);
+    assert_int_equal(camber_threads_count(7), 7);
+    assert_int_equal(camber_threads_count(1000000), CAMBER_MOST_THREADS);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_run), cmocka_unit_test(test_start),
+                                       cmocka_unit_test(test_count)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

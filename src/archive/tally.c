@@ -4,8 +4,8 @@
  * are kept and sorted. Memory: 24 bytes an entry. */
 #include "archive/tally.h"
 
+#include "archive/tile_schema.h"
 #include "camber_tiles.h"
-#include "source/schema.h"
 
 #include <sqlite3.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* for stat64, which VSIStatBufL is */
 #define _LARGEFILE64_SOURCE
 
+#include "archive/database.h"
 #include "base/embedded.h"
 #include "gdal/vector_file.h"
-#include "source/database.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>

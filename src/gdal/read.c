@@ -3,8 +3,8 @@
  * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and weighed, or an
  * error after which the set is as before. This is the module's entry: camber_gdal.
  */
+#include "features/gdal_calls.h"
 #include "gdal/vector_file.h"
-#include "source/gdal_calls.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>

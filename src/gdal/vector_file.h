@@ -2,11 +2,11 @@
 #ifndef CAMBER_GDAL_VECTOR_FILE_H
 #define CAMBER_GDAL_VECTOR_FILE_H
 
-#include "source/features.h"
-#include "source/osm_keys.h"
-#include "source/rings.h"
-#include "source/tile_stitcher.h"
-#include "source/world_lines.h"
+#include "features/features.h"
+#include "features/osm_keys.h"
+#include "features/rings.h"
+#include "features/tile_stitcher.h"
+#include "features/world_lines.h"
 
 #include <gdal.h>
 #include <ogr_api.h>

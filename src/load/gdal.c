@@ -3,10 +3,10 @@
  * that need GDAL in a module, and loads it with the first file that is read. The static library has them in itself. */
 #define _GNU_SOURCE /* dladdr */
 
+#include "features/gdal_calls.h"
+#include "formats/tile_reader.h"
 #include "osm/osm.h"
 #include "osm/xml_order.h"
-#include "source/gdal_calls.h"
-#include "source/tile_reader.h"
 
 #include <string.h>
 #include <sys/stat.h>

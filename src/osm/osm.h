@@ -2,7 +2,7 @@
 #ifndef CAMBER_OSM_OSM_H
 #define CAMBER_OSM_OSM_H
 
-#include "source/features.h"
+#include "features/features.h"
 
 /* Whether this reader is to try a file: a PBF of OpenStreetMap, of which the lines are wanted, all of them or those
  * that pass a filter as osm/where.h has it. */

@@ -10,15 +10,14 @@
  * coast's ways as well (coast.h). */
 #include "osm/osm.h"
 
+#include "features/mercator.h"
+#include "features/osm_keys.h"
+#include "features/rings.h"
+#include "features/world_lines.h"
 #include "osm/beyond.h"
 #include "osm/coast.h"
 #include "osm/nodes.h"
 #include "osm/packed.h"
-#include "source/mercator.h"
-#include "source/osm_keys.h"
-#include "source/rings.h"
-#include "source/tile_reader.h"
-#include "source/world_lines.h"
 
 #include <math.h>
 #include <unistd.h>

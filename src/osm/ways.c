@@ -6,7 +6,7 @@
  * block's sets to those of the file. */
 #include "osm/ways.h"
 
-#include "source/osm_keys.h"
+#include "features/osm_keys.h"
 
 #include <strings.h>
 

@@ -2,11 +2,11 @@
 #ifndef CAMBER_OSM_WAYS_H
 #define CAMBER_OSM_WAYS_H
 
+#include "features/features.h"
 #include "osm/blobs.h"
 #include "osm/node_set.h"
 #include "osm/relations.h"
 #include "osm/where.h"
-#include "source/features.h"
 
 /* The use that the reader has for a key of a tag. */
 typedef struct camber_osm_key {

@@ -3,8 +3,8 @@
 #include "tiles/fingerprint.h"
 
 #include "archive/contents.h"
-#include "source/features.h"
-#include "source/sprite.h"
+#include "features/features.h"
+#include "map/sprite.h"
 
 #include <inttypes.h>
 #include <stdio.h>

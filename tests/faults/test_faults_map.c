@@ -5,8 +5,8 @@
 #include "core.h"
 
 #include "camber_map.h"
+#include "features/features.h"
 #include "kernels/layout.h"
-#include "source/features.h"
 #include "tiles/mesh_tile.h"
 
 #include <cpl_conv.h>

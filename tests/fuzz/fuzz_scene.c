@@ -1,6 +1,6 @@
 #include "fuzz_scene.h"
 
-#include "source/rings.h"
+#include "features/rings.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* A style's source of GeoJSON, as it stands in the document. */
 #include "fuzz_scene.h"
 
-#include "source/features.h"
+#include "features/features.h"
 
 #include <math.h>
 #include <stdlib.h>

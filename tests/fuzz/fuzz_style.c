@@ -2,7 +2,7 @@
  * documents of one expression, as style eval takes them. */
 #include "fuzz_scene.h"
 
-#include "source/features.h"
+#include "features/features.h"
 #include "style/style.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* One vector tile: its layers, its pieces joined, and on to a scene. */
 #include "fuzz_scene.h"
 
-#include "source/mvt.h"
+#include "formats/mvt.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "pictures.h"
 
 #include "camber_tiles.h"
-#include "source/features.h"
+#include "features/features.h"
 
 #include <math.h>
 

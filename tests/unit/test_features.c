@@ -1,5 +1,5 @@
 /* The set of features: strings and classes are kept once, polylines where they were put; and memory that runs out. */
-#include "source/features.h"
+#include "features/features.h"
 
 #include <math.h>
 #include <setjmp.h>

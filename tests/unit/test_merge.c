@@ -2,7 +2,7 @@
  * GEOS where it is there. */
 #include "core.h"
 
-#include "source/features.h"
+#include "features/features.h"
 
 #include <math.h>
 

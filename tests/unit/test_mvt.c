@@ -1,5 +1,5 @@
 /* Vector tiles' messages: geometry, tags and values as they stand, and what is damaged counted. */
-#include "source/mvt.h"
+#include "formats/mvt.h"
 #include "tilemaker.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
  * small ones with whatever a file may have; and damaged files. GDAL reads the same file behind /vsisubfile/. */
 #include "file_reading.h"
 
+#include "features/mercator.h"
+#include "features/rings.h"
 #include "osm/osm.h"
-#include "source/mercator.h"
-#include "source/rings.h"
 
 #include "pbf_file.h"
 

@@ -1,8 +1,8 @@
 /* PBF files as osmium reads them: in whatever packing, order and shape they have the same features. */
 #include "file_reading.h"
 
+#include "features/rings.h"
 #include "osm/osm.h"
-#include "source/rings.h"
 
 #include "pbf_file.h"
 

@@ -2,7 +2,7 @@
  * order, as if it had never been cut. */
 #include "property.h"
 
-#include "source/tile_stitcher.h"
+#include "features/tile_stitcher.h"
 
 enum { ZOOM = 2, TILES = 3, TILE = 4096, BUFFER = 128, UNITS_A_PX = 96, POINTS_MAX = 4 * PROPERTY_POINTS };
 

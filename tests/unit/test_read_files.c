@@ -1,8 +1,8 @@
 /* Reading files: real ones against counts made by other programs, small ones written here, and bad ones. */
 #include "file_reading.h"
 
+#include "features/mercator.h"
 #include "gdal/vector_file.h"
-#include "source/mercator.h"
 
 #include <gdal_utils.h>
 

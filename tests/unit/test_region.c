@@ -3,8 +3,8 @@
 #include "file_reading.h"
 #include "indexed_files.h"
 
-#include "source/frontier.h"
-#include "source/mercator.h"
+#include "features/frontier.h"
+#include "features/mercator.h"
 #include "style/bounds.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Scenes: features under a view become polylines, rows, strokes, fills and networks. */
 #include "camber_map.h"
+#include "features/features.h"
 #include "lines/importance.h"
 #include "map/plan_network.h"
-#include "source/features.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* The sources that a style names: where they lead, which tiles a view sees, and what of them becomes lines. */
-#include "source/features.h"
-#include "source/mercator.h"
+#include "features/features.h"
+#include "features/mercator.h"
 #include "tilemaker.h"
 
 #include <dirent.h>

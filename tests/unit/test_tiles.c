@@ -1,5 +1,5 @@
 /* Pieces of vector tiles: cut at the border, joined across it, drawn once. */
-#include "source/tile_stitcher.h"
+#include "features/tile_stitcher.h"
 
 #include <math.h>
 #include <setjmp.h>

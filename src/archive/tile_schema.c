@@ -25,7 +25,7 @@ static bool is_told_by(size_t schema, const json_t *layer) {
     return field && json_object_get(json_object_get(layer, "fields"), field);
 }
 
-const char *camber_schema_of_layers(const json_t *layers) {
+const char *camber_tile_schema_of_layers(const json_t *layers) {
     for (size_t s = 0; s < sizeof schemas / sizeof *schemas; s++)
         for (size_t i = 0; i < json_array_size(layers); i++)
             if (is_told_by(s, json_array_get(layers, i)))

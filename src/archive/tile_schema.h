@@ -6,6 +6,6 @@
 
 /* layers: the array vector_layers of the metadata, objects with an "id" and maybe "fields"; NULL: none. Returns the
  * name of the schema and its version, or NULL. */
-const char *camber_schema_of_layers(const json_t *layers);
+const char *camber_tile_schema_of_layers(const json_t *layers);
 
 #endif

@@ -7,6 +7,7 @@
 #include "features/mercator.h"
 #include "lines/importance.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,12 +46,14 @@ static void free_value(camber_context *context, camber_value *value) {
     *value = (camber_value){0};
 }
 
-camber_status camber_features_create(camber_context *context, const camber_style *style, camber_features **features) {
+camber_status camber_features_create_for(camber_context *context, const camber_schema *schema,
+                                         const camber_style *style, camber_features **features) {
     camber_features *made = camber_alloc_zero(context, 1, sizeof *made);
     interner *set = made ? camber_alloc_zero(context, 1, sizeof *set) : NULL;
     if (!set)
         goto failed;
     made->context = context;
+    made->schema = schema;
     made->style = style;
     made->source = CAMBER_NO_SOURCE;
     made->interned = set;
@@ -135,66 +138,63 @@ static bool is_of_files(const camber_features *features) {
     return true;
 }
 
-static bool names_layers_of(const camber_style *one, const camber_style *other) {
-    for (size_t i = 0; i < other->layer_count; i++)
-        if (other->layers[i].source_layer && !camber_style_names_layer(one, other->layers[i].source_layer))
+bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer) {
+    for (size_t i = 0; i < schema->source_layer_count; i++)
+        if (strcmp(schema->source_layers[i], source_layer) == 0)
+            return true;
+    return false;
+}
+
+static bool names_layers_of(const camber_schema *one, const camber_schema *other) {
+    for (size_t i = 0; i < other->source_layer_count; i++)
+        if (!camber_schema_names_layer(one, other->source_layers[i]))
             return false;
     return true;
 }
 
-static bool reads_the_same(const camber_style *one, const camber_style *other) {
+static camber_property_readers readers_of(const camber_schema *schema, size_t property) {
+    return schema->property_readers ? schema->property_readers[property]
+                                    : (camber_property_readers){UINT_MAX, UINT_MAX};
+}
+
+static bool reads_the_same(const camber_schema *one, const camber_schema *other) {
     bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
                 one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
                 one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
                 one->wants_plain == other->wants_plain && one->wants_plain_areas == other->wants_plain_areas &&
                 one->wants_plain_points == other->wants_plain_points;
-    for (size_t i = 0; same && i < one->property_count; i++)
-        same = strcmp(one->properties[i], other->properties[i]) == 0 &&
-               (one->property_readers ? one->property_readers[i] : UINT8_MAX) ==
-                   (other->property_readers ? other->property_readers[i] : UINT8_MAX);
+    for (size_t i = 0; same && i < one->property_count; i++) {
+        const camber_property_readers a = readers_of(one, i), b = readers_of(other, i);
+        same = strcmp(one->properties[i], other->properties[i]) == 0 && a.kinds == b.kinds &&
+               a.named_kinds == b.named_kinds;
+    }
     return same && names_layers_of(one, other) && names_layers_of(other, one);
 }
 
 static const camber_value *values_of(const camber_features *features, const camber_feature_class *one) {
-    return features->style->property_count ? features->values + one->first_value : NULL;
+    return features->schema->property_count ? features->values + one->first_value : NULL;
 }
 
-/* Whether a layer takes the class: fills take areas, and so their outlines; lines take all but areas and points. */
-static bool is_taken(const camber_features *features, const camber_style *style, const camber_feature_class *one,
-                     const camber_value *values) {
+static bool is_taken(const camber_features *features, const camber_schema *schema, const camber_style *style,
+                     const camber_feature_class *one, const camber_value *values) {
     const camber_feature_view feature = {
         .values = values, .geometry_type = camber_geometry_type(one->geometry), .id = one->id, .all = one->all};
-    const bool filled = one->geometry == CAMBER_GEOMETRY_AREA || one->geometry == CAMBER_GEOMETRY_POLYGON;
-    const bool lined = one->geometry == CAMBER_GEOMETRY_LINE || one->geometry == CAMBER_GEOMETRY_POLYGON;
-    for (size_t i = 0; i < style->layer_count; i++) {
-        const camber_style_layer *layer = style->layers + i;
-        const bool fits = (layer->kind == CAMBER_LAYER_FILL && filled) || (layer->kind == CAMBER_LAYER_LINE && lined);
-        const char *name = layer->source_layer;
-        if (fits && !layer->plain && (!name || strcmp(name, features->layer_names[one->layer]) == 0) &&
-            camber_style_layer_takes(layer, &feature))
-            return true;
-    }
-    return false;
+    return schema->takes && schema->takes(style, one->geometry, features->layer_names[one->layer], &feature);
 }
 
 /* Whether the same classes are plain in it. */
-static bool takes_the_same(const camber_features *features, const camber_style *style) {
+static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
-        if (one->unsorted && style->wants_plain &&
-            one->plain == is_taken(features, style, one, values_of(features, one)))
+        if (one->unsorted && schema->wants_plain &&
+            one->plain == is_taken(features, schema, style, one, values_of(features, one)))
             return false;
     }
     return true;
 }
 
-camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
-    if (style->sprite_count || features->sprites || !is_of_files(features) || !reads_the_same(features->style, style) ||
-        !takes_the_same(features, style))
-        return camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
-                           "style: reads other properties or images than the one before; read the files again");
-    features->style = style;
-    return CAMBER_OK;
+bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style) {
+    return is_of_files(features) && reads_the_same(features->schema, schema) && takes_the_same(features, schema, style);
 }
 
 camber_features_stats camber_features_get_stats(const camber_features *features) {
@@ -420,7 +420,7 @@ static bool hash_classes(camber_features *features, size_t slots) {
         return false;
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
-        const uint64_t hash = hash_class(one, values_of(features, one), features->style->property_count);
+        const uint64_t hash = hash_class(one, values_of(features, one), features->schema->property_count);
         size_t slot = slot_of(hash, slots);
         while (classes[slot])
             slot = (slot + 1) & (slots - 1);
@@ -438,7 +438,7 @@ static bool grow_classes(camber_features *features) {
 }
 
 static camber_status add_class(camber_features *features, const camber_feature_class *one, const camber_value *values) {
-    const size_t count = features->style->property_count;
+    const size_t count = features->schema->property_count;
     if (features->class_count >= UINT32_MAX - 1)
         return camber_fail(features->context, CAMBER_ERROR_LIMIT,
                            "more than 4294967294 different features; read fewer attributes");
@@ -460,21 +460,14 @@ static bool equal_classes(const camber_feature_class *a, const camber_feature_cl
            a->unsorted == b->unsorted && equal_values(&a->id, &b->id, 1);
 }
 
-/* The layers of the style that may draw the class, as camber_readers_of has them. */
-static uint8_t readers_of(camber_features *features, const camber_feature_class *one) {
+/* Whether layers of the style name the source layer of a class: the last answer is kept. */
+static bool layer_is_named(camber_features *features, const camber_feature_class *one) {
     interner *set = features->interned;
-    uint8_t readers = 0;
     if (!set->read || set->layer != one->layer)
         set->layer_is_named = one->layer < features->layer_count &&
-                              camber_style_names_layer(features->style, features->layer_names[one->layer]);
+                              camber_schema_names_layer(features->schema, features->layer_names[one->layer]);
     set->layer = one->layer;
-    for (int named = 0; named <= set->layer_is_named; named++) {
-        if (one->geometry != CAMBER_GEOMETRY_AREA)
-            readers |= camber_readers_of(CAMBER_LAYER_LINE, named);
-        if (one->geometry != CAMBER_GEOMETRY_LINE)
-            readers |= camber_readers_of(CAMBER_LAYER_FILL, named);
-    }
-    return readers;
+    return set->layer_is_named;
 }
 
 /* Leaves out the values that no layer reads of such features, so that they make no more classes than are drawn. NULL:
@@ -482,33 +475,34 @@ static uint8_t readers_of(camber_features *features, const camber_feature_class 
 static const camber_value *read_values(camber_features *features, const camber_feature_class *one,
                                        const camber_value *values) {
     interner *set = features->interned;
-    const camber_style *style = features->style;
-    const uint8_t readers = readers_of(features, one);
+    const camber_schema *schema = features->schema;
+    const bool is_named = layer_is_named(features, one);
     if (!set->read)
-        set->read = camber_alloc(features->context, style->property_count, sizeof *set->read);
-    for (size_t i = 0; i < style->property_count && set->read; i++) {
-        const bool reads = !style->property_readers || style->property_readers[i] & readers;
-        set->read[i] = reads ? values[i] : (camber_value){0};
+        set->read = camber_alloc(features->context, schema->property_count, sizeof *set->read);
+    for (size_t i = 0; i < schema->property_count && set->read; i++) {
+        const camber_property_readers readers = readers_of(schema, i);
+        const unsigned kinds = readers.kinds | (is_named ? readers.named_kinds : 0u);
+        set->read[i] = kinds >> one->geometry & 1 ? values[i] : (camber_value){0};
     }
     return set->read;
 }
 
-unsigned camber_features_kinds(const camber_style *style, bool unsorted) {
-    const bool plain_areas = unsorted && style->wants_plain_areas;
-    return CAMBER_KIND_LINE | (style->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
-           (style->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
-           (unsorted && style->wants_plain_points ? CAMBER_KIND_POINT : 0u);
+unsigned camber_schema_kinds(const camber_schema *schema, bool unsorted) {
+    const bool plain_areas = unsorted && schema->wants_plain_areas;
+    return CAMBER_KIND_LINE | (schema->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
+           (schema->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
+           (unsorted && schema->wants_plain_points ? CAMBER_KIND_POINT : 0u);
 }
 
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {
     const camber_feature_class *one = &features->classes[class_index];
-    return !one->unsorted || one->plain || camber_features_kinds(features->style, false) >> one->geometry & 1;
+    return !one->unsorted || one->plain || camber_schema_kinds(features->schema, false) >> one->geometry & 1;
 }
 
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index) {
     interner *set = features->interned;
-    const size_t count = features->style->property_count;
+    const size_t count = features->schema->property_count;
     const camber_value *read = read_values(features, wanted, values);
     camber_feature_class made = *wanted;
     if (!read)
@@ -525,7 +519,8 @@ camber_status camber_features_find_class_of(camber_features *features, const cam
             return CAMBER_OK;
         }
     }
-    made.plain = made.unsorted && features->style->wants_plain && !is_taken(features, features->style, &made, read);
+    made.plain = made.unsorted && features->schema->wants_plain &&
+                 !is_taken(features, features->schema, features->style, &made, read);
     const camber_status status = add_class(features, &made, read);
     if (status != CAMBER_OK)
         return status;
@@ -542,7 +537,7 @@ camber_status camber_features_find_class(camber_features *features, uint32_t lay
 
 camber_status camber_features_renumber_classes(camber_features *features) {
     camber_context *context = features->context;
-    const size_t count = features->style->property_count, class_count = features->class_count;
+    const size_t count = features->schema->property_count, class_count = features->class_count;
     camber_status status = CAMBER_ERROR_MEMORY;
     size_t kept = 0;
     uint32_t *numbers = camber_alloc_zero(context, class_count, sizeof *numbers); /* + 1; 0: none yet */

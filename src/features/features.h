@@ -6,36 +6,16 @@
 #ifndef CAMBER_FEATURES_FEATURES_H
 #define CAMBER_FEATURES_FEATURES_H
 
-#include "camber_map.h"
 #include "features/region.h"
-#include "style/style.h"
+#include "features/schema.h"
 
-typedef enum camber_geometry_kind {
-    CAMBER_GEOMETRY_LINE = 0,
-    CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
-    CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
-    CAMBER_GEOMETRY_POINT,   /* lines of one point, for layers that are plain */
-    CAMBER_GEOMETRY_KINDS
-} camber_geometry_kind;
-
-/* Sets of kinds, as bits. Layers of lines draw lines and outlines. */
-enum {
-    CAMBER_KIND_LINE = 1 << CAMBER_GEOMETRY_LINE,
-    CAMBER_KIND_POLYGON = 1 << CAMBER_GEOMETRY_POLYGON,
-    CAMBER_KIND_AREA = 1 << CAMBER_GEOMETRY_AREA,
-    CAMBER_KIND_POINT = 1 << CAMBER_GEOMETRY_POINT,
-};
-
-/* The type that a style's filters know a kind by. */
-static inline const char *camber_geometry_type(camber_geometry_kind kind) {
-    return kind == CAMBER_GEOMETRY_LINE ? "LineString" : kind == CAMBER_GEOMETRY_POINT ? "Point" : "Polygon";
-}
+#include <jansson.h>
 
 typedef struct camber_feature_class {
     uint32_t source; /* index into the style's sources; CAMBER_NO_SOURCE: a file named as input */
     uint32_t layer;  /* index into layer_names */
     camber_geometry_kind geometry;
-    size_t first_value;      /* into values: style->property_count of them, in the style's order */
+    size_t first_value;      /* into values: schema->property_count of them, in the schema's order */
     camber_value id;         /* null where the style does not want it */
     const camber_value *all; /* an object of all properties, where the style wants them. NULL: none */
     bool unsorted;           /* its file has no schema that says what is a road, a river, a building */
@@ -44,7 +24,8 @@ typedef struct camber_feature_class {
 
 struct camber_features {
     camber_context *context;
-    const camber_style *style;
+    const camber_schema *schema; /* of the style */
+    const camber_style *style;   /* what draws them; readers know its schema only */
 
     /* World coordinates: Web Mercator, x and y in 0 to 1 from the north-west, y down; pairs. */
     double *points;
@@ -72,7 +53,7 @@ struct camber_features {
 
     camber_feature_class *classes;
     size_t class_count, class_capacity;
-    camber_value *values; /* class_count * style->property_count; strings belong to this set */
+    camber_value *values; /* class_count * schema->property_count; strings belong to this set */
     size_t value_count, value_capacity;
 
     char **layer_names; /* source layers, in the order in which they were found */
@@ -92,6 +73,13 @@ struct camber_features {
 
     void *interned; /* hash tables of strings and classes (features.c) */
 };
+
+/* Makes an empty set. The style and its schema must outlive it. */
+camber_status camber_features_create_for(camber_context *context, const camber_schema *schema,
+                                         const camber_style *style, camber_features **features);
+/* Whether files would be read into the same set for another style: all that was read is of files, and the style reads
+ * the same of them. */
+bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
 
 /* ---- A set as it was, for what fails half way ---- */
 
@@ -113,14 +101,12 @@ camber_status camber_features_intern(camber_features *features, const char *text
 camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer);
 /* Gives the value as the set's own: the same pointer for values of the same text. */
 camber_status camber_features_intern_json(camber_features *features, const json_t *json, const camber_value **value);
-/* values: style->property_count of them, interned. */
+/* values: schema->property_count of them, interned. */
 camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
                                          const camber_value *values, uint32_t *class_index);
 /* Does the same with an id and all properties; wanted's source, first_value and plain are not read. */
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index);
-/* The kinds of geometry that are read of features, CAMBER_KIND_*. unsorted: as a class has it. */
-unsigned camber_features_kinds(const camber_style *style, bool unsorted);
 /* Whether features of a class are kept: those of some kinds are read in case that they are plain. */
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);

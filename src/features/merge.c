@@ -333,7 +333,7 @@ done:
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule) {
     const double start_ms = camber_now_ms();
-    const bool directed = rule == CAMBER_MERGE_ANY && features->style->directed;
+    const bool directed = rule == CAMBER_MERGE_ANY && features->schema->directed;
     camber_status status = CAMBER_OK;
     if (merges)
         status = camber_features_merge(features, first_polyline, directed ? CAMBER_MERGE_DIRECTED : rule);

@@ -349,7 +349,7 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
     for (size_t i = 0; i < 2 * stitcher->line_count; i++)
         join.partner[i] = NONE;
     drop_repeated_border_lines(&join);
-    const bool directed = features->style->directed;
+    const bool directed = features->schema->directed;
     /* Tiles with a coarser grid than 2048 round correspondingly more. */
     const double reach = REACH * fmin(fmax(1, stitcher->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
     const join_pass passes[] = {{true, EXACT, directed},

@@ -6,7 +6,6 @@
 #include "formats/geojson.h"
 #include "features/mercator.h"
 #include "features/rings.h"
-#include "style/json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +22,7 @@ typedef struct reader {
     camber_features *features;
     const camber_geojson_desc *desc;
     camber_geojson_stats *stats;
-    json_t *promote_id;
+    const json_t *promote_id;
     bool generate_id;
     unsigned kinds; /* CAMBER_KIND_*: those that are read */
     camber_rings rings;
@@ -94,23 +93,23 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
 
 /* Finds the feature's class of the kind. *drawn: the source's filter lets it pass. */
 static camber_status find_class(reader *self, const json_t *feature, bool *drawn) {
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     const json_t *properties = json_object_get(feature, "properties");
     camber_feature_class wanted = {.geometry = self->kind};
     camber_value id = {0};
     camber_status status = camber_features_find_layer(self->features, "", &wanted.layer);
-    for (size_t i = 0; i < style->property_count && status == CAMBER_OK; i++)
-        status = read_value(self, json_object_get(properties, style->properties[i]), &self->values[i]);
+    for (size_t i = 0; i < schema->property_count && status == CAMBER_OK; i++)
+        status = read_value(self, json_object_get(properties, schema->properties[i]), &self->values[i]);
     if (status == CAMBER_OK)
         status = read_id(self, feature, properties, &id);
-    if (status == CAMBER_OK && style->wants_all_properties && json_is_object(properties))
+    if (status == CAMBER_OK && schema->wants_all_properties && json_is_object(properties))
         status = camber_features_intern_json(self->features, properties, &wanted.all);
     if (status != CAMBER_OK)
         return status;
     const camber_feature_view view = {
         .values = self->values, .geometry_type = camber_geometry_type(self->kind), .id = id, .all = wanted.all};
-    *drawn = camber_style_source_matches(self->desc->source, &view);
-    if (style->wants_id)
+    *drawn = !self->desc->matches || self->desc->matches(self->desc->user, &view);
+    if (schema->wants_id)
         wanted.id = id;
     return *drawn ? camber_features_find_class_of(self->features, &wanted, self->values, &self->class_index)
                   : CAMBER_OK;
@@ -221,7 +220,7 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
     }
     if (area)
         return add_ring(self, count, hole);
-    if (ring && self->features->style->directed)
+    if (ring && self->features->schema->directed)
         orient_ring(self->points, count, hole);
     return add_parts(self, count);
 }
@@ -349,19 +348,18 @@ static camber_status read_root(reader *self) {
 
 camber_status camber_geojson_read(camber_features *features, const camber_geojson_desc *desc,
                                   camber_geojson_stats *stats) {
-    json_t *promote = json_object_get(desc->source->json, "promoteId");
     reader self = {.context = features->context,
                    .features = features,
                    .desc = desc,
                    .stats = stats,
-                   .promote_id = json_is_string(promote) ? promote : NULL,
-                   .generate_id = json_is_true(json_object_get(desc->source->json, "generateId")),
+                   .promote_id = json_is_string(desc->promote_id) ? desc->promote_id : NULL,
+                   .generate_id = desc->generates_ids,
                    .rings.stats = &features->stats};
     self.kinds = desc->kinds;
     if (!desc->kinds)
-        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->style->wants_areas ? CAMBER_KIND_AREA : 0u);
+        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->schema->wants_areas ? CAMBER_KIND_AREA : 0u);
     *stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
-    self.values = camber_alloc(features->context, features->style->property_count, sizeof *self.values);
+    self.values = camber_alloc(features->context, features->schema->property_count, sizeof *self.values);
     const camber_status status = self.values ? read_root(&self) : CAMBER_ERROR_MEMORY;
     camber_free(features->context, self.points);
     camber_free(features->context, self.values);

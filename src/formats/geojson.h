@@ -5,10 +5,13 @@
 #include "features/features.h"
 
 typedef struct camber_geojson_desc {
-    const char *what;                  /* the source, in messages */
-    const json_t *root;                /* the document */
-    const camber_style_source *source; /* its filter, generateId and promoteId */
-    unsigned kinds;                    /* CAMBER_KIND_*: what is drawn of it. 0: all that the style wants */
+    const char *what;         /* the source, in messages */
+    const json_t *root;       /* the document */
+    const json_t *promote_id; /* the name of the property that is the id, a string. NULL: none */
+    bool generates_ids;       /* a feature's id is its place in the document */
+    unsigned kinds;           /* CAMBER_KIND_*: what is drawn of it. 0: all that the style wants */
+    bool (*matches)(const void *user, const camber_feature_view *feature); /* which features exist. NULL: all */
+    const void *user;
 } camber_geojson_desc;
 
 typedef struct camber_geojson_stats {

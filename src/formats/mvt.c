@@ -96,11 +96,11 @@ static int compare_names(const char *a, size_t a_size, const char *b) {
 }
 
 static uint32_t find_property(const camber_mvt *mvt, ProtobufCBinaryData key) {
-    const camber_style *style = mvt->desc.features->style;
-    size_t low = 0, high = style->property_count;
+    const camber_schema *schema = mvt->desc.features->schema;
+    size_t low = 0, high = schema->property_count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        const int order = compare_names((const char *)key.data, key.len, style->properties[mvt->sorted[middle]]);
+        const int order = compare_names((const char *)key.data, key.len, schema->properties[mvt->sorted[middle]]);
         if (order == 0)
             return mvt->sorted[middle];
         if (order < 0)
@@ -112,10 +112,10 @@ static uint32_t find_property(const camber_mvt *mvt, ProtobufCBinaryData key) {
 }
 
 static void sort_properties(camber_mvt *mvt) {
-    const camber_style *style = mvt->desc.features->style;
-    for (uint32_t i = 0; i < style->property_count; i++) {
+    const camber_schema *schema = mvt->desc.features->schema;
+    for (uint32_t i = 0; i < schema->property_count; i++) {
         uint32_t at = i;
-        for (; at > 0 && strcmp(style->properties[mvt->sorted[at - 1]], style->properties[i]) > 0; at--)
+        for (; at > 0 && strcmp(schema->properties[mvt->sorted[at - 1]], schema->properties[i]) > 0; at--)
             mvt->sorted[at] = mvt->sorted[at - 1];
         mvt->sorted[at] = i;
     }
@@ -233,9 +233,9 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
 /* Reads the values of the style's properties, and the id by which the feature is recognised in other tiles. */
 static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, camber_value *id,
                                camber_tile_feature *stitched, const char **damage) {
-    const camber_style *style = mvt->desc.features->style;
+    const camber_schema *schema = mvt->desc.features->schema;
     int best = ID_KEYS;
-    for (size_t i = 0; i < style->property_count; i++)
+    for (size_t i = 0; i < schema->property_count; i++)
         mvt->values[i] = (camber_value){0};
     for (size_t i = 0; i + 1 < feature->n_tags; i += 2) {
         const uint32_t key = feature->tags[i], index = feature->tags[i + 1];
@@ -299,7 +299,7 @@ static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
 
 static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
                                      const char **damage) {
-    const camber_style *style = mvt->desc.features->style;
+    const camber_schema *schema = mvt->desc.features->schema;
     camber_tile_feature stitched = {.column = mvt->address.column,
                                     .row = mvt->address.row,
                                     .outline = kind == CAMBER_GEOMETRY_POLYGON,
@@ -309,11 +309,11 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind, .unsorted = mvt->unsorted};
     camber_value promoted = {0};
     camber_status status = read_tags(mvt, feature, &promoted, &stitched, damage);
-    if (style->wants_id && promoted_name(mvt))
+    if (schema->wants_id && promoted_name(mvt))
         wanted.id = promoted;
-    else if (style->wants_id && feature->has_id)
+    else if (schema->wants_id && feature->has_id)
         wanted.id = number_value((double)feature->id);
-    if (status == CAMBER_OK && style->wants_all_properties)
+    if (status == CAMBER_OK && schema->wants_all_properties)
         status = read_all_properties(mvt, feature, &wanted.all);
     if (status == CAMBER_OK)
         status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched.class_index);
@@ -401,7 +401,7 @@ static unsigned wanted_kinds(const camber_mvt *mvt) {
         if (desc->layer_kinds)
             return desc->layer_kinds[i];
         if (mvt->unsorted)
-            return camber_features_kinds(desc->features->style, true);
+            return camber_schema_kinds(desc->features->schema, true);
         return CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
                (desc->wants_areas ? CAMBER_KIND_AREA : 0u);
     }
@@ -443,8 +443,8 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     mvt->layer = layer;
     if (!mvt->desc.layers)
         return list_layer(mvt);
-    mvt->unsorted =
-        mvt->desc.unsorted && (mvt->desc.no_schema || !camber_style_names_layer(mvt->desc.features->style, mvt->name));
+    mvt->unsorted = mvt->desc.unsorted &&
+                    (mvt->desc.no_schema || !camber_schema_names_layer(mvt->desc.features->schema, mvt->name));
     mvt->kinds = wanted_kinds(mvt);
     if (!mvt->kinds)
         return CAMBER_OK;
@@ -494,7 +494,7 @@ void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const
 /* ---- All of it ---- */
 
 camber_status camber_mvt_create(camber_context *context, const camber_mvt_desc *desc, camber_mvt **mvt) {
-    const size_t properties = desc->features->style->property_count;
+    const size_t properties = desc->features->schema->property_count;
     camber_mvt *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;

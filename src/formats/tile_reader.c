@@ -198,7 +198,7 @@ static const char *find_one(const input *self) {
 }
 
 static bool holds_drawn(const input *self, size_t i) {
-    return self->features->style->wants_plain_areas ||
+    return self->features->schema->wants_plain_areas ||
            json_is_true(json_object_get(json_array_get(self->set->layers, i), "lines"));
 }
 
@@ -208,7 +208,7 @@ static camber_status choose_all(input *self) {
     camber_free(self->context, self->layers);
     if (!(self->layers = camber_alloc(self->context, count + 1, sizeof *self->layers)))
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < count && (self->features->style->wants_plain || self->layer_count == 0); i++)
+    for (size_t i = 0; i < count && (self->features->schema->wants_plain || self->layer_count == 0); i++)
         if (layer_name(self, i) && holds_drawn(self, i))
             self->layers[self->layer_count++] = layer_name(self, i);
     return self->layer_count ? CAMBER_OK : fail_layer(self);
@@ -232,36 +232,30 @@ static camber_status choose_one(input *self) {
     return CAMBER_OK;
 }
 
-static bool names_layers(const camber_style *style) {
-    for (size_t i = 0; i < style->layer_count; i++)
-        if (style->layers[i].visible && style->layers[i].source_layer)
-            return true;
-    return false;
-}
-
 /* A style that draws what it does not know goes by the names of layers only where they are those of a schema: anyone
  * may call a layer roads. */
 static bool has_schema(const input *self) {
-    return !self->features->style->wants_plain || camber_schema_of_layers(self->set->layers);
+    return !self->features->schema->wants_plain || camber_tile_schema_of_layers(self->set->layers);
 }
 
 /* Lists the layers of the set that the style's layers name. */
 static void list_named(input *self) {
-    const camber_style *style = self->features->style;
-    for (size_t i = 0; i < style->layer_count; i++) {
-        const char *name = style->layers[i].visible ? style->layers[i].source_layer : NULL;
+    const camber_schema *schema = self->features->schema;
+    for (size_t i = 0; i < schema->drawn_source_layer_count; i++) {
+        const char *name = schema->source_layers[i];
         size_t k = 0;
-        while (name && k < self->layer_count && strcmp(self->layers[k], name) != 0)
+        while (k < self->layer_count && strcmp(self->layers[k], name) != 0)
             k++;
-        if (name && k == self->layer_count && find_named(self, name))
+        if (k == self->layer_count && find_named(self, name))
             self->layers[self->layer_count++] = name;
     }
 }
 
 static camber_status choose_layers(input *self) {
-    if (!(self->layers = camber_alloc(self->context, self->features->style->layer_count + 1, sizeof *self->layers)))
+    const size_t named_count = self->features->schema->drawn_source_layer_count;
+    if (!(self->layers = camber_alloc(self->context, named_count + 1, sizeof *self->layers)))
         return CAMBER_ERROR_MEMORY;
-    if (!self->desc->layer && names_layers(self->features->style)) {
+    if (!self->desc->layer && named_count) {
         const camber_status status = json_array_size(self->set->layers) ? CAMBER_OK : look_for_layers(self);
         if (status != CAMBER_OK)
             return status;
@@ -272,7 +266,7 @@ static camber_status choose_layers(input *self) {
 }
 
 static camber_status read_input(input *self, camber_tile_result *result) {
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     camber_status status = camber_tile_set_open(self->context, self->desc->path, CAMBER_NAMED_BY_CALLER, &self->set);
     if (status == CAMBER_OK)
         status = list_addresses(self);
@@ -287,8 +281,8 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                          .mvt = {.features = self->features,
                                                  .layers = self->layers,
                                                  .layer_count = self->layer_count,
-                                                 .wants_polygons = style->wants_polygons,
-                                                 .wants_areas = style->wants_areas,
+                                                 .wants_polygons = schema->wants_polygons,
+                                                 .wants_areas = schema->wants_areas,
                                                  .unsorted = true,
                                                  .no_schema = !has_schema(self)}};
     return camber_features_read_tiles(self->features, &reading, result);

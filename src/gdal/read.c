@@ -56,7 +56,7 @@ static camber_status begin_layer(reader *self, int index) {
         status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
-    self->lines.kinds = camber_features_kinds(self->features->style, self->columns.unsorted);
+    self->lines.kinds = camber_schema_kinds(self->features->schema, self->columns.unsorted);
     /* A filter may read any field, so none is ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
@@ -426,11 +426,11 @@ static camber_status check_result(reader *self, size_t features_before) {
 
 static camber_status read_dataset(reader *self, bool *unsorted) {
     camber_context *context = self->context;
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     const size_t features_before = self->features->feature_count;
     int *layers = NULL;
     size_t count = 0;
-    camber_status status = camber_dataset_layers(&self->dataset, style, &layers, &count);
+    camber_status status = camber_dataset_layers(&self->dataset, schema, &layers, &count);
     if (status == CAMBER_OK && self->dataset.zoom >= 0)
         status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->stitcher);
     if (status != CAMBER_OK)
@@ -438,7 +438,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     self->lines = (camber_feature_lines){.context = context,
                                          .world = {.context = context, .whole = self->stitcher},
                                          .rings.stats = &self->features->stats,
-                                         .directed = style->directed};
+                                         .directed = schema->directed};
     if (self->dataset.osm)
         status = begin_osm(self, layers, count);
     if (status == CAMBER_OK)
@@ -486,7 +486,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     const size_t signed_size = features->attribution_size;
     const camber_features_stats stats = features->stats;
     const double start_ms = camber_now_ms();
-    camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
+    camber_status status = camber_dataset_open(features->context, desc, features->schema, *unsorted, &self.dataset);
     if (status != CAMBER_OK)
         return status;
     CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);

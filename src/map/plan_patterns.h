@@ -3,8 +3,8 @@
 #ifndef CAMBER_MAP_PLAN_PATTERNS_H
 #define CAMBER_MAP_PLAN_PATTERNS_H
 
-#include "map/sprite.h"
 #include "map/view.h"
+#include "style/sprite.h"
 
 /* A fill of the whole picture, drawn before a layer of the plan; or of areas. */
 typedef struct camber_plan_fill {

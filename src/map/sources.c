@@ -9,6 +9,7 @@
 #include "formats/geojson.h"
 #include "formats/tile_reader.h"
 #include "style/json.h"
+#include "style/style.h"
 #include "style/url.h"
 
 #include <errno.h>
@@ -126,6 +127,10 @@ static camber_status fail_damaged(const camber_sources *sources, const char *wha
                        "%s: no feature can be read: %s; correct it, or get the file again", what, damage);
 }
 
+static bool is_selected(const void *user, const camber_feature_view *feature) {
+    return camber_style_source_matches(user, feature);
+}
+
 static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_context *context = sources->context;
     const camber_features_stats before = sources->features->stats;
@@ -149,7 +154,10 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_geojson_stats stats = {0};
     const camber_geojson_desc desc = {.what = one->what,
                                       .root = loaded ? loaded : data,
-                                      .source = one->style,
+                                      .promote_id = json_object_get(one->style->json, "promoteId"),
+                                      .generates_ids = json_is_true(json_object_get(one->style->json, "generateId")),
+                                      .matches = is_selected,
+                                      .user = one->style,
                                       .kinds = kinds_from(sources->features->style, one->index, NULL)};
     if (status == CAMBER_OK)
         status = camber_geojson_read(sources->features, &desc, &stats);
@@ -268,7 +276,7 @@ done:
  * with each feature, or where the style wants overlapping ends to darken each other. */
 static camber_status merge_and_weigh(camber_features *features, size_t first_polyline) {
     const camber_style *style = features->style;
-    const bool merges = !style->directed && !style->accumulates && !features->progress;
+    const bool merges = !style->schema.directed && !style->accumulates && !features->progress;
     const camber_status status =
         camber_features_merge_and_weigh(features, first_polyline, merges, CAMBER_MERGE_STRAIGHT);
     features->stats.features = features->feature_count;
@@ -420,7 +428,7 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
                                         .layers = names,
                                         .layer_count = list_layers(style, one->index, names),
                                         .layer_kinds = kinds,
-                                        .wants_progress = style->directed,
+                                        .wants_progress = style->schema.directed,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
         for (size_t i = 0; i < reading.mvt.layer_count; i++)
             kinds[i] = kinds_from(style, one->index, names[i]);

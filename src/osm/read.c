@@ -129,24 +129,24 @@ static bool is_coast(const reader *self, const camber_osm_way *way) {
     const size_t set = way->tags / CAMBER_OSM_WAY_BITS;
     if (self->coast_key == SIZE_MAX || way->tags & CAMBER_OSM_WAY_BARE)
         return false;
-    const camber_value *value = self->ways.values + set * self->features->style->property_count + self->coast_key;
+    const camber_value *value = self->ways.values + set * self->features->schema->property_count + self->coast_key;
     return value->type == CAMBER_VALUE_STRING && value->string == self->coastline;
 }
 
 /* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
 static void make_way(const reader *self, const camber_osm_way *way, size_t node, made_run *run) {
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     camber_world_lines *lines = &run->lines;
     const size_t lines_before = lines->line_count;
     const bool area = way->tags & CAMBER_OSM_WAY_AREA, bare = way->tags & CAMBER_OSM_WAY_BARE;
-    const bool has_lines = !bare && (!area || style->wants_polygons);
+    const bool has_lines = !bare && (!area || schema->wants_polygons);
     made_way made = {.tags = way->tags, .first_place = node, .is_coast = is_coast(self, way)};
     if (has_lines) {
         add_nodes(way, node, run);
         camber_world_lines_end(lines);
     }
     made.line_count = (uint32_t)(lines->line_count - lines_before);
-    made.has_ring = area && style->wants_areas && make_ring(way, node, run, !has_lines);
+    made.has_ring = area && schema->wants_areas && make_ring(way, node, run, !has_lines);
     if (made.is_coast || way->tags & CAMBER_OSM_WAY_MEMBER)
         made.place_count = way->node_count;
     ((made_way *)(void *)run->ways.bytes)[run->way_count++] = made;
@@ -154,12 +154,12 @@ static void make_way(const reader *self, const camber_osm_way *way, size_t node,
 
 static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
     const camber_osm_ways *ways = &((const reader *)user)->ways;
-    const camber_style *style = ways->features->style;
+    const camber_schema *schema = ways->features->schema;
     const camber_osm_run *from = &ways->runs[part];
     made_run *run = slot;
     size_t points = camber_world_lines_most_points(from->node_count),
            ends = camber_world_lines_most_ends(from->node_count);
-    if (style->wants_areas) { /* a ring adds its points, and four at most */
+    if (schema->wants_areas) { /* a ring adds its points, and four at most */
         points += from->node_count + 4 * from->way_count;
         ends += from->way_count;
     }
@@ -189,7 +189,7 @@ static camber_status find_class(reader *self, uint32_t set, camber_geometry_kind
     uint32_t *known = &self->classes[kind][set];
     if (*known == 0) {
         const camber_status status = camber_features_find_class(
-            self->features, self->layer, kind, self->ways.values + set * self->features->style->property_count, index);
+            self->features, self->layer, kind, self->ways.values + set * self->features->schema->property_count, index);
         if (status != CAMBER_OK)
             return status;
         *known = *index + 1;
@@ -326,7 +326,7 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
 
 /* The class of the sea: water, as ponds are. */
 static camber_status find_sea_class(reader *self, uint32_t *index) {
-    const size_t count = self->features->style->property_count;
+    const size_t count = self->features->schema->property_count;
     camber_value *values = camber_alloc_zero(self->context, count, sizeof *values);
     if (!values)
         return CAMBER_ERROR_MEMORY;
@@ -398,7 +398,7 @@ static camber_status make_lines(reader *self) {
                                        .free_slot = free_run,
                                        .from = PACKED_SHARE,
                                        .to = 1.0};
-    const bool drops_areas = !features->style->wants_polygons && !features->style->wants_areas;
+    const bool drops_areas = !features->schema->wants_polygons && !features->schema->wants_areas;
     const camber_osm_pack_desc pack = {self->desc->path, self->threads, drops_areas, NODES_SHARE, PACKED_SHARE};
     camber_status status = camber_osm_pack(ways, &pack, &self->skipped);
     if (status == CAMBER_OK)
@@ -420,7 +420,7 @@ static camber_status make_lines(reader *self) {
 /* Reads relations if they are wanted, ways, and the places of their nodes. *declined: the file is not in order, or not
  * for this reader. */
 static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_order, bool *declined) {
-    const bool areas = self->features->style->wants_areas && !self->desc->layer;
+    const bool areas = self->features->schema->wants_areas && !self->desc->layer;
     camber_osm_ends ends;
     camber_status status = CAMBER_OK;
     if (!any_order)
@@ -495,15 +495,15 @@ static camber_status check_result(const reader *self, size_t features_before) {
 /* The sea is wanted where areas are, by their key, and the whole coast is read. box: of the file's header; the world
  * ends where Web Mercator does. */
 static camber_status want_sea(reader *self, camber_osm_box box) {
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     const int32_t most = (int32_t)(CAMBER_MERCATOR_LATITUDE * 1.0e7);
-    const bool wanted = style->wants_areas && !self->desc->layer && !self->desc->where;
+    const bool wanted = schema->wants_areas && !self->desc->layer && !self->desc->where;
     box.bottom = box.bottom > -most ? box.bottom : -most;
     box.top = box.top < most ? box.top : most;
     self->coast.box = box;
     self->coast_key = SIZE_MAX;
-    for (size_t i = 0; i < style->property_count && wanted; i++)
-        if (strcmp(style->properties[i], "natural") == 0)
+    for (size_t i = 0; i < schema->property_count && wanted; i++)
+        if (strcmp(schema->properties[i], "natural") == 0)
             self->coast_key = i;
     return camber_features_intern(self->features, "coastline", &self->coastline);
 }

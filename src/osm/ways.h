@@ -60,7 +60,7 @@ typedef struct camber_osm_ways {
     size_t packed_count, packed_capacity;
 
     /* Sets of tags that differ in what the style reads. */
-    camber_value *values; /* set_count * style->property_count */
+    camber_value *values; /* set_count * schema->property_count */
     size_t set_count, value_capacity;
     uint32_t *slots; /* a hash table: index + 1; 0: free */
     size_t slot_count;

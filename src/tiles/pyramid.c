@@ -11,6 +11,7 @@
 #include "features/features.h"
 #include "features/mercator.h"
 #include "map/plan.h"
+#include "style/style.h"
 #include "tiles/encoding.h"
 #include "tiles/features_file.h"
 #include "tiles/schedule_file.h"

@@ -7,6 +7,7 @@
 #include "camber_map.h"
 #include "features/features.h"
 #include "kernels/layout.h"
+#include "style/style.h"
 #include "tiles/mesh_tile.h"
 
 #include <cpl_conv.h>
@@ -87,7 +88,7 @@ static uint64_t hash_features(const camber_features *f) {
         const camber_feature_class *class = f->classes + f->feature_class[i];
         hash = camber_hash(hash, f->layer_names[class->layer], strlen(f->layer_names[class->layer]));
         hash = camber_hash(hash, &class->geometry, sizeof class->geometry);
-        for (size_t k = 0; k < f->style->property_count; k++) {
+        for (size_t k = 0; k < f->style->schema.property_count; k++) {
             const camber_value *value = f->values + class->first_value + k;
             hash = camber_hash(hash, &value->type, sizeof value->type);
             if (value->type == CAMBER_VALUE_STRING)
@@ -140,9 +141,9 @@ static camber_status try_style(camber_context *context, void *user) {
         return status;
     }
     assert_int_equal(style->layer_count, d->style->layer_count);
-    assert_int_equal(style->property_count, d->style->property_count);
-    for (size_t i = 0; i < style->property_count; i++)
-        assert_string_equal(style->properties[i], d->style->properties[i]);
+    assert_int_equal(style->schema.property_count, d->style->schema.property_count);
+    for (size_t i = 0; i < style->schema.property_count; i++)
+        assert_string_equal(style->schema.properties[i], d->style->schema.properties[i]);
     for (size_t i = 0; i < style->layer_count; i++)
         assert_string_equal(style->layers[i].filter_key, d->style->layers[i].filter_key);
     camber_style_destroy(style);

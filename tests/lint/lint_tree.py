@@ -19,6 +19,9 @@ import sys
 
 LINE_LENGTH = 120
 HEAD_LINES = 100  # a longer file starts with a comment
+# Layers that must not reach another one, whatever CMake says: a reader knows a schema, an archive not even that.
+BARRED = {layer: ("style",) for layer in ("archive", "features", "formats", "gdal", "osm")}
+
 MOST_WORDS = {"README.md": 1300, "ARCHITECTURE.md": 1900}  # other documents are as long as they need
 
 CODE = ("src", "kernels", "shaders", "tests", "bench", "python")
@@ -250,7 +253,7 @@ def read_layers(root):
 
 
 def check_layers(tree):
-    """Every folder of src is a layer, and no layer links one that leads back to it."""
+    """Every folder of src is a layer; no layer links one that leads back to it, or to one that it must not know."""
     folders = {file.layer for file in tree.ending(*C_LIKE) if file.layer}
     if folders and not tree.layers.links:
         yield Finding("src/CMakeLists.txt", 1, "no layers", "add camber_layer(FOLDER LINKS FOLDER...) for each folder")
@@ -261,6 +264,10 @@ def check_layers(tree):
         if name in tree.layers.below[name]:
             yield Finding("src/CMakeLists.txt", tree.layers.lines[name], "layer %s links itself in a circle" % name,
                           "take out the arrow that points up")
+        for barred in BARRED.get(name, ()):
+            if barred in tree.layers.below[name]:
+                yield Finding("src/CMakeLists.txt", tree.layers.lines[name], "layer %s reaches %s" % (name, barred),
+                              "hand down what it needs, as a style its schema")
 
 
 def check_includes(tree):

@@ -166,6 +166,12 @@ class Lint(unittest.TestCase):
         self.write("src/CMakeLists.txt", "camber_layer(all base io draw)\n")
         self.finds("src/CMakeLists.txt:1", "no layers")
 
+    def test_archive_that_knows_styles(self):
+        self.write("src/style/style.c", "int style(void) {\n    return 0;\n}\n")
+        self.write("src/archive/read.c", "int archive(void) {\n    return 0;\n}\n")
+        self.append("src/CMakeLists.txt", "camber_layer(style LINKS base)\ncamber_layer(archive LINKS style)\n")
+        self.finds("src/CMakeLists.txt:9", "layer archive reaches style")
+
     def test_layers_in_a_circle(self):
         self.write("src/gl/gl.c", HEAD)
         self.append("src/CMakeLists.txt", "camber_layer(gl LINKS gl)\n")

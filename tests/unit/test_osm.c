@@ -104,11 +104,11 @@ static void test_real_files(void **state) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char path[1024];
         snprintf(path, sizeof path, "%s/data/%s", data, names[i]);
-        it->on.style.wants_polygons = i % 2 == 0;
-        it->on.style.directed = i % 3 == 0;
+        it->on.style.schema.wants_polygons = i % 2 == 0;
+        it->on.style.schema.directed = i % 3 == 0;
         const size_t apart = expect_as_gdal(it, path, true, true);
         print_message("%s: %zu features\n", names[i], apart);
-        it->on.style.wants_polygons = !it->on.style.wants_polygons;
+        it->on.style.schema.wants_polygons = !it->on.style.schema.wants_polygons;
         assert_true(expect_as_gdal(it, path, false, true) > 500);
     }
 }
@@ -143,7 +143,7 @@ static void test_real_areas(void **state) {
         print_message("CAMBER_DATA is not set: real files are not read\n");
         skip();
     }
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char path[1024], behind[1200];
         camber_status status;
@@ -209,8 +209,8 @@ static void test_ways(void **state) {
     fixture *it = *state;
     for (int style = 0; style < 5; style++) {
         begin(it);
-        it->on.style.wants_polygons = style % 3 == 1;
-        it->on.style.wants_areas = style >= 3;
+        it->on.style.schema.wants_polygons = style % 3 == 1;
+        it->on.style.schema.wants_areas = style >= 3;
         if (style == 2)
             use_style(it, nothing, 1);
         WAY(it, street, 10, 11, 12);
@@ -305,7 +305,7 @@ static void test_packing(void **state) {
 static void test_ends(void **state) {
     static const char *const relation[] = {"type", "multipolygon", NULL};
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     for (int n = 0; n < 6 * 7 * 3; n++) {
         const int node_blobs = 1 + n / 3 % 7 * 2, way_blobs = 1 + n / 21 * 3, relation_blobs = n % 3 * 2;
         pbf_header(&it->file, "DenseNodes");
@@ -366,7 +366,7 @@ static void test_filters(void **state) {
     WAY(it, empty, 13, 14, 15);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         it->where = known[i];
-        it->on.style.wants_polygons = i % 2;
+        it->on.style.schema.wants_polygons = i % 2;
         assert_true(finish(it, true) > 0);
     }
     for (size_t i = 0; i < sizeof left / sizeof *left; i++)
@@ -458,7 +458,7 @@ static void test_relations(void **state) {
                              *const admin[] = {"type", "boundary", "x", "y", NULL},
                              *const route[] = {"type", "route", "x", "y", NULL};
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     begin_grid(it);
     GRID_WAY(it, 1, NULL, 0, 500, 505); /* two halves of a square of 5 x 5, one of them turned */
     GRID_WAY(it, 2, NULL, 0, 5, 505);
@@ -508,7 +508,7 @@ static void test_sea(void **state) {
     static const int64_t box[4] = {1005000000, 1085000000, 2085000000, 2005000000};
     fixture *it = *state;
     use_style(it, natural, sizeof natural / sizeof *natural);
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     add_coast(it, box);
     expect_areas(it, " +1.0 +36.0-1.0", 0);
     add_coast(it, box);
@@ -519,7 +519,7 @@ static void test_sea(void **state) {
     expect_areas(it, " +1.0", 0);
     assert_int_equal(it->on.warnings, 2); /* once a number of threads */
     use_style(it, natural, 1);
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     add_coast(it, box);
     expect_areas(it, " +1.0", 0);
     assert_int_equal(it->on.warnings, 2);
@@ -529,9 +529,9 @@ static void test_sea(void **state) {
 static void test_old_relations(void **state) {
     static const char *const bare[] = {"type", "multipolygon", NULL};
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     for (int outlines = 0; outlines < 2; outlines++) {
-        it->on.style.wants_polygons = outlines;
+        it->on.style.schema.wants_polygons = outlines;
         begin_grid(it);
         GRID_WAY(it, 1, house, 0, 500, 505, 5, 0);
         GRID_WAY(it, 2, NULL, 101, 102, 202, 201, 101);
@@ -637,7 +637,7 @@ static void test_flipped_blocks(void **state) {
 /* The same with a relation. */
 static void test_damaged_relations(void **state) {
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     begin_grid(it);
     const size_t head = it->file.size;
     pbf_bytes content = {.size = 0};
@@ -705,7 +705,7 @@ static void test_memory(void **state) {
     RELATION(it, wood, {1000, "outer"}, {1006, "inner"});
     pbf_end_block(&it->file, &it->block);
     write_file(&it->on, "file", it->file.bytes, it->file.size);
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     size_t failed = 0;
     for (uint64_t bytes = 4096; bytes < 600000; bytes += bytes / 8) {
         camber_budget *budget;

@@ -20,7 +20,7 @@ static int set_up(void **state) {
     fixture *it = calloc(1, sizeof *it);
     assert_non_null(it);
     reading_start(&it->on, properties, sizeof properties / sizeof *properties);
-    it->on.style.wants_areas = it->on.style.wants_polygons = true;
+    it->on.style.schema.wants_areas = it->on.style.schema.wants_polygons = true;
     *state = it;
     return 0;
 }

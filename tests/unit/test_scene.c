@@ -3,6 +3,7 @@
 #include "features/features.h"
 #include "lines/importance.h"
 #include "map/plan_network.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +42,7 @@ static void take_log(void *user, camber_log_level level, const char *message) {
 
 static size_t kind_index(const town *t) {
     size_t i = 0;
-    while (i < t->style->property_count && strcmp(t->style->properties[i], "kind") != 0)
+    while (i < t->style->schema.property_count && strcmp(t->style->schema.properties[i], "kind") != 0)
         i++;
     return i;
 }
@@ -77,7 +78,7 @@ static void close_town(town *t) {
 }
 
 static uint32_t add_class(town *t, const char *kind, uint32_t layer) {
-    const size_t width = t->style->property_count, c = t->features.class_count++;
+    const size_t width = t->style->schema.property_count, c = t->features.class_count++;
     t->classes[c] = (camber_feature_class){.source = CAMBER_NO_SOURCE, .layer = layer, .first_value = c * width};
     assert_true((c + 1) * width <= sizeof t->values / sizeof *t->values);
     if (kind_index(t) < width)

@@ -3,7 +3,7 @@
 #include "png_file.h"
 
 #include "features/features.h"
-#include "map/sprite.h"
+#include "style/sprite.h"
 
 typedef struct desk {
     host h;

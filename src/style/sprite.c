@@ -3,7 +3,7 @@
  * Input: the style's sprite URLs and the ratio of device pixels. Output: images by name. A sprite that cannot be read
  * is warned of and left out, since a map without its patterns is better than no map.
  */
-#include "map/sprite.h"
+#include "style/sprite.h"
 
 #include "features/features.h"
 #include "style/json.h"

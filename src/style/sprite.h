@@ -1,6 +1,6 @@
 /* Sprites of a style: sheets of pictures (PNG) and where each lies on its sheet (JSON). */
-#ifndef CAMBER_MAP_SPRITE_H
-#define CAMBER_MAP_SPRITE_H
+#ifndef CAMBER_STYLE_SPRITE_H
+#define CAMBER_STYLE_SPRITE_H
 
 #include "style/style.h"
 

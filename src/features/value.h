@@ -1,6 +1,6 @@
 /* Values of expressions and of features' properties. */
-#ifndef CAMBER_STYLE_VALUE_H
-#define CAMBER_STYLE_VALUE_H
+#ifndef CAMBER_FEATURES_VALUE_H
+#define CAMBER_FEATURES_VALUE_H
 
 #include "base/base.h"
 
@@ -36,6 +36,9 @@ struct camber_member {
     uint32_t position; /* position in the document, for the order in texts */
     camber_value value;
 };
+
+/* Stands in data for infinities and numbers beyond a double, which JSON does not have. */
+#define CAMBER_JSON_INFINITE 1e308
 
 /* The object's value of the key, NULL where it has none. Cost: a binary search. */
 const camber_value *camber_object_get(const camber_value *object, const char *key);

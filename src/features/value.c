@@ -1,4 +1,4 @@
-#include "style/value.h"
+#include "features/value.h"
 
 #include <stdlib.h>
 

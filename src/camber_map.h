@@ -226,8 +226,9 @@ CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
  * It costs time once a process, and half as much again where threads of a device or a surface run already: call it
  * before these are opened. It costs nothing in the static library, where GDAL is linked. */
 CAMBER_API camber_status camber_gdal_load(camber_context *context);
-/* Returns the short name ("GPKG") of OGR's n-th vector driver, counted from 0, that reads files without an allowance
- * (camber_access). NULL: past the last, or GDAL cannot be loaded. The string is OGR's. */
+/* Returns the short name ("GPKG") of the n-th format, counted from 0, that camber_features_read reads without an
+ * allowance (camber_access): first OGR's vector drivers, if GDAL can be loaded, then those formats that camber reads by
+ * itself and OGR does not. NULL: past the last. The string is OGR's, or the library's. */
 CAMBER_API const char *camber_format_list(size_t n);
 /* Returns GDAL's version as it says it, "GDAL 3.6.2, ..."; NULL where GDAL cannot be loaded. */
 CAMBER_API const char *camber_gdal_get_version(void);

@@ -309,8 +309,27 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && strcasecmp(text + length - end_length, end) == 0;
 }
 
+static const struct {
+    const char *name, *ending;
+    camber_status (*open)(camber_tile_set *set, const char *path);
+} kinds[] = {{"MBTiles", ".mbtiles", camber_mbtiles_open}, {"PMTiles", ".pmtiles", camber_pmtiles_open}};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* KINDS: none. */
+static size_t find_kind(const char *path) {
+    size_t kind = 0;
+    while (kind < KINDS && !ends_with(path, kinds[kind].ending))
+        kind++;
+    return kind;
+}
+
 bool camber_tile_set_knows(const char *path) {
-    return ends_with(path, ".mbtiles") || ends_with(path, ".pmtiles");
+    return find_kind(path) < KINDS;
+}
+
+const char *camber_tile_set_format(size_t n) {
+    return n < KINDS ? kinds[n].name : NULL;
 }
 
 static camber_status open_file(camber_context *context, const char *path, camber_file_naming naming, bool takes_any,
@@ -320,8 +339,7 @@ static camber_status open_file(camber_context *context, const char *path, camber
         return CAMBER_ERROR_MEMORY;
     made->naming = naming;
     made->takes_any = takes_any;
-    const camber_status status =
-        ends_with(path, ".pmtiles") ? camber_pmtiles_open(made, path) : camber_mbtiles_open(made, path);
+    const camber_status status = kinds[find_kind(path) % KINDS].open(made, path); /* another ending: the first */
     if (status != CAMBER_OK) {
         camber_tile_set_close(made);
         return status;

@@ -59,6 +59,8 @@ camber_status camber_tile_set_open_any(camber_context *context, const char *path
                                        camber_tile_set **set);
 /* Whether the path ends as such a file. */
 bool camber_tile_set_knows(const char *path);
+/* The name of the n-th kind of such files, counted from 0. NULL: past the last. */
+const char *camber_tile_set_format(size_t n);
 
 typedef struct camber_tile_template {
     const char *name;     /* in messages */

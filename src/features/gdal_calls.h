@@ -15,4 +15,8 @@ __attribute__((visibility("default"))) /* the module exports it */
 #endif
 extern const camber_gdal_calls camber_gdal;
 
+/* Finds the table: in the module, which it loads (src/load/), or where it is linked. NULL: the module is not there, and
+ * *why says why, or is NULL. */
+const camber_gdal_calls *camber_gdal_find(const char **why);
+
 #endif

@@ -10,6 +10,7 @@
 
 #include <stdio.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 static const double PROGRESS_MS = 50;
 
@@ -323,7 +324,18 @@ static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
                    stats->skipped_features);
 }
 
-camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc) {
+static bool knows(const char *path) {
+    struct stat about;
+    return camber_tile_set_knows(path) && strncmp(path, "/vsi", 4) != 0 &&
+           !(stat(path, &about) == 0 && S_ISDIR(about.st_mode));
+}
+
+static bool reads(const camber_source_desc *desc) {
+    return !desc->where;
+}
+
+static camber_status read_file(camber_features *features, const camber_source_desc *desc, bool *declined) {
+    *declined = false;
     input self = {.context = features->context, .features = features, .desc = desc};
     const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
@@ -352,3 +364,6 @@ camber_status camber_features_read_tile_file(camber_features *features, const ca
     camber_progress(features->context, "reading", 1);
     return CAMBER_OK;
 }
+
+const camber_reader camber_tile_file_reader = {
+    .knows = knows, .reads = reads, .read = read_file, .format = camber_tile_set_format};

@@ -3,6 +3,7 @@
 #define CAMBER_FORMATS_TILE_READER_H
 
 #include "archive/tile_set.h"
+#include "features/reader.h"
 #include "formats/mvt.h"
 
 typedef struct camber_tile_reading {
@@ -22,7 +23,8 @@ typedef struct camber_tile_result {
 /* Adds features and their polylines to features->source. Where it fails, the caller resets the set. */
 camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
                                          camber_tile_result *result);
-/* The part of camber_features_read for files that camber_tile_set_knows. */
-camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc);
+/* Reads files that have all their tiles in one: MBTiles, PMTiles. It leaves filters to GDAL, and folders, which it
+ * opens tile by tile. */
+extern const camber_reader camber_tile_file_reader;
 
 #endif

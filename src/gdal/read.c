@@ -5,6 +5,7 @@
  */
 #include "features/gdal_calls.h"
 #include "gdal/vector_file.h"
+#include "gdal/xml_order.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -525,7 +526,23 @@ static void register_drivers(void) {
     pthread_once(&registered, GDALAllRegister);
 }
 
+/* OpenStreetMap's XML: GDAL says nothing of ways that it has left out since it had not met their nodes. */
+static camber_status check_order(const camber_features *features, const camber_source_desc *desc, size_t before) {
+    if (!camber_osm_xml_is_unordered(desc->path))
+        return CAMBER_OK;
+    if (features->feature_count == before)
+        return camber_fail(features->context, CAMBER_ERROR_INPUT,
+                           "%s: no lines: nodes come behind the ways that name them, or ways behind relations; sort it "
+                           "by osmium sort",
+                           desc->path);
+    camber_log(features->context, CAMBER_LOG_WARNING,
+               "%s: nodes come behind ways, or ways behind relations; some may be left out: sort it by osmium sort",
+               desc->path);
+    return CAMBER_OK;
+}
+
 static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
+    const size_t before = features->feature_count;
     camber_gdal_confined confined;
     register_drivers();
     camber_status status = camber_gdal_confine(features->context, &confined);
@@ -542,7 +559,7 @@ static camber_status read_file(camber_features *features, const camber_source_de
             "%s: leads to the network, which nothing is fetched from; what it wants from there is left out: allow "
             "it (--allow-remote) if you trust it",
             desc->path);
-    return status;
+    return status == CAMBER_OK ? check_order(features, desc, before) : status;
 }
 
 /* ---- Formats ---- */
@@ -565,3 +582,8 @@ static const char *version(void) {
 }
 
 const camber_gdal_calls camber_gdal = {read_file, format_name, version};
+
+const camber_gdal_calls *camber_gdal_find(const char **why) {
+    *why = NULL;
+    return &camber_gdal;
+}

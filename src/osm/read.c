@@ -43,10 +43,10 @@ typedef struct reader {
     unsigned threads;
 } reader;
 
-bool camber_osm_reads(const camber_source_desc *desc) {
+static bool reads(const camber_source_desc *desc) {
     camber_osm_where where;
     return (!desc->where || camber_osm_where_parse(desc->where, &where)) &&
-           (!desc->layer || strcmp(desc->layer, LAYER) == 0) && camber_osm_knows(desc->path);
+           (!desc->layer || strcmp(desc->layer, LAYER) == 0);
 }
 
 static unsigned count_threads(const camber_source_desc *desc) {
@@ -567,7 +567,7 @@ static void add_stats(const reader *self) {
                    self->desc->path, self->clamped);
 }
 
-camber_status camber_osm_read(camber_features *features, const camber_source_desc *desc, bool *declined) {
+static camber_status read_pbf(camber_features *features, const camber_source_desc *desc, bool *declined) {
     const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
     reader self = {.context = features->context, .features = features, .desc = desc, .threads = count_threads(desc)};
@@ -589,12 +589,11 @@ camber_status camber_osm_read(camber_features *features, const camber_source_des
     return CAMBER_OK;
 }
 
-camber_status camber_osm_check_for_gdal(camber_context *context, const camber_source_desc *desc) {
+/* Whether GDAL reads rightly what this reader leaves. */
+static camber_status leave(camber_context *context, const camber_source_desc *desc) {
     camber_osm_file file;
     camber_osm_beyond beyond;
     bool declined = false;
-    if (!camber_osm_knows(desc->path))
-        return CAMBER_OK;
     camber_status status = camber_osm_file_open(context, desc->path, &file, &declined);
     if (status != CAMBER_OK || declined)
         return status;
@@ -616,3 +615,10 @@ camber_status camber_osm_check_for_gdal(camber_context *context, const camber_so
                                                       : "do without, or use the file that osmium "
                                                         "add-locations-to-ways was given");
 }
+
+static const char *format(size_t n) {
+    return n == 0 ? "OSM" : NULL;
+}
+
+const camber_reader camber_osm_reader = {
+    .knows = camber_osm_knows, .reads = reads, .read = read_pbf, .leave = leave, .format = format};

@@ -207,11 +207,10 @@ def check_guards(tree):
 class Layers:
     """The folders of src and which may use which: those that they link, and what these link in turn.
 
-    above: layers over the libraries, which call public functions too, and which libraries those are. others: folders
-    that CMake adds to a library."""
+    above: layers over the libraries, which call public functions too, and which libraries those are."""
 
-    def __init__(self, links, lines, above=None, others=()):
-        self.links, self.lines, self.above, self.others = links, lines, above or {}, others
+    def __init__(self, links, lines, above=None):
+        self.links, self.lines, self.above = links, lines, above or {}
         self.below = {name: self._reach(name) for name in links}
 
     def _reach(self, name):
@@ -248,8 +247,7 @@ def read_layers(root):
             above[words[0]] = {"camber", "camber-map"}
         elif "camber" in used:
             above[words[0]] = {"camber"}
-    others = set(re.findall(r"\btarget_sources\s*\(\w+\s+PRIVATE\s+(\w+)/", text))
-    return Layers(links, lines, above, others)
+    return Layers(links, lines, above)
 
 
 def check_layers(tree):
@@ -258,7 +256,7 @@ def check_layers(tree):
     if folders and not tree.layers.links:
         yield Finding("src/CMakeLists.txt", 1, "no layers", "add camber_layer(FOLDER LINKS FOLDER...) for each folder")
         return
-    for folder in sorted(folders - set(tree.layers.links) - tree.layers.others):
+    for folder in sorted(folders - set(tree.layers.links)):
         yield Finding("src/CMakeLists.txt", 1, "src/%s is no layer" % folder, "add camber_layer(%s LINKS ...)" % folder)
     for name in sorted(tree.layers.links):
         if name in tree.layers.below[name]:
@@ -332,15 +330,17 @@ def public_functions(tree):
 
 def link_arrows(tree):
     """(using layer, used layer) -> an example: source, symbol, the source that defines it."""
-    defined, used, public = {}, [], public_functions(tree)
+    defined, used, public = collections.defaultdict(list), [], public_functions(tree)
     for source, symbol, is_defined in list_symbols(tree):
         if is_defined:
-            defined[symbol] = source
+            defined[symbol].append(source)
         else:
             used.append((source, symbol))
     arrows = {}
     for source, symbol in sorted(used):
-        target = defined.get(symbol)
+        # Two layers may define it, for two libraries: the one that this layer links counts.
+        targets = sorted(defined[symbol], key=lambda one: not tree.layers.allows(source.split("/")[1], one.split("/")[1]))
+        target = targets[0] if targets else None
         if symbol in public and source.split("/")[1] in tree.layers.above:
             continue
         if target and source.split("/")[1] != target.split("/")[1]:

@@ -74,8 +74,8 @@ static size_t expect_as_gdal(fixture *it, const char *path, bool keep_apart, boo
         camber_features_destroy(features);
         bool declined = false;
         camber_features_create(it->on.context, &it->on.style, &features);
-        assert_true(camber_osm_reads(&desc));
-        (void)camber_osm_read(features, &desc, &declined);
+        assert_true(camber_reader_takes(&camber_osm_reader, &desc));
+        (void)camber_osm_reader.read(features, &desc, &declined);
         assert_int_equal(declined, !takes);
         camber_features_destroy(features);
     }
@@ -335,12 +335,13 @@ static void test_declined(void **state) {
     WAY(it, street, -5, -4);
     (void)finish(it, false);
     /* Another layer, no PBF, a file that is not there. */
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
-    assert_true(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .layer = "lines"}));
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = "/tmp"}));
+    assert_false(camber_reader_takes(&camber_osm_reader,
+                                     &(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
+    assert_true(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path, .layer = "lines"}));
+    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
+    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = "/tmp"}));
     write_file(&it->on, "file", "<osm version=\"0.6\"></osm>", 25);
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path}));
+    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path}));
 }
 
 /* Filters that this reader knows, and those that it leaves to GDAL, which says what is wrong with the last. */
@@ -370,8 +371,9 @@ static void test_filters(void **state) {
         assert_true(finish(it, true) > 0);
     }
     for (size_t i = 0; i < sizeof left / sizeof *left; i++)
-        assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
-                     strcmp(left[i], "HIGHWAY = 'primary'") != 0);
+        assert_false(
+            camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
+            strcmp(left[i], "HIGHWAY = 'primary'") != 0);
     /* Keys that differ in case alone, and a filter that nothing passes: GDAL warns of that. */
     it->where = "HIGHWAY = 'primary'";
     (void)finish(it, false);
@@ -441,7 +443,7 @@ static void expect_areas(fixture *it, const char *areas, size_t open) {
         camber_features *features;
         assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
         const camber_source_desc desc = {.path = it->on.path, .where = it->where, .threads = threads[i]};
-        expect_ok(&it->on, camber_osm_read(features, &desc, &declined));
+        expect_ok(&it->on, camber_osm_reader.read(features, &desc, &declined));
         assert_false(declined);
         list_areas(features, got, sizeof got);
         assert_string_equal(got, areas);
@@ -562,11 +564,11 @@ static camber_status read_damaged(fixture *it, uint32_t threads) {
     const camber_source_desc desc = {.path = it->on.path, .threads = threads};
     assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
     it->on.errors = 0;
-    if (!camber_osm_reads(&desc)) {
+    if (!camber_reader_takes(&camber_osm_reader, &desc)) {
         camber_features_destroy(features);
         return CAMBER_ERROR_INPUT;
     }
-    status = camber_osm_read(features, &desc, &declined);
+    status = camber_osm_reader.read(features, &desc, &declined);
     assert_int_equal(it->on.errors, status != CAMBER_OK);
     assert_true(status == CAMBER_OK || status == CAMBER_ERROR_INPUT);
     if (status != CAMBER_OK || declined)
@@ -722,7 +724,8 @@ static void test_memory(void **state) {
         it->on.errors = 0;
         status = camber_features_create(context, &it->on.style, &features);
         if (status == CAMBER_OK)
-            status = camber_osm_read(features, &(camber_source_desc){.path = it->on.path, .threads = 3}, &declined);
+            status =
+                camber_osm_reader.read(features, &(camber_source_desc){.path = it->on.path, .threads = 3}, &declined);
         assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
         assert_int_equal(it->on.errors, status != CAMBER_OK);
         failed += status != CAMBER_OK;

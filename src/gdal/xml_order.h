@@ -1,6 +1,6 @@
 /* OpenStreetMap's XML, which GDAL reads: whether nodes, ways and relations come in the order that it needs. */
-#ifndef CAMBER_OSM_XML_ORDER_H
-#define CAMBER_OSM_XML_ORDER_H
+#ifndef CAMBER_GDAL_XML_ORDER_H
+#define CAMBER_GDAL_XML_ORDER_H
 
 #include "base/base.h"
 

@@ -1,5 +1,5 @@
 /* Looks at the names of elements alone, from front to back. */
-#include "osm/xml_order.h"
+#include "gdal/xml_order.h"
 
 #include "base/open_file.h"
 

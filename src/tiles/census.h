@@ -3,7 +3,7 @@
 #define CAMBER_TILES_CENSUS_H
 
 #include "archive/tile_set.h"
-#include "map/excerpt.h"
+#include "map/zoom_plan.h"
 #include "tiles/workers.h"
 
 /* A metatile is a square of tiles that is drawn as one picture: side x side of them, 8 at most. */

@@ -186,9 +186,14 @@ static camber_status try_scene(camber_context *context, void *user) {
     uint64_t hash = CAMBER_HASH_START;
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         camber_scene *scene = NULL;
-        const camber_status status = camber_scene_create(d->features, descs + i, &scene);
+        camber_status status = camber_scene_create(d->features, descs + i, &scene);
         if (status != CAMBER_OK) {
             assert_null(scene);
+            return status;
+        }
+        status = camber_scene_project(scene);
+        if (status != CAMBER_OK) {
+            camber_scene_destroy(scene);
             return status;
         }
         const uint64_t one = hash_scene(scene);
@@ -353,6 +358,7 @@ static int set_up(void **state) {
     }
     const camber_scene_desc desc = {.view = {CAMBER_VIEW_BBOX, 9.9, 49.9, 10.6, 50.5}};
     assert_int_equal(camber_scene_create(d->features, &desc, &d->scene), CAMBER_OK);
+    assert_int_equal(camber_scene_project(d->scene), CAMBER_OK);
     size_t count = 0;
     const camber_stroke *strokes = camber_scene_get_strokes(d->scene, &count);
     assert_true(count >= 4 && camber_scene_get_info(d->scene).layers >= 3);

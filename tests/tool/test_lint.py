@@ -182,6 +182,15 @@ class Lint(unittest.TestCase):
                                        "int camber_up(void) { return camber_png(); }\n")
         self.finds("src/base/base.c:1", "layer base calls camber_png of src/io/png.c", self.compile())
 
+    def test_link_of_two_definitions(self):
+        """One is of a layer that the caller links; the other one takes its place in another library."""
+        self.append("src/CMakeLists.txt", "camber_layer(gl LINKS base)\n")
+        for layer in ("base", "gl"):
+            self.write("src/%s/found.c" % layer, HEAD + "int camber_found(void);\nint camber_found(void) { return 1; }\n")
+        self.append("src/draw/draw.c", "int camber_found(void);\nint camber_draw(void);\n"
+                                       "int camber_draw(void) { return camber_found(); }\n")
+        self.assertEqual(self.findings(self.compile()), [])
+
     def test_link_cycle(self):
         """Where no layers are named, those that the objects show must have no circle."""
         self.write("src/CMakeLists.txt", "")

@@ -61,6 +61,10 @@ static camber_status open_scene(trial *t, const view *v, const char *path) {
     desc.view.width = desc.view.height = WIDE_PX;
     if (status == CAMBER_OK)
         status = camber_scene_create(t->features, &desc, &t->wide);
+    if (status == CAMBER_OK)
+        status = camber_scene_project(t->scene);
+    if (status == CAMBER_OK)
+        status = camber_scene_project(t->wide);
     return status;
 }
 

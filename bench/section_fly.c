@@ -114,8 +114,7 @@ static camber_status open_flight(flight *f, const char *path) {
     bench *b = f->b;
     const camber_source_desc source = {.path = path};
     const camber_scene_desc whole = {.view = {.width = f->b->fly_width, .height = f->b->fly_height},
-                                     .simplify_px = BENCH_SIMPLIFY_PX,
-                                     .on_device = true};
+                                     .simplify_px = BENCH_SIMPLIFY_PX};
     camber_status status = camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, f->style, &f->features);

@@ -63,7 +63,7 @@ static camber_status parse_layers(bench *b, styled *s, const char *text, size_t 
 
 /* Each view is of another zoom: all features are evaluated again. */
 static camber_status evaluate_layers(bench *b, styled *s, const char *city) {
-    const camber_scene_desc desc = {.on_device = true};
+    const camber_scene_desc desc = {.use = CAMBER_SCENE_VIEWS};
     camber_status status = camber_features_create(b->context, s->style, &s->features);
     if (status == CAMBER_OK)
         status = camber_features_read(s->features, &(camber_source_desc){.path = city});

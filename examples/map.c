@@ -56,7 +56,7 @@ static bool fly(camber_context *context, camber_scene *scene, camber_mesh *mesh,
 int main(int argc, char **argv) {
     const camber_context_desc log = {.log = print_message, .log_user = stderr};
     const camber_source_desc source = {.path = argc > 1 ? argv[1] : "map.geojson"};
-    const camber_scene_desc desc = {.view = {.width = 960, .height = 600}, .simplify_px = 0.1, .on_device = true};
+    const camber_scene_desc desc = {.view = {.width = 960, .height = 600}, .simplify_px = 0.1};
     camber_context *context = NULL;
     camber_style *style = NULL;
     camber_features *features = NULL;

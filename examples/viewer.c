@@ -270,7 +270,7 @@ static bool restyle(viewer *v, side *s, bool dark) {
 }
 
 static bool make_scene(viewer *v, side *s, const job *order) {
-    const camber_scene_desc desc = {.view = view_of(order), .simplify_px = SIMPLIFY_PX, .on_device = true};
+    const camber_scene_desc desc = {.view = view_of(order), .simplify_px = SIMPLIFY_PX};
     const bool is_other = order->dark != s->made_for.dark || order->edition != s->made_for.edition;
     if ((!s->style || is_other) && !restyle(v, s, order->dark))
         return false;

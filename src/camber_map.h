@@ -224,8 +224,9 @@ CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
  * It costs time once a process, and half as much again where threads of a device or a surface run already: call it
  * before these are opened. It costs nothing in the static library, where GDAL is linked. */
 CAMBER_API camber_status camber_gdal_load(camber_context *context);
-/* Returns the short name ("GPKG") of OGR's n-th vector driver, counted from 0, that reads files without an allowance
- * (camber_access). NULL: past the last, or GDAL cannot be loaded. The string is OGR's. */
+/* Returns the short name ("GPKG") of the n-th format, counted from 0, that camber_features_read reads without an
+ * allowance (camber_access): first OGR's vector drivers, if GDAL can be loaded, then those formats that camber reads by
+ * itself and OGR does not. NULL: past the last. The string is OGR's, or the library's. */
 CAMBER_API const char *camber_format_list(size_t n);
 /* Returns GDAL's version as it says it, "GDAL 3.6.2, ..."; NULL where GDAL cannot be loaded. */
 CAMBER_API const char *camber_gdal_get_version(void);
@@ -281,21 +282,21 @@ CAMBER_API camber_status camber_features_read_sprites(camber_features *features,
 
 /* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */
 
+/* The views that a scene is made for. */
+typedef enum camber_scene_use {
+    CAMBER_SCENE_VIEWS = 0, /* a view that moves: the network stays as long as it serves the others */
+    /* One view; another one takes a new network. Points are rounded to 1/4096 px of it, as tiles of its zoom have them
+     * (camber_tiles.h), so that these are cuts of the picture. */
+    CAMBER_SCENE_ONE_VIEW,
+    CAMBER_SCENE_LINES, /* as VIEWS, of lines only: camber_scene_triangulate has the areas */
+} camber_scene_use;
+
 typedef struct camber_scene_desc {
     camber_view_desc view;
     /* A point is dropped where the line stays this close to it, device px. Nodes that lines share go or stay in all of
      * them. 0: none is dropped. */
     double simplify_px;
-    /* true: camber_scene_create leaves out camber_scene_project, which camber_scene_tessellate does not need. */
-    bool on_device;
-    /* true: the scene is for this view; another one takes a new network. Points are rounded to 1/4096 px of it, as
-     * tiles of its zoom have them (camber_tiles.h), so that these are cuts of the picture. */
-    bool still;
-    /* The scene's own features, where nothing else is drawn of them: their points go as soon as they are in the
-     * network, as by camber_features_release_points. Needs still. NULL: they stay. */
-    camber_features *spent;
-    /* true: its network and passes have lines alone; camber_scene_triangulate has the areas. */
-    bool lines_only;
+    camber_scene_use use;
 } camber_scene_desc;
 
 typedef struct camber_scene_info {
@@ -327,6 +328,10 @@ CAMBER_API camber_status camber_features_read_for(camber_features *features, con
  * Returns CAMBER_ERROR_ARGUMENT (a view out of range), CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                              camber_scene **scene);
+/* Makes the last scene of its features, of ONE_VIEW whatever use says: their points go as soon as they are in the
+ * network, as by camber_features_release_points, and those that it leaves out before that. Returns the same. */
+CAMBER_API camber_status camber_scene_create_last(camber_features *features, const camber_scene_desc *desc,
+                                                  camber_scene **scene);
 CAMBER_API void camber_scene_destroy(camber_scene *scene);
 
 /* Moves the scene to another view of the same features, and evaluates the style for its zoom. The network stays, on the
@@ -343,8 +348,8 @@ CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camb
 CAMBER_API camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
                                                     camber_tessellation_desc *desc);
 
-/* Projects the lines that the view sees on the host, by the CPU twin, for the getters below. After camber_scene_move,
- * and for a scene that was made with on_device, call this before them; where all is there it does nothing.
+/* Projects the lines that the view sees on the host, by the CPU twin, for the getters below: call it before them, and
+ * again after camber_scene_move. Where all is there it does nothing. Drawing a network does not need it.
  * Each stretch of a line that the view cuts becomes a polyline of its own. So these lines have no dashes, gradients,
  * trims or patterns when they are drawn.
  * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */

@@ -102,11 +102,11 @@ if(NOT CLANG_TIDY_IS_PINNED)
 endif()
 foreach(source IN LISTS lint_sources)
   file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${source})
-  if(name MATCHES "^src/(style|source|map)/" AND NOT CAMBER_MAP)
+  if(name MATCHES "^src/(style|features|formats|map)/" AND NOT CAMBER_MAP)
     continue()
   endif()
   set(made)
-  if(name MATCHES "^src/source/") # clang-tidy reads the headers that protoc-c makes
+  if(name MATCHES "^src/formats/") # clang-tidy reads the headers that protoc-c makes
     set(made ${CMAKE_BINARY_DIR}/src/messages/vector_tile.pb-c.h)
   endif()
   string(REPLACE "/" "_" name ${name})

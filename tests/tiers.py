@@ -35,7 +35,7 @@ DOCUMENTS = re.compile(r"(docs/.*|[^/]*\.md|LICENSE|src/camber\.3)$")
 BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cmake|\.in)|tests/data/.*|"
                    r"tests/(CMakeLists\.txt|environment\.cmake|fuzz/CMakeLists\.txt))$")
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
-MODULES = {"camber-map": ("gdal", "load")}  # loaded when they are needed: no arrow leads there
+MODULES = {"camber-map": ("gdal",)}  # loaded when they are needed: no arrow leads there
 DEFAULT_COST = 5.0
 # Seconds of a processor for what names a changed layer; the rest of it waits for its share.
 DEEP_SECONDS, SANITIZED_SECONDS, MUTANTS_SECONDS = 900.0, 500.0, 500.0

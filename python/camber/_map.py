@@ -101,8 +101,8 @@ class Map:
         if self._scene is not None and self._simplify == simplify:
             core.check(lib.camber_scene_move(self._scene, ffi.new("camber_view_desc *", view)))
             return
-        desc = ffi.new("camber_scene_desc *", {"view": view, "simplify_px": simplify, "on_device": True,
-                                               "still": once})
+        desc = ffi.new("camber_scene_desc *", {"view": view, "simplify_px": simplify,
+                                               "use": lib.CAMBER_SCENE_ONE_VIEW if once else lib.CAMBER_SCENE_VIEWS})
         self._scene = core.make(lib.camber_scene_create, self._features, desc)
         self._simplify = simplify
 

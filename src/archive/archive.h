@@ -17,7 +17,7 @@
 #ifndef CAMBER_ARCHIVE_ARCHIVE_H
 #define CAMBER_ARCHIVE_ARCHIVE_H
 
-#include "source/tile_set.h"
+#include "archive/tile_set.h"
 
 typedef enum camber_archive_format {
     CAMBER_ARCHIVE_PMTILES = 0,

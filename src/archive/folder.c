@@ -3,8 +3,8 @@
 
 #include "archive/folder.h"
 #include "archive/output_file.h"
+#include "archive/pmtiles.h"
 #include "archive/tileset.h"
-#include "source/pmtiles.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -6,8 +6,8 @@
 
 #include "archive/archive.h"
 #include "archive/folder.h"
+#include "archive/pmtiles.h"
 #include "archive/tile_check.h"
-#include "source/pmtiles.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -4,8 +4,8 @@
  * are kept and sorted. Memory: 24 bytes an entry. */
 #include "archive/tally.h"
 
+#include "archive/tile_schema.h"
 #include "camber_tiles.h"
-#include "source/schema.h"
 
 #include <sqlite3.h>
 #include <stdlib.h>
@@ -130,7 +130,7 @@ static camber_status fill(shown *s) {
                                   .shard = archive->shard,
                                   .shards = archive->shards,
                                   .zooms = s->zooms};
-    s->info.schema = camber_schema_of_layers(json_object_get(archive->metadata, "vector_layers"));
+    s->info.schema = camber_tile_schema_of_layers(json_object_get(archive->metadata, "vector_layers"));
     memcpy(s->info.bounds, archive->bounds, sizeof s->info.bounds);
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
         if (tally.zoom_tiles[zoom])

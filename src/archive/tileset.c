@@ -8,7 +8,7 @@
  * from the north, as the folder has them. */
 #include "archive/tileset.h"
 
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
 
 #include <inttypes.h>
 #include <stdio.h>

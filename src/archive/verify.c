@@ -1,8 +1,8 @@
 /* Verifies archives: findings, and what the formats have in common: zooms, bounds, metadata and the bytes of tiles. */
 #include "archive/verify.h"
 #include "archive/contents.h"
+#include "archive/pmtiles.h"
 #include "archive/tile_check.h"
-#include "source/pmtiles.h"
 
 #include <math.h>
 #include <stdarg.h>

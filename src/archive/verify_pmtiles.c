@@ -1,7 +1,7 @@
 /* Verifies PMTiles: every promise of the header and the directories, as the specification and its own tool have them,
  * and every content that a directory names. */
+#include "archive/pmtiles.h"
 #include "archive/verify.h"
-#include "source/pmtiles.h"
 
 #include <inttypes.h>
 

@@ -3,8 +3,8 @@
  * Rows go in by the tiles' numbers, so that equal tiles make equal files; a transaction takes many rows. The indices
  * are made at the end. SQLite keeps no journal of its own: the file has its name only when it is whole and synced. */
 #include "archive/output_file.h"
+#include "archive/pmtiles.h"
 #include "archive/writer.h"
-#include "source/pmtiles.h"
 
 #include <errno.h>
 #include <fcntl.h>

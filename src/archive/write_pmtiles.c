@@ -7,8 +7,8 @@
 #define _FILE_OFFSET_BITS 64
 
 #include "archive/output_file.h"
+#include "archive/pmtiles.h"
 #include "archive/writer.h"
-#include "source/pmtiles.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -11,8 +11,8 @@
 #include "archive/checksum.h"
 #include "archive/folder.h"
 #include "archive/output_file.h"
+#include "archive/pmtiles.h"
 #include "archive/units.h"
-#include "source/pmtiles.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -39,7 +39,7 @@ struct camber_context {
     camber_budget own_budget;
     camber_spent spent;
     uint64_t next_serial;        /* the next number for polylines; meshes recognize the ones they have uploaded by it */
-    const void *gdal;            /* the reader with GDAL that load/gdal.c has loaded. NULL: none yet */
+    const void *gdal;            /* the calls of GDAL's reader, which formats/gdal.c has loaded. NULL: none yet */
     camber_device_info *devices; /* that camber_device_list has found, looked for once */
     size_t device_count;
     bool saves_shared; /* cache.c: files are saved for all users of the machine */

@@ -147,7 +147,9 @@ static camber_status project_map(camber_compared_networks *networks, size_t i, c
     const camber_scene_desc desc = {.view = networks->view, .simplify_px = options->simplify_px};
     camber_scene_destroy(networks->scene);
     networks->scene = NULL;
-    const camber_status status = camber_scene_create(networks->features[i], &desc, &networks->scene);
+    camber_status status = camber_scene_create(networks->features[i], &desc, &networks->scene);
+    if (status == CAMBER_OK)
+        status = camber_scene_project(networks->scene);
     if (status != CAMBER_OK)
         return status;
     *network = (camber_compared_network){.name = options->where_count ? options->wheres[i] : options->inputs[0],

@@ -297,38 +297,44 @@ static bool has_areas(camber_scene *scene) {
     return false;
 }
 
+static camber_status project_new(camber_input *input, const camber_scene_desc *desc) {
+    const camber_status status = camber_scene_create(input->features, desc, &input->scene);
+    return status == CAMBER_OK ? camber_scene_project(input->scene) : status;
+}
+
 /* Lines are checked as lines alone, and areas with all that is drawn. */
 static camber_status project_validated(camber_input *input, camber_scene_desc desc) {
-    const camber_status status = camber_scene_create(input->features, &desc, &input->scene);
+    const camber_status status = project_new(input, &desc);
     if (status != CAMBER_OK || !has_areas(input->scene))
         return status;
     input->filled = input->scene;
     input->scene = NULL;
-    desc.lines_only = true;
-    return camber_scene_create(input->features, &desc, &input->scene);
+    desc.use = CAMBER_SCENE_LINES;
+    return project_new(input, &desc);
 }
 
-static camber_status project_map(camber_input *input) {
-    if (input->scene)
-        return camber_scene_move(input->scene, &input->view);
-    const bool once = input->session->options->verb == CAMBER_VERB_RENDER;
-    const camber_scene_desc desc = {.view = input->view,
-                                    .simplify_px = input->session->options->simplify_px,
-                                    .on_device = once,
-                                    .still = once,
-                                    .spent = once ? input->features : NULL,
-                                    .lines_only = input->session->options->verb == CAMBER_VERB_TESSELLATE};
-    if (input->session->options->verb == CAMBER_VERB_VALIDATE)
-        return project_validated(input, desc);
-    camber_status status = camber_scene_create(input->features, &desc, &input->scene);
-    if (status != CAMBER_OK || !once)
+/* One picture is drawn, of the network: its lines are counted, and go. */
+static camber_status project_once(camber_input *input, const camber_scene_desc *desc) {
+    camber_status status = camber_scene_create_last(input->features, desc, &input->scene);
+    if (status != CAMBER_OK)
         return status;
-    /* One picture is drawn, of the network: its lines are counted, and go. */
     status = camber_scene_project(input->scene);
     if (status == CAMBER_OK)
         input->drawn = camber_polylines_get_stats(camber_scene_get_polylines(input->scene));
     camber_scene_release_lines(input->scene);
     return status;
+}
+
+static camber_status project_map(camber_input *input) {
+    if (input->scene)
+        return camber_scene_move(input->scene, &input->view);
+    const camber_verb verb = input->session->options->verb;
+    const camber_scene_desc desc = {.view = input->view,
+                                    .simplify_px = input->session->options->simplify_px,
+                                    .use = verb == CAMBER_VERB_TESSELLATE ? CAMBER_SCENE_LINES : CAMBER_SCENE_VIEWS};
+    if (verb == CAMBER_VERB_VALIDATE)
+        return project_validated(input, desc);
+    return verb == CAMBER_VERB_RENDER ? project_once(input, &desc) : project_new(input, &desc);
 }
 #endif
 

@@ -79,13 +79,8 @@ static void add_formats(json_t *object) {
     const char *version = camber_gdal_get_version();
     json_object_set_new(object, "gdal", version ? camber_json_text(version) : json_null());
     const char *name;
-    bool has_pmtiles = false;
-    for (size_t i = 0; (name = camber_format_list(i)) != NULL; i++) {
+    for (size_t i = 0; (name = camber_format_list(i)) != NULL; i++)
         json_array_append_new(list, camber_json_text(name));
-        has_pmtiles |= strcmp(name, "PMTiles") == 0;
-    }
-    if (!has_pmtiles) /* camber reads them by itself if GDAL does not */
-        json_array_append_new(list, json_string("PMTiles"));
 #endif
 }
 

@@ -8,8 +8,8 @@
  *     3  boxes around the points that the frontier asks for, until it asks for none */
 #include "gdal/vector_file.h"
 
-#include "source/frontier.h"
-#include "source/mercator.h"
+#include "features/frontier.h"
+#include "features/mercator.h"
 
 #include <math.h>
 #include <stdlib.h>

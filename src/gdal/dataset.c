@@ -1,9 +1,9 @@
 /* for stat64, which VSIStatBufL is */
 #define _LARGEFILE64_SOURCE
 
+#include "archive/database.h"
 #include "base/embedded.h"
 #include "gdal/vector_file.h"
-#include "source/database.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -124,14 +124,14 @@ static char *make_conf(camber_context *context, const char *keys, const bool nam
     return filled;
 }
 
-static camber_status write_conf(camber_dataset *dataset, const camber_style *style) {
+static camber_status write_conf(camber_dataset *dataset, const camber_schema *schema) {
     camber_context *context = dataset->context;
     key_list list = {.context = context};
     bool named[COLUMNS] = {false};
     /* Never empty: the driver would fall back on nothing. */
     bool made = add_key(&list, "highway", strlen("highway"));
-    for (size_t i = 0; made && i < style->property_count; i++)
-        made = add_key(&list, style->properties[i], strlen(style->properties[i]));
+    for (size_t i = 0; made && i < schema->property_count; i++)
+        made = add_key(&list, schema->properties[i], strlen(schema->properties[i]));
     for (size_t i = 0; made && camber_osm_area_keys[i]; i++)
         made = add_key(&list, camber_osm_area_keys[i], strlen(camber_osm_area_keys[i]));
     if (made && dataset->desc->where)
@@ -329,7 +329,7 @@ camber_status camber_dataset_fail_elsewhere(camber_context *context, const char 
                        name);
 }
 
-camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
+camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_schema *schema,
                                   bool unsorted, camber_dataset *dataset) {
     *dataset = (camber_dataset){.context = context, .desc = desc, .zoom = -1};
     bool directory;
@@ -338,7 +338,7 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     if (status == CAMBER_OK && camber_gdal_leads_elsewhere(desc->path))
         status = camber_dataset_fail_elsewhere(context, desc->path);
     if (status == CAMBER_OK)
-        status = write_conf(dataset, style);
+        status = write_conf(dataset, schema);
     if (status != CAMBER_OK)
         goto done;
     status = CAMBER_ERROR_MEMORY;

@@ -18,11 +18,11 @@ static int find_field(OGRFeatureDefnH schema, const char *name) {
 }
 
 static void find_properties(camber_columns *columns, OGRFeatureDefnH schema) {
-    const camber_style *style = columns->features->style;
-    for (size_t i = 0; i < style->property_count; i++) {
+    const camber_schema *wanted = columns->features->schema;
+    for (size_t i = 0; i < wanted->property_count; i++) {
         camber_column *one = &columns->items[i];
         *one = (camber_column){.field = -1};
-        one->field = find_field(schema, style->properties[i]);
+        one->field = find_field(schema, wanted->properties[i]);
         if (one->field < 0)
             continue;
         OGRFieldDefnH definition = OGR_FD_GetFieldDefn(schema, one->field);
@@ -34,7 +34,7 @@ static void find_properties(camber_columns *columns, OGRFeatureDefnH schema) {
 camber_status camber_columns_find(camber_columns *columns, camber_features *features, OGRFeatureDefnH schema,
                                   bool tiles, bool osm) {
     camber_context *context = features->context;
-    const size_t count = features->style->property_count;
+    const size_t count = features->schema->property_count;
     size_t keys = 0;
     while (camber_osm_area_keys[keys])
         keys++;
@@ -43,7 +43,7 @@ camber_status camber_columns_find(camber_columns *columns, camber_features *feat
         (!columns->areas && !(columns->areas = camber_alloc(context, keys, sizeof *columns->areas))))
         return CAMBER_ERROR_MEMORY;
     columns->features = features;
-    columns->unsorted = !osm && !(tiles && camber_style_names_layer(features->style, OGR_FD_GetName(schema)));
+    columns->unsorted = !osm && !(tiles && camber_schema_names_layer(features->schema, OGR_FD_GetName(schema)));
     find_properties(columns, schema);
     columns->id_count = columns->area_count = 0;
     for (size_t i = 0; tiles && i < sizeof id_names / sizeof *id_names; i++) {
@@ -69,7 +69,7 @@ void camber_columns_free(camber_columns *columns, camber_context *context) {
 }
 
 static bool reads_field(const camber_columns *columns, int field) {
-    for (size_t i = 0; i < columns->features->style->property_count; i++)
+    for (size_t i = 0; i < columns->features->schema->property_count; i++)
         if (columns->items[i].field == field)
             return true;
     for (size_t i = 0; i < columns->id_count; i++)
@@ -121,8 +121,8 @@ static camber_status read_value(camber_columns *columns, OGRFeatureH feature, co
 
 camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature, uint32_t layer,
                                    camber_geometry_kind kind, uint32_t *class_index) {
-    const camber_style *style = columns->features->style;
-    for (size_t i = 0; i < style->property_count; i++) {
+    const camber_schema *schema = columns->features->schema;
+    for (size_t i = 0; i < schema->property_count; i++) {
         const camber_status status = read_value(columns, feature, &columns->items[i], &columns->values[i]);
         if (status != CAMBER_OK)
             return status;

@@ -7,7 +7,7 @@
 /* How many features are examined to learn what a layer of no declared type holds. */
 enum { PEEKED_FEATURES = 32 };
 
-static bool holds_drawn(OGRwkbGeometryType type, const camber_style *style) {
+static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
     switch (wkbFlatten(type)) {
     case wkbUnknown:
     case wkbLineString:
@@ -24,9 +24,9 @@ static bool holds_drawn(OGRwkbGeometryType type, const camber_style *style) {
     case wkbSurface:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbTriangle: return camber_features_kinds(style, true) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
+    case wkbTriangle: return camber_schema_kinds(schema, true) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
     case wkbPoint:
-    case wkbMultiPoint: return camber_features_kinds(style, true) & CAMBER_KIND_POINT;
+    case wkbMultiPoint: return camber_schema_kinds(schema, true) & CAMBER_KIND_POINT;
     default: return false;
     }
 }
@@ -96,7 +96,7 @@ static camber_status fail_layer(const camber_dataset *dataset) {
                        dataset->desc->path, count ? names : "(none)");
 }
 
-camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style *style, int **layers, size_t *count) {
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema *schema, int **layers, size_t *count) {
     GDALDatasetH handle = dataset->handle;
     const int total = GDALDatasetGetLayerCount(handle);
     int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1) + 1, sizeof *chosen);
@@ -113,12 +113,13 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style 
         one = find_roads(handle);
     else
         for (int i = 0; i < total; i++)
-            if (holds_drawn(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), style))
+            if (holds_drawn(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), schema))
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;
     /* Closed ways are among the lines; what relations make of ways is in a layer of its own. */
-    if (dataset->osm && !dataset->desc->layer && style->wants_areas && (one = find_layer(handle, "multipolygons")) >= 0)
+    if (dataset->osm && !dataset->desc->layer && schema->wants_areas &&
+        (one = find_layer(handle, "multipolygons")) >= 0)
         chosen[found++] = one;
     if (found == 0) {
         camber_free(dataset->context, chosen);

@@ -3,8 +3,9 @@
  * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and weighed, or an
  * error after which the set is as before. This is the module's entry: camber_gdal.
  */
+#include "features/gdal_calls.h"
 #include "gdal/vector_file.h"
-#include "source/gdal_calls.h"
+#include "gdal/xml_order.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -56,7 +57,7 @@ static camber_status begin_layer(reader *self, int index) {
         status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
-    self->lines.kinds = camber_features_kinds(self->features->style, self->columns.unsorted);
+    self->lines.kinds = camber_schema_kinds(self->features->schema, self->columns.unsorted);
     /* A filter may read any field, so none is ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
@@ -426,11 +427,11 @@ static camber_status check_result(reader *self, size_t features_before) {
 
 static camber_status read_dataset(reader *self, bool *unsorted) {
     camber_context *context = self->context;
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     const size_t features_before = self->features->feature_count;
     int *layers = NULL;
     size_t count = 0;
-    camber_status status = camber_dataset_layers(&self->dataset, style, &layers, &count);
+    camber_status status = camber_dataset_layers(&self->dataset, schema, &layers, &count);
     if (status == CAMBER_OK && self->dataset.zoom >= 0)
         status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->stitcher);
     if (status != CAMBER_OK)
@@ -438,7 +439,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     self->lines = (camber_feature_lines){.context = context,
                                          .world = {.context = context, .whole = self->stitcher},
                                          .rings.stats = &self->features->stats,
-                                         .directed = style->directed};
+                                         .directed = schema->directed};
     if (self->dataset.osm)
         status = begin_osm(self, layers, count);
     if (status == CAMBER_OK)
@@ -486,7 +487,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     const size_t signed_size = features->attribution_size;
     const camber_features_stats stats = features->stats;
     const double start_ms = camber_now_ms();
-    camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
+    camber_status status = camber_dataset_open(features->context, desc, features->schema, *unsorted, &self.dataset);
     if (status != CAMBER_OK)
         return status;
     CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);
@@ -525,7 +526,23 @@ static void register_drivers(void) {
     pthread_once(&registered, GDALAllRegister);
 }
 
+/* OpenStreetMap's XML: GDAL says nothing of ways that it has left out since it had not met their nodes. */
+static camber_status check_order(const camber_features *features, const camber_source_desc *desc, size_t before) {
+    if (!camber_osm_xml_is_unordered(desc->path))
+        return CAMBER_OK;
+    if (features->feature_count == before)
+        return camber_fail(features->context, CAMBER_ERROR_INPUT,
+                           "%s: no lines: nodes come behind the ways that name them, or ways behind relations; sort it "
+                           "by osmium sort",
+                           desc->path);
+    camber_log(features->context, CAMBER_LOG_WARNING,
+               "%s: nodes come behind ways, or ways behind relations; some may be left out: sort it by osmium sort",
+               desc->path);
+    return CAMBER_OK;
+}
+
 static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
+    const size_t before = features->feature_count;
     camber_gdal_confined confined;
     register_drivers();
     camber_status status = camber_gdal_confine(features->context, &confined);
@@ -542,7 +559,7 @@ static camber_status read_file(camber_features *features, const camber_source_de
             "%s: leads to the network, which nothing is fetched from; what it wants from there is left out: allow "
             "it (--allow-remote) if you trust it",
             desc->path);
-    return status;
+    return status == CAMBER_OK ? check_order(features, desc, before) : status;
 }
 
 /* ---- Formats ---- */
@@ -565,3 +582,8 @@ static const char *version(void) {
 }
 
 const camber_gdal_calls camber_gdal = {read_file, format_name, version};
+
+const camber_gdal_calls *camber_gdal_find(const char **why) {
+    *why = NULL;
+    return &camber_gdal;
+}

@@ -2,11 +2,11 @@
 #ifndef CAMBER_GDAL_VECTOR_FILE_H
 #define CAMBER_GDAL_VECTOR_FILE_H
 
-#include "source/features.h"
-#include "source/osm_keys.h"
-#include "source/rings.h"
-#include "source/tile_stitcher.h"
-#include "source/world_lines.h"
+#include "features/features.h"
+#include "features/osm_keys.h"
+#include "features/rings.h"
+#include "features/tile_stitcher.h"
+#include "features/world_lines.h"
 
 #include <gdal.h>
 #include <ogr_api.h>
@@ -74,14 +74,14 @@ typedef struct camber_dataset {
 } camber_dataset;
 
 /* Opens desc->path, which stays named by the dataset. unsorted: OSM nodes come in no order. */
-camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
+camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_schema *schema,
                                   bool unsorted, camber_dataset *dataset);
 void camber_dataset_close(camber_dataset *dataset);
 /* The attribution: for OpenStreetMap's own formats what its licence asks for, for others what the file says. NULL:
  * none. */
 const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Indices of the layers to read; freed with camber_free. */
-camber_status camber_dataset_layers(camber_dataset *dataset, const camber_style *style, int **layers, size_t *count);
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema *schema, int **layers, size_t *count);
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
 
@@ -169,8 +169,8 @@ typedef struct camber_column {
 
 typedef struct camber_columns {
     camber_features *features;
-    camber_column *items; /* style->property_count */
-    camber_value *values; /* style->property_count */
+    camber_column *items; /* schema->property_count */
+    camber_value *values; /* schema->property_count */
     bool unsorted;        /* as a class has it */
     int ids[4];           /* vector tiles: fields with an id, the best first */
     size_t id_count;

@@ -2,8 +2,8 @@
  *
  * Input: features and zooms. Output: for a class whether it is drawn, and the box of all that is. A class is asked at
  * the last zoom first, where most styles draw everything. */
+#include "features/mercator.h"
 #include "map/plan.h"
-#include "source/mercator.h"
 
 #include <math.h>
 

@@ -79,15 +79,15 @@ static bool any_at(const camber_features *features, double zoom) {
 /* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines of any source layer go by
  * come first. */
 static void list_properties(const camber_style *style, sentence *s) {
-    const size_t count = style->property_count;
-    const uint8_t readers = camber_readers_of(CAMBER_LAYER_LINE, false);
+    const size_t count = style->schema.property_count;
     size_t listed = 0;
     for (size_t k = 0; k < 2 * count && listed <= 8; k++) {
         const size_t i = k < count ? k : k - count;
-        const bool is_first = style->property_readers && style->property_readers[i] & readers;
+        const camber_property_readers *readers = style->schema.property_readers;
+        const bool is_first = readers && readers[i].kinds & CAMBER_KIND_LINE;
         if (is_first != (k < count))
             continue;
-        say(s, "%s%.64s", listed ? ", " : ": it goes by ", listed == 8 ? "..." : style->properties[i]);
+        say(s, "%s%.64s", listed ? ", " : ": it goes by ", listed == 8 ? "..." : style->schema.properties[i]);
         listed++;
     }
 }

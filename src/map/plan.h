@@ -6,8 +6,8 @@
 #ifndef CAMBER_MAP_PLAN_H
 #define CAMBER_MAP_PLAN_H
 
+#include "features/features.h"
 #include "map/plan_patterns.h"
-#include "source/features.h"
 
 #define CAMBER_NO_ROW UINT32_MAX
 

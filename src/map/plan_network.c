@@ -45,9 +45,11 @@ double camber_plan_reach(const camber_plan *plan) {
 
 /* ---- Copies of the world ---- */
 
-/* Copies of the world, from the first to the last in the picture: a wide one repeats it, as web maps do. */
+/* Copies of the world, from the first to the last in the picture: a wide one repeats it, as web maps do. Of a window:
+ * the part of the world, unrolled to the west and to the east, in which lines touch it. */
 typedef struct copies {
     double first, last;
+    bool is_window;
 } copies;
 
 static copies copies_in(const camber_view *view, const camber_plan *plan) {
@@ -57,7 +59,12 @@ static copies copies_in(const camber_view *view, const camber_plan *plan) {
         radius = fmax(radius, hypot(corners[2 * i] - view->x, corners[2 * i + 1] - view->y));
     radius += (camber_plan_reach(plan) + 1.0) / view->scale_px;
     radius = fmin(radius, MOST_WORLDS);
-    return (copies){floor(view->x - radius), floor(view->x + radius)};
+    return (copies){floor(view->x - radius), floor(view->x + radius), false};
+}
+
+static copies copies_of_window(const camber_view *window, double reach_px) {
+    const double half = (0.5 * window->width + reach_px) / window->scale_px;
+    return (copies){window->x - half, window->x + half, true};
 }
 
 static camber_box world_box(const double *points, size_t count) {
@@ -79,6 +86,11 @@ static bool find_shifts(const camber_features *features, const copies *worlds, s
     const camber_box box = world_box(features->points + 2 * begin, end - begin);
     if (!(box.x0 <= box.x1 && box.y0 <= box.y1 && box.x1 - box.x0 <= 2.0))
         return false;
+    if (worlds->is_window) {
+        *first = ceil(worlds->first - box.x1);
+        *last = floor(worlds->last - box.x0);
+        return true;
+    }
     /* A line that ends on the border of two worlds lies in the western one. */
     *first = worlds->first - fmax(ceil(box.x1) - 1.0, floor(box.x0));
     *last = worlds->last - floor(box.x0);
@@ -87,7 +99,8 @@ static bool find_shifts(const camber_features *features, const copies *worlds, s
 
 static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
     const copies worlds = copies_in(view, plan);
-    return camber_hash(plan->key, &worlds, sizeof worlds);
+    const double ends[] = {worlds.first, worlds.last};
+    return camber_hash(plan->key, ends, sizeof ends);
 }
 
 bool camber_plan_network_serves(const camber_plan_network *geometry, const camber_view *view, const camber_plan *plan) {
@@ -102,17 +115,16 @@ typedef struct entry_list {
     size_t count, capacity;
 } entry_list;
 
-static camber_status list_set(const camber_features *features, const camber_plan *plan, size_t set,
+static camber_status list_set(const camber_zoom_plan *zoom, const camber_plan_entries *listed, size_t set,
                               const copies *worlds, entry_list *list) {
-    const bool is_area = camber_plan_is_area(plan, plan->sets + set);
-    for (size_t i = plan->all.first_entries[set]; i < plan->all.first_entries[set + 1]; i++) {
-        const camber_plan_entry entry = plan->all.entries[i];
+    const bool is_area = camber_plan_is_area(&zoom->plan, zoom->plan.sets + set);
+    for (size_t i = listed->first_entries[set]; i < listed->first_entries[set + 1]; i++) {
+        const camber_plan_entry entry = listed->entries[i];
         double first, last;
-        if (!find_shifts(features, worlds, entry.polyline, &first, &last))
+        if (!find_shifts(zoom->features, worlds, entry.polyline, &first, &last))
             continue;
         for (double shift = first; shift <= last; shift += 1.0) {
-            if (!camber_grow(features->context, &list->entries, &list->capacity, list->count + 1,
-                             sizeof *list->entries) ||
+            if (!camber_grow(zoom->context, &list->entries, &list->capacity, list->count + 1, sizeof *list->entries) ||
                 !list->entries)
                 return CAMBER_ERROR_MEMORY;
             list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area};
@@ -121,11 +133,11 @@ static camber_status list_set(const camber_features *features, const camber_plan
     return CAMBER_OK;
 }
 
-/* stays: the view that the network is for alone, and least the importance of the points that it keeps. NULL: any. */
-static camber_status make_network(const camber_features *features, size_t entry_count, const camber_view *stays,
-                                  float least, camber_plan_network *geometry) {
+static camber_status make_network(const camber_zoom_plan *zoom, bool stays, size_t entry_count,
+                                  camber_plan_network *geometry) {
     static const size_t none[1] = {0};
     static const camber_network_entry nothing;
+    const camber_features *features = zoom->features;
     const camber_network_desc desc = {.points = features->points,
                                       .offsets = features->offsets ? features->offsets : none,
                                       .polyline_count = features->polyline_count,
@@ -134,34 +146,35 @@ static camber_status make_network(const camber_features *features, size_t entry_
                                       .entry_count = entry_count,
                                       .progress = geometry->has_arc_length ? features->progress : NULL,
                                       .has_arc_length = geometry->has_arc_length,
-                                      .least_importance = least,
-                                      .step = stays ? camber_plan_network_step(stays) : 0.0};
+                                      .least_importance = stays ? zoom->least_importance : 0.0f,
+                                      .step = stays ? camber_plan_network_step(&zoom->view) : 0.0};
     return camber_network_create(geometry->context, &desc, &geometry->network);
 }
 
-camber_status camber_plan_network_create(const camber_features *features, const camber_view *view, camber_plan *plan,
-                                         const camber_still *still, camber_plan_network *geometry) {
-    *geometry = (camber_plan_network){.context = features->context,
-                                      .set_count = plan->set_count,
-                                      .has_arc_length = plan->has_arc_length,
-                                      .key = key_of(view, plan)};
-    const copies worlds = copies_in(view, plan);
+camber_status camber_plan_network_create(const camber_zoom_plan *zoom, const camber_view *view,
+                                         camber_network_views views, camber_plan_entries *listed,
+                                         camber_plan_network *geometry) {
+    const camber_plan *plan = &zoom->plan;
+    const bool is_window = views == CAMBER_NETWORK_WINDOW;
+    const copies worlds = is_window ? copies_of_window(view, (double)zoom->most_reach_px) : copies_in(view, plan);
     entry_list list = {0};
     camber_status status = CAMBER_OK;
+    *geometry = (camber_plan_network){.context = zoom->context,
+                                      .set_count = plan->set_count,
+                                      .has_arc_length = plan->has_arc_length,
+                                      .key = is_window ? 0 : key_of(view, plan)};
     geometry->first_entries = camber_alloc(geometry->context, plan->set_count + 1, sizeof *geometry->first_entries);
     if (!geometry->first_entries)
         return CAMBER_ERROR_MEMORY;
     for (size_t s = 0; status == CAMBER_OK && s < plan->set_count; s++) {
         geometry->first_entries[s] = list.count;
-        status = list_set(features, plan, s, &worlds, &list);
+        if (!zoom->lines_only || !camber_plan_is_area(plan, plan->sets + s))
+            status = list_set(zoom, listed, s, &worlds, &list);
     }
     geometry->first_entries[plan->set_count] = list.count;
     geometry->entries = list.entries;
-    camber_plan_entries_free(&plan->all);
-    if (status == CAMBER_OK)
-        status =
-            make_network(features, list.count, still ? view : NULL, still ? still->least_importance : 0.0f, geometry);
-    return status;
+    camber_plan_entries_free(listed);
+    return status == CAMBER_OK ? make_network(zoom, views != CAMBER_NETWORK_VIEWS, list.count, geometry) : status;
 }
 
 void camber_plan_network_destroy(camber_plan_network *geometry) {
@@ -211,15 +224,15 @@ static camber_status fill_rows(const camber_plan_network *geometry, const camber
     return CAMBER_OK;
 }
 
-camber_status camber_plan_network_project(const camber_features *features, const camber_plan_network *geometry,
-                                          const camber_plan *plan, const camber_camera *camera,
-                                          const camber_tessellation_desc *desc, camber_visible_lines *seen) {
+camber_status camber_plan_network_project(const camber_zoom_plan *zoom, const camber_plan_network *geometry,
+                                          const camber_camera *camera, const camber_tessellation_desc *desc,
+                                          camber_visible_lines *seen) {
     *seen = (camber_visible_lines){.context = geometry->context};
     camber_status status = camber_network_project_lines(geometry->network, camera, desc, &seen->lines);
     if (status == CAMBER_OK)
-        status = fill_rows(geometry, plan, seen);
+        status = fill_rows(geometry, &zoom->plan, seen);
     for (size_t s = 0; status == CAMBER_OK && s < geometry->set_count; s++)
-        count_set(features, geometry, seen->first_polylines[s], seen->first_polylines[s + 1], seen);
+        count_set(zoom->features, geometry, seen->first_polylines[s], seen->first_polylines[s + 1], seen);
     return status;
 }
 

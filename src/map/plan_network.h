@@ -2,7 +2,7 @@
 #ifndef CAMBER_MAP_PLAN_NETWORK_H
 #define CAMBER_MAP_PLAN_NETWORK_H
 
-#include "map/plan.h"
+#include "map/zoom_plan.h"
 
 typedef struct camber_plan_network {
     camber_context *context;
@@ -23,16 +23,18 @@ double camber_plan_reach(const camber_plan *plan);
 static inline double camber_plan_network_step(const camber_view *view) {
     return 1.0 / (4096.0 * view->scale_px);
 }
-/* A view that stays: its network leaves out the points of less importance. */
-typedef struct camber_still {
-    float least_importance;
-} camber_still;
+/* The views that a network serves. */
+typedef enum camber_network_views {
+    CAMBER_NETWORK_VIEWS,  /* those in which the same is drawn, in the same copies of the world */
+    CAMBER_NETWORK_VIEW,   /* one: it leaves out the points of less importance than the plan's least */
+    CAMBER_NETWORK_WINDOW, /* one of a plan that has others: so are the copies of the world that do not touch it */
+} camber_network_views;
 
-/* The plan's list of all polylines goes: the network has them. still: the network is for this view alone; NULL: for
- * others too.
+/* listed: what is drawn, of the plan; it goes, as the network has it.
  * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. camber_plan_network_destroy frees also what a failure left. */
-camber_status camber_plan_network_create(const camber_features *features, const camber_view *view, camber_plan *plan,
-                                         const camber_still *still, camber_plan_network *geometry);
+camber_status camber_plan_network_create(const camber_zoom_plan *zoom, const camber_view *view,
+                                         camber_network_views views, camber_plan_entries *listed,
+                                         camber_plan_network *geometry);
 /* Whether the geometry is that of another view and plan of the same features. */
 bool camber_plan_network_serves(const camber_plan_network *geometry, const camber_view *view, const camber_plan *plan);
 void camber_plan_network_destroy(camber_plan_network *geometry);
@@ -47,9 +49,9 @@ typedef struct camber_visible_lines {
 } camber_visible_lines;
 
 /* camber_visible_lines_destroy frees also what a failure left. */
-camber_status camber_plan_network_project(const camber_features *features, const camber_plan_network *geometry,
-                                          const camber_plan *plan, const camber_camera *camera,
-                                          const camber_tessellation_desc *desc, camber_visible_lines *seen);
+camber_status camber_plan_network_project(const camber_zoom_plan *zoom, const camber_plan_network *geometry,
+                                          const camber_camera *camera, const camber_tessellation_desc *desc,
+                                          camber_visible_lines *seen);
 void camber_visible_lines_destroy(camber_visible_lines *seen);
 
 #endif

@@ -4,7 +4,7 @@
 #define CAMBER_MAP_PLAN_PATTERNS_H
 
 #include "map/view.h"
-#include "source/sprite.h"
+#include "style/sprite.h"
 
 /* A fill of the whole picture, drawn before a layer of the plan; or of areas. */
 typedef struct camber_plan_fill {

@@ -6,7 +6,7 @@
 #include "map/view.h"
 
 #include "base/perspective.h"
-#include "source/features.h"
+#include "features/features.h"
 #include "style/bounds.h"
 
 #include <math.h>

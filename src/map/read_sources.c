@@ -1,7 +1,7 @@
 /* A style's own sources, as a view sees them. */
+#include "formats/tile_reader.h"
+#include "map/sources.h"
 #include "map/view.h"
-#include "source/sources.h"
-#include "source/tile_reader.h"
 
 /* The same as in fit.c. */
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;

@@ -1,9 +1,12 @@
 /* Scenes: a view of features in a style, ready to tessellate and draw.
  *
- * Input: features and a view. Output: a network of the lines that the style draws, the strokes and passes that a mesh
- * of it is drawn with, and the camera. Main idea: the plan says which style layers draw which features; the network is
- * made once for a plan, and stays while the view moves and the plan does not change. camber_scene_project makes the
- * same on the host, by the CPU twin. */
+ * Input: features and a view, or a plan of a zoom and a window of it. Output: a network of the lines that the style
+ * draws there, the passes that a mesh of it is drawn with, and the camera. Main idea: the plan says which style layers
+ * draw which features; the network is made once for a plan, and stays while the view moves and the plan does not
+ * change. Of a window it has only the lines that reach into it, and the points that the zoom's simplification keeps, so
+ * the memory that drawing takes does not grow with the data. camber_scene_project makes the same on the host, by the
+ * CPU twin. */
+#include "map/scene.h"
 #include "map/passes.h"
 #include "map/plan_areas.h"
 #include "map/plan_network.h"
@@ -15,15 +18,12 @@
 
 struct camber_scene {
     camber_context *context;
-    const camber_features *features;
-    double simplify_px;
-    bool still, lines_only;
-    camber_features *spent; /* the features while their points may go; then NULL */
+    camber_scene_use use;
+    camber_zoom_plan *zoom;
+    camber_zoom_plan *own; /* the same if it goes with the scene. NULL: it has other windows, too */
 
     camber_view view;
-    camber_plan plan;
     camber_plan_network geometry;
-    camber_stroke *pair_strokes;
     camber_pass_list pair_passes;
 
     /* On the host: nothing until camber_scene_project. */
@@ -34,30 +34,17 @@ struct camber_scene {
     camber_pass_list passes;
 };
 
-/* ---- Strokes ---- */
-
-static camber_status make_strokes(camber_scene *scene) {
-    const camber_plan *plan = &scene->plan;
-    scene->pair_strokes = camber_alloc(scene->context, plan->pair_count, sizeof *scene->pair_strokes);
-    if (!scene->pair_strokes)
-        return CAMBER_ERROR_MEMORY;
-    for (size_t pair = 0; pair < plan->pair_count; pair++)
-        scene->pair_strokes[pair] = plan->strokes[plan->pair_rows[pair]];
-    return CAMBER_OK;
-}
-
-/* ---- Passes ---- */
-
 /* Makes the passes over the network, where every pair has an entry somewhere. */
 static camber_status make_pair_passes(camber_scene *scene) {
     size_t layer_count;
-    bool *used = camber_alloc_zero(scene->context, scene->plan.pair_count, sizeof *used);
+    const camber_plan *plan = &scene->zoom->plan;
+    bool *used = camber_alloc_zero(scene->context, plan->pair_count, sizeof *used);
     if (!used)
         return CAMBER_ERROR_MEMORY;
-    const size_t count = scene->geometry.first_entries[scene->plan.set_count];
+    const size_t count = scene->geometry.first_entries[plan->set_count];
     for (size_t i = 0; i < count; i++)
         used[scene->geometry.entries[i].row] = true;
-    const camber_numbering n = {&scene->plan, true, scene->geometry.first_entries, used};
+    const camber_numbering n = {plan, true, scene->geometry.first_entries, used};
     const camber_status status = camber_passes_make(scene->context, &n, &layer_count, &scene->pair_passes);
     camber_free(scene->context, used);
     return status;
@@ -74,15 +61,15 @@ static camber_camera camera_of(const camber_scene *scene) {
                            .pitch_deg = view->pitch_deg,
                            .width = view->width,
                            .height = view->height,
-                           .simplify_px = scene->simplify_px,
-                           .translate_px = (double)scene->plan.translate_px};
+                           .simplify_px = scene->zoom->simplify_px,
+                           .translate_px = (double)scene->zoom->plan.translate_px};
 }
 
 static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method method) {
-    return (camber_tessellation_desc){.strokes = scene->pair_strokes,
-                                      .stroke_count = scene->plan.pair_count,
+    return (camber_tessellation_desc){.strokes = scene->zoom->strokes,
+                                      .stroke_count = scene->zoom->plan.pair_count,
                                       .method = method,
-                                      .has_arc_length = scene->plan.has_arc_length};
+                                      .has_arc_length = scene->zoom->plan.has_arc_length};
 }
 
 static void forget(camber_scene *scene) {
@@ -95,12 +82,13 @@ static void forget(camber_scene *scene) {
 }
 
 static camber_status make_row_passes(camber_scene *scene) {
-    bool *used = camber_alloc_zero(scene->context, scene->plan.row_count, sizeof *used);
+    const camber_plan *plan = &scene->zoom->plan;
+    bool *used = camber_alloc_zero(scene->context, plan->row_count, sizeof *used);
     if (!used)
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < scene->seen.lines.polyline_count; i++)
         used[scene->seen.rows[i]] = true;
-    const camber_numbering n = {&scene->plan, false, scene->seen.first_polylines, used};
+    const camber_numbering n = {plan, false, scene->seen.first_polylines, used};
     const camber_status status = camber_passes_make(scene->context, &n, &scene->counts.layers, &scene->passes);
     camber_free(scene->context, used);
     return status;
@@ -111,8 +99,7 @@ camber_status camber_scene_project(camber_scene *scene) {
         return CAMBER_OK;
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc strokes = desc_of(scene, CAMBER_METHOD_STRIP);
-    camber_status status =
-        camber_plan_network_project(scene->features, &scene->geometry, &scene->plan, &camera, &strokes, &scene->seen);
+    camber_status status = camber_plan_network_project(scene->zoom, &scene->geometry, &camera, &strokes, &scene->seen);
     const camber_lines *lines = &scene->seen.lines;
     const camber_polylines_desc desc = {.points = lines->points,
                                         .point_count = lines->point_count,
@@ -142,75 +129,45 @@ void camber_scene_release_lines(camber_scene *scene) {
 
 /* ---- The scene ---- */
 
-/* The network then has none of them. */
-static void leave_out_areas(camber_plan *plan) {
-    size_t count = 0;
-    for (size_t s = 0, end = 0; s < plan->set_count; s++) {
-        const size_t first = end;
-        end = plan->all.first_entries[s + 1];
-        plan->all.first_entries[s] = count;
-        for (size_t i = first; i < end && !camber_plan_is_area(plan, plan->sets + s); i++)
-            plan->all.entries[count++] = plan->all.entries[i];
-    }
-    plan->all.first_entries[plan->set_count] = count;
-}
-
-/* Makes the network. Points that the view leaves out go first, if the scene may drop them: else most of them would be
- * in memory beside the network. */
-static camber_status make_geometry(camber_scene *scene) {
-    /* As camber_network_aim has it: with a pitch the tolerance is smaller near the camera. */
-    const bool flat = !(scene->view.pitch_deg > 0.0);
-    const camber_still still = {flat ? (float)(scene->simplify_px / scene->view.scale_px) : 0.0f};
-    if (scene->lines_only)
-        leave_out_areas(&scene->plan);
+/* Makes the network. Points that the view leaves out go first, if those of the features may go: else most of them would
+ * be in memory beside the network. */
+static camber_status make_geometry(camber_scene *scene, camber_features *spent) {
+    camber_zoom_plan *zoom = scene->zoom;
+    const bool stays = scene->use == CAMBER_SCENE_ONE_VIEW;
     camber_status status = CAMBER_OK;
-    if (scene->spent && !scene->plan.has_arc_length)
-        status = camber_features_thin(scene->spent, still.least_importance);
+    if (spent && !zoom->plan.has_arc_length)
+        status = camber_features_thin(spent, zoom->least_importance);
     if (status == CAMBER_OK)
-        status = camber_plan_network_create(scene->features, &scene->view, &scene->plan, scene->still ? &still : NULL,
-                                            &scene->geometry);
-    if (scene->spent && status == CAMBER_OK)
-        camber_features_release_points(scene->spent);
-    scene->spent = NULL;
+        status = camber_plan_network_create(zoom, &scene->view, stays ? CAMBER_NETWORK_VIEW : CAMBER_NETWORK_VIEWS,
+                                            &zoom->plan.all, &scene->geometry);
+    if (status == CAMBER_OK && spent)
+        camber_features_release_points(spent);
     return status;
 }
 
-static camber_status look(camber_scene *scene, const camber_view_desc *desc, camber_plan_network *geometry) {
-    camber_status status = camber_view_create(scene->context, desc, &scene->view);
-    if (status == CAMBER_OK && scene->features->polyline_count && !scene->features->points)
-        status = camber_fail(scene->context, CAMBER_ERROR_ARGUMENT,
-                             "scene: the points of its features are released; read them into another set");
+/* Makes the scene of a whole view. former: a network that is taken if it serves this view, too. */
+static camber_status look(camber_scene *scene, const camber_features *features, const camber_scene_desc *desc,
+                          camber_plan_network *former, camber_features *spent) {
+    camber_status status = camber_zoom_plan_create_view(features, &desc->view, desc->simplify_px, &scene->own);
     if (status != CAMBER_OK)
         return status;
-    status = desc->kind == CAMBER_VIEW_FIT ? camber_plan_fit(scene->features, &scene->view, &scene->plan)
-                                           : camber_plan_create(scene->features, &scene->view, &scene->plan);
-    if (status != CAMBER_OK)
-        return status;
-    if (!scene->still && camber_plan_network_serves(geometry, &scene->view, &scene->plan)) {
-        scene->geometry = *geometry;
-        *geometry = (camber_plan_network){0};
+    scene->zoom = scene->own;
+    scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
+    scene->view = scene->zoom->view;
+    if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
+        scene->geometry = *former;
+        *former = (camber_plan_network){0};
     } else {
-        status = make_geometry(scene);
+        status = make_geometry(scene, spent);
     }
-    if (status == CAMBER_OK)
-        status = make_strokes(scene);
     return status == CAMBER_OK ? make_pair_passes(scene) : status;
 }
 
 static void empty(camber_scene *scene) {
     forget(scene);
     camber_passes_free(scene->context, &scene->pair_passes);
-    camber_free(scene->context, scene->pair_strokes);
     camber_plan_network_destroy(&scene->geometry);
-    camber_plan_destroy(&scene->plan);
-}
-
-static camber_scene bare_scene(const camber_features *features, double simplify_px, bool lines_only) {
-    return (camber_scene){.context = features->context,
-                          .features = features,
-                          .simplify_px = simplify_px,
-                          .lines_only = lines_only,
-                          .plan = {.context = features->context}};
+    camber_zoom_plan_destroy(scene->own);
 }
 
 static bool has_patterns(const camber_plan *plan) {
@@ -224,24 +181,25 @@ static bool has_patterns(const camber_plan *plan) {
 /* Warns where a style draws nothing at all; what else it leaves out is its own business. Images of patterns that are
  * not there were warned of already. */
 static camber_status tell_undrawn(const camber_scene *scene) {
-    const size_t undrawn = scene->plan.undrawn, all = scene->features->feature_count;
+    const camber_features *features = scene->zoom->features;
+    const size_t undrawn = scene->zoom->plan.undrawn, all = features->feature_count;
     const double zoom = scene->view.zoom;
     char why[1024];
     bool draws;
-    if (has_patterns(&scene->plan))
+    if (has_patterns(&scene->zoom->plan))
         return CAMBER_OK;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: draws nothing of %zu of %zu features", undrawn, all);
     if (!undrawn || undrawn < all)
         return CAMBER_OK;
-    const camber_status status = camber_plan_explain_nothing(scene->features, zoom, zoom, why, sizeof why, &draws);
+    const camber_status status = camber_plan_explain_nothing(features, zoom, zoom, why, sizeof why, &draws);
     if (status == CAMBER_OK)
         camber_log(scene->context, CAMBER_LOG_WARNING, "nothing is drawn: %s", why);
     return status;
 }
 
-camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
-                                  camber_scene **scene) {
+static camber_status create(const camber_features *features, const camber_scene_desc *desc, camber_features *spent,
+                            camber_scene **scene) {
     camber_context *context = features->context;
     if (!(desc->simplify_px >= 0.0 && isfinite(desc->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
@@ -250,32 +208,60 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     if (!made)
         return CAMBER_ERROR_MEMORY;
     camber_plan_network none = {0};
-    *made = bare_scene(features, desc->simplify_px, desc->lines_only);
-    assert(!desc->spent || (desc->still && desc->spent == features));
-    made->still = desc->still;
-    made->spent = desc->spent;
-    camber_status status = look(made, &desc->view, &none);
-    if (status == CAMBER_OK && !desc->on_device)
-        status = camber_scene_project(made);
+    made->context = context;
+    made->use = desc->use;
+    camber_status status = look(made, features, desc, &none, spent);
     if (status == CAMBER_OK)
         status = tell_undrawn(made);
     if (status != CAMBER_OK) {
         camber_scene_destroy(made);
         return status;
     }
-    if (made->plan.patterns.unread)
+    if (made->zoom->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
                    "style: its patterns are left out, for its sprites are not read; read them with the features");
     *scene = made;
     return CAMBER_OK;
 }
 
+camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
+                                  camber_scene **scene) {
+    return create(features, desc, NULL, scene);
+}
+
+camber_status camber_scene_create_last(camber_features *features, const camber_scene_desc *desc, camber_scene **scene) {
+    camber_scene_desc once = *desc;
+    once.use = CAMBER_SCENE_ONE_VIEW;
+    return create(features, &once, features, scene);
+}
+
+camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window, const uint32_t *polylines,
+                                         size_t polyline_count, camber_scene **scene) {
+    camber_plan_entries listed = {0};
+    camber_scene *made = camber_alloc_zero(zoom->context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    *made = (camber_scene){.context = zoom->context, .use = CAMBER_SCENE_ONE_VIEW, .zoom = zoom, .view = *window};
+    camber_status status = camber_plan_list(zoom->features, &zoom->plan, polylines, polyline_count, &listed);
+    if (status == CAMBER_OK)
+        status = camber_plan_network_create(zoom, window, CAMBER_NETWORK_WINDOW, &listed, &made->geometry);
+    camber_plan_entries_free(&listed);
+    if (status == CAMBER_OK)
+        status = make_pair_passes(made);
+    if (status == CAMBER_OK)
+        *scene = made;
+    else
+        camber_scene_destroy(made);
+    return status;
+}
+
 camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
-    camber_scene moved = bare_scene(scene->features, scene->simplify_px, scene->lines_only);
-    moved.still = scene->still;
+    assert(scene->own);
+    const camber_scene_desc desc = {.view = *view, .simplify_px = scene->zoom->simplify_px};
+    camber_scene moved = {.context = scene->context, .use = scene->use};
     /* The network belongs to one of the two, never to both. */
     camber_plan_network geometry = scene->geometry;
-    const camber_status status = look(&moved, view, &geometry);
+    const camber_status status = look(&moved, scene->zoom->features, &desc, &geometry, NULL);
     if (status != CAMBER_OK) {
         if (!geometry.context)
             moved.geometry = (camber_plan_network){0};
@@ -302,7 +288,8 @@ camber_network *camber_scene_get_network(const camber_scene *scene, camber_camer
 }
 
 camber_status camber_scene_triangulate(const camber_scene *scene, camber_area_data *areas) {
-    return camber_plan_triangulate(scene->features, &scene->plan, &scene->view, scene->simplify_px, areas);
+    const camber_zoom_plan *zoom = scene->zoom;
+    return camber_plan_triangulate(zoom->features, &zoom->plan, &scene->view, zoom->simplify_px, areas);
 }
 
 void camber_scene_destroy(camber_scene *scene) {
@@ -321,8 +308,8 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
                               .pitch_deg = scene->view.pitch_deg,
                               .width = scene->view.width,
                               .height = scene->view.height,
-                              .opaque = scene->plan.background.a >= 1.0f,
-                              .undrawn = scene->plan.undrawn};
+                              .opaque = scene->zoom->plan.background.a >= 1.0f,
+                              .undrawn = scene->zoom->plan.undrawn};
     camber_view_center(&scene->view, &info.longitude, &info.latitude);
     info.layers = scene->counts.layers;
     info.features = scene->counts.features;
@@ -348,19 +335,30 @@ const camber_lines *camber_scene_get_lines(const camber_scene *scene) {
 }
 
 const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t *count) {
-    *count = scene->plan.row_count;
-    return scene->plan.strokes;
+    *count = scene->zoom->plan.row_count;
+    return scene->zoom->plan.strokes;
+}
+
+/* Fills of a plan with other windows were planned for a view anywhere: those of images are moved to this one. */
+static void move_fills(camber_scene *scene) {
+    camber_plan_patterns *patterns = &scene->zoom->plan.patterns;
+    camber_plan_patterns_move(patterns, &scene->view);
+    for (size_t i = 0, fill = 0; i < scene->pair_passes.count; i++)
+        if (scene->pair_passes.passes[i].kind == CAMBER_PASS_FILL)
+            scene->pair_passes.passes[i].fill = patterns->fills[fill++].fill;
 }
 
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
     const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
     assert(holds_network || scene->is_projected);
+    if (!scene->own && (scene->zoom->has_images || scene->zoom->has_area_images))
+        move_fills(scene);
     const camber_pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
     for (size_t i = 0; i < list->count; i++)
         list->passes[i].mesh = mesh;
     return (camber_frame){.width = scene->view.width,
                           .height = scene->view.height,
-                          .background = scene->plan.background,
+                          .background = scene->zoom->plan.background,
                           .passes = list->passes,
                           .pass_count = list->count,
                           .pitch_deg = scene->view.pitch_deg};

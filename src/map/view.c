@@ -5,7 +5,7 @@
 #include "map/view.h"
 
 #include "base/perspective.h"
-#include "source/mercator.h"
+#include "features/mercator.h"
 #include "style/style.h"
 
 #include <math.h>

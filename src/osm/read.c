@@ -11,15 +11,14 @@
 #include "osm/osm.h"
 
 #include "base/threads.h"
+#include "features/mercator.h"
+#include "features/osm_keys.h"
+#include "features/rings.h"
+#include "features/world_lines.h"
 #include "osm/beyond.h"
 #include "osm/coast.h"
 #include "osm/nodes.h"
 #include "osm/packed.h"
-#include "source/mercator.h"
-#include "source/osm_keys.h"
-#include "source/rings.h"
-#include "source/tile_reader.h"
-#include "source/world_lines.h"
 
 #include <math.h>
 
@@ -44,10 +43,10 @@ typedef struct reader {
     unsigned threads;
 } reader;
 
-bool camber_osm_reads(const camber_source_desc *desc) {
+static bool reads(const camber_source_desc *desc) {
     camber_osm_where where;
     return (!desc->where || camber_osm_where_parse(desc->where, &where)) &&
-           (!desc->layer || strcmp(desc->layer, LAYER) == 0) && camber_osm_knows(desc->path);
+           (!desc->layer || strcmp(desc->layer, LAYER) == 0);
 }
 
 /* ---- Ways become lines, on any thread ---- */
@@ -125,24 +124,24 @@ static bool is_coast(const reader *self, const camber_osm_way *way) {
     const size_t set = way->tags / CAMBER_OSM_WAY_BITS;
     if (self->coast_key == SIZE_MAX || way->tags & CAMBER_OSM_WAY_BARE)
         return false;
-    const camber_value *value = self->ways.values + set * self->features->style->property_count + self->coast_key;
+    const camber_value *value = self->ways.values + set * self->features->schema->property_count + self->coast_key;
     return value->type == CAMBER_VALUE_STRING && value->string == self->coastline;
 }
 
 /* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
 static void make_way(const reader *self, const camber_osm_way *way, size_t node, made_run *run) {
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     camber_world_lines *lines = &run->lines;
     const size_t lines_before = lines->line_count;
     const bool area = way->tags & CAMBER_OSM_WAY_AREA, bare = way->tags & CAMBER_OSM_WAY_BARE;
-    const bool has_lines = !bare && (!area || style->wants_polygons);
+    const bool has_lines = !bare && (!area || schema->wants_polygons);
     made_way made = {.tags = way->tags, .first_place = node, .is_coast = is_coast(self, way)};
     if (has_lines) {
         add_nodes(way, node, run);
         camber_world_lines_end(lines);
     }
     made.line_count = (uint32_t)(lines->line_count - lines_before);
-    made.has_ring = area && style->wants_areas && make_ring(way, node, run, !has_lines);
+    made.has_ring = area && schema->wants_areas && make_ring(way, node, run, !has_lines);
     if (made.is_coast || way->tags & CAMBER_OSM_WAY_MEMBER)
         made.place_count = way->node_count;
     ((made_way *)(void *)run->ways.bytes)[run->way_count++] = made;
@@ -150,12 +149,12 @@ static void make_way(const reader *self, const camber_osm_way *way, size_t node,
 
 static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
     const camber_osm_ways *ways = &((const reader *)user)->ways;
-    const camber_style *style = ways->features->style;
+    const camber_schema *schema = ways->features->schema;
     const camber_osm_run *from = &ways->runs[part];
     made_run *run = slot;
     size_t points = camber_world_lines_most_points(from->node_count),
            ends = camber_world_lines_most_ends(from->node_count);
-    if (style->wants_areas) { /* a ring adds its points, and four at most */
+    if (schema->wants_areas) { /* a ring adds its points, and four at most */
         points += from->node_count + 4 * from->way_count;
         ends += from->way_count;
     }
@@ -185,7 +184,7 @@ static camber_status find_class(reader *self, uint32_t set, camber_geometry_kind
     uint32_t *known = &self->classes[kind][set];
     if (*known == 0) {
         const camber_status status = camber_features_find_class(
-            self->features, self->layer, kind, self->ways.values + set * self->features->style->property_count, index);
+            self->features, self->layer, kind, self->ways.values + set * self->features->schema->property_count, index);
         if (status != CAMBER_OK)
             return status;
         *known = *index + 1;
@@ -322,7 +321,7 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
 
 /* The class of the sea: water, as ponds are. */
 static camber_status find_sea_class(reader *self, uint32_t *index) {
-    const size_t count = self->features->style->property_count;
+    const size_t count = self->features->schema->property_count;
     camber_value *values = camber_alloc_zero(self->context, count, sizeof *values);
     if (!values)
         return CAMBER_ERROR_MEMORY;
@@ -394,7 +393,7 @@ static camber_status make_lines(reader *self) {
                                        .free_slot = free_run,
                                        .from = PACKED_SHARE,
                                        .to = 1.0};
-    const bool drops_areas = !features->style->wants_polygons && !features->style->wants_areas;
+    const bool drops_areas = !features->schema->wants_polygons && !features->schema->wants_areas;
     const camber_osm_pack_desc pack = {self->desc->path, self->threads, drops_areas, NODES_SHARE, PACKED_SHARE};
     camber_status status = camber_osm_pack(ways, &pack, &self->skipped);
     if (status == CAMBER_OK)
@@ -416,7 +415,7 @@ static camber_status make_lines(reader *self) {
 /* Reads relations if they are wanted, ways, and the places of their nodes. *declined: the file is not in order, or not
  * for this reader. */
 static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_order, bool *declined) {
-    const bool areas = self->features->style->wants_areas && !self->desc->layer;
+    const bool areas = self->features->schema->wants_areas && !self->desc->layer;
     camber_osm_ends ends;
     camber_status status = CAMBER_OK;
     if (!any_order)
@@ -491,15 +490,15 @@ static camber_status check_result(const reader *self, size_t features_before) {
 /* The sea is wanted where areas are, by their key, and the whole coast is read. box: of the file's header; the world
  * ends where Web Mercator does. */
 static camber_status want_sea(reader *self, camber_osm_box box) {
-    const camber_style *style = self->features->style;
+    const camber_schema *schema = self->features->schema;
     const int32_t most = (int32_t)(CAMBER_MERCATOR_LATITUDE * 1.0e7);
-    const bool wanted = style->wants_areas && !self->desc->layer && !self->desc->where;
+    const bool wanted = schema->wants_areas && !self->desc->layer && !self->desc->where;
     box.bottom = box.bottom > -most ? box.bottom : -most;
     box.top = box.top < most ? box.top : most;
     self->coast.box = box;
     self->coast_key = SIZE_MAX;
-    for (size_t i = 0; i < style->property_count && wanted; i++)
-        if (strcmp(style->properties[i], "natural") == 0)
+    for (size_t i = 0; i < schema->property_count && wanted; i++)
+        if (strcmp(schema->properties[i], "natural") == 0)
             self->coast_key = i;
     return camber_features_intern(self->features, "coastline", &self->coastline);
 }
@@ -563,7 +562,7 @@ static void add_stats(const reader *self) {
                    self->desc->path, self->clamped);
 }
 
-camber_status camber_osm_read(camber_features *features, const camber_source_desc *desc, bool *declined) {
+static camber_status read_pbf(camber_features *features, const camber_source_desc *desc, bool *declined) {
     const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
     reader self = {.context = features->context,
@@ -588,12 +587,11 @@ camber_status camber_osm_read(camber_features *features, const camber_source_des
     return CAMBER_OK;
 }
 
-camber_status camber_osm_check_for_gdal(camber_context *context, const camber_source_desc *desc) {
+/* Whether GDAL reads rightly what this reader leaves. */
+static camber_status leave(camber_context *context, const camber_source_desc *desc) {
     camber_osm_file file;
     camber_osm_beyond beyond;
     bool declined = false;
-    if (!camber_osm_knows(desc->path))
-        return CAMBER_OK;
     camber_status status = camber_osm_file_open(context, desc->path, &file, &declined);
     if (status != CAMBER_OK || declined)
         return status;
@@ -615,3 +613,10 @@ camber_status camber_osm_check_for_gdal(camber_context *context, const camber_so
                                                       : "do without, or use the file that osmium "
                                                         "add-locations-to-ways was given");
 }
+
+static const char *format(size_t n) {
+    return n == 0 ? "OSM" : NULL;
+}
+
+const camber_reader camber_osm_reader = {
+    .knows = camber_osm_knows, .reads = reads, .read = read_pbf, .leave = leave, .format = format};

@@ -6,7 +6,7 @@
  * block's sets to those of the file. */
 #include "osm/ways.h"
 
-#include "source/osm_keys.h"
+#include "features/osm_keys.h"
 
 #include <strings.h>
 
@@ -52,7 +52,7 @@ static bool is_column(const char *name) {
 
 camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *features, const camber_osm_where *where,
                                    bool *declined) {
-    const camber_style *style = features->style;
+    const camber_schema *schema = features->schema;
     size_t areas = 0;
     while (camber_osm_area_keys[areas])
         areas++;
@@ -60,15 +60,15 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
         .context = features->context, .features = features, .where = where, .slot_count = FIRST_SLOTS};
     camber_osm_node_set_init(&ways->nodes, features->context);
     camber_osm_relations_init(&ways->relations, features->context);
-    *declined = style->property_count + areas >= UINT16_MAX - 3 - CAMBER_OSM_WHERE_KEYS;
+    *declined = schema->property_count + areas >= UINT16_MAX - 3 - CAMBER_OSM_WHERE_KEYS;
     if (*declined)
         return CAMBER_OK;
-    if (!(ways->keys = camber_alloc(ways->context, style->property_count + areas + 2 + CAMBER_OSM_WHERE_KEYS,
+    if (!(ways->keys = camber_alloc(ways->context, schema->property_count + areas + 2 + CAMBER_OSM_WHERE_KEYS,
                                     sizeof *ways->keys)) ||
         !(ways->slots = camber_alloc_zero(ways->context, ways->slot_count, sizeof *ways->slots)))
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < style->property_count; i++) {
-        const char *name = style->properties[i];
+    for (size_t i = 0; i < schema->property_count; i++) {
+        const char *name = schema->properties[i];
         if (!camber_osm_is_key(name, strlen(name)))
             continue;
         *declined = *declined || is_column(name);
@@ -446,7 +446,7 @@ static void begin_block(const reading *all, camber_osm_pass *pass, decoder *self
     block *to = self->to;
     self->ways = all->ways;
     self->pass = pass;
-    self->property_count = all->ways->features->style->property_count;
+    self->property_count = all->ways->features->schema->property_count;
     self->finger = (camber_osm_finger){.leaf_id = UINT64_MAX, .id = -2};
     self->last_leaf_id = UINT64_MAX;
     to->set_count = to->slot_count = to->way_count = to->id_count = to->member_count = to->relation_count = 0;
@@ -474,7 +474,7 @@ static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slo
     camber_wire group;
     /* The blob before the first way may have the last nodes, and the one before the first relation relations. */
     const bool any_order = all->desc->any_order;
-    const bool relations = any_order || !all->ways->features->style->wants_areas || blob + 1 >= all->desc->end_blob;
+    const bool relations = any_order || !all->ways->features->schema->wants_areas || blob + 1 >= all->desc->end_blob;
     begin_block(all, pass, &self);
     if (has_no_ways(&all->desc->file->blobs[blob], any_order || part == 0, relations))
         return true;
@@ -645,8 +645,8 @@ static camber_status grow_table(camber_osm_ways *ways, size_t count) {
 
 /* Finds a block's set among those of the file, or adds it to them. */
 static camber_status add_set(camber_osm_ways *ways, const block *from, const uint32_t *strings, uint32_t *set) {
-    const camber_style *style = ways->features->style;
-    const size_t count = style->property_count;
+    const camber_schema *schema = ways->features->schema;
+    const size_t count = schema->property_count;
     if (ways->set_count >= UINT32_MAX / CAMBER_OSM_WAY_BITS)
         return camber_fail(ways->context, CAMBER_ERROR_LIMIT,
                            "more than 536870910 different lines; read fewer attributes");
@@ -710,7 +710,7 @@ static camber_status add_sets(camber_osm_ways *ways, const block *from) {
         return CAMBER_ERROR_MEMORY;
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < from->set_count && status == CAMBER_OK; i++)
-        status = add_set(ways, from, sets + i * ways->features->style->property_count, &ways->local[i]);
+        status = add_set(ways, from, sets + i * ways->features->schema->property_count, &ways->local[i]);
     return status;
 }
 

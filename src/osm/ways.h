@@ -2,11 +2,11 @@
 #ifndef CAMBER_OSM_WAYS_H
 #define CAMBER_OSM_WAYS_H
 
+#include "features/features.h"
 #include "osm/blobs.h"
 #include "osm/node_set.h"
 #include "osm/relations.h"
 #include "osm/where.h"
-#include "source/features.h"
 
 /* The use that the reader has for a key of a tag. */
 typedef struct camber_osm_key {
@@ -60,7 +60,7 @@ typedef struct camber_osm_ways {
     size_t packed_count, packed_capacity;
 
     /* Sets of tags that differ in what the style reads. */
-    camber_value *values; /* set_count * style->property_count */
+    camber_value *values; /* set_count * schema->property_count */
     size_t set_count, value_capacity;
     uint32_t *slots; /* a hash table: index + 1; 0: free */
     size_t slot_count;

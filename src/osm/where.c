@@ -5,7 +5,7 @@
  * differ in what becomes of missing keys under it. */
 #include "osm/where.h"
 
-#include "source/osm_keys.h"
+#include "features/osm_keys.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -159,8 +159,7 @@ static camber_status move_scene(camber_painter *painter, const camber_route_requ
                                              .width = request->width,
                                              .height = request->height,
                                              .ratio = request->ratio},
-                                    .simplify_px = chart->simplify_px,
-                                    .on_device = true};
+                                    .simplify_px = chart->simplify_px};
     camber_status status = take_theme(painter, request->dark);
     if (status == CAMBER_OK && !painter->mesh)
         status = camber_mesh_create(chart->device, chart->renderer, &painter->mesh);

@@ -188,7 +188,7 @@ bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber
                                    .reads_zoom = zoom,
                                    .reads_line_progress = progress,
                                    .reads_feature = !zoom && !progress};
-    c->style->wants_id |= evaluate == camber_evaluate_id || evaluate == camber_evaluate_has_id;
+    c->style->schema.wants_id |= evaluate == camber_evaluate_id || evaluate == camber_evaluate_has_id;
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
@@ -200,7 +200,7 @@ enum { PROPERTY_SLOTS = 4 * CAMBER_PROPERTY_LIMIT };
 static size_t property_slot(const camber_compiler *c, const char *name) {
     const uint64_t hash = camber_hash(CAMBER_HASH_START, name, strlen(name));
     size_t slot = (size_t)(hash ^ hash >> 32) % PROPERTY_SLOTS;
-    while (c->property_slots[slot] && strcmp(c->style->properties[c->property_slots[slot] - 1], name) != 0)
+    while (c->property_slots[slot] && strcmp(c->style->schema.properties[c->property_slots[slot] - 1], name) != 0)
         slot = (slot + 1) % PROPERTY_SLOTS;
     return slot;
 }
@@ -212,8 +212,23 @@ static bool hash_properties(camber_compiler *c) {
     c->property_slots = camber_alloc_zero(c->context, PROPERTY_SLOTS, sizeof *c->property_slots);
     if (!c->property_slots)
         return fail_memory(c);
-    for (size_t i = 0; i < c->style->property_count; i++)
-        c->property_slots[property_slot(c, c->style->properties[i])] = (uint32_t)i + 1;
+    for (size_t i = 0; i < c->style->schema.property_count; i++)
+        c->property_slots[property_slot(c, c->style->schema.properties[i])] = (uint32_t)i + 1;
+    return true;
+}
+
+/* Adds the layer that is read to the readers of a property. */
+static bool add_readers(camber_compiler *c, uint32_t property) {
+    camber_schema *schema = &c->style->schema;
+    if (!c->readers.kinds && !c->readers.named_kinds)
+        return true;
+    if (!schema->property_readers)
+        schema->property_readers =
+            camber_alloc_zero(c->context, CAMBER_PROPERTY_LIMIT, sizeof *schema->property_readers);
+    if (!schema->property_readers)
+        return false;
+    schema->property_readers[property].kinds |= c->readers.kinds;
+    schema->property_readers[property].named_kinds |= c->readers.named_kinds;
     return true;
 }
 
@@ -223,23 +238,21 @@ bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, cons
         return false;
     const size_t slot = property_slot(c, name);
     if (!c->property_slots[slot]) {
-        if (style->property_count >= CAMBER_PROPERTY_LIMIT)
+        if (style->schema.property_count >= CAMBER_PROPERTY_LIMIT)
             return camber_compiler_fail(c, "more than %d feature properties are read; use fewer",
                                         CAMBER_PROPERTY_LIMIT);
         /* The limit is small, so the array has its full size from the beginning and needs no capacity. */
-        if (!style->properties)
-            style->properties = camber_alloc(c->context, CAMBER_PROPERTY_LIMIT, sizeof *style->properties);
-        char *copy = style->properties ? camber_copy_string(c->context, name) : NULL;
+        if (!style->schema.properties)
+            style->schema.properties =
+                camber_alloc(c->context, CAMBER_PROPERTY_LIMIT, sizeof *style->schema.properties);
+        char *copy = style->schema.properties ? camber_copy_string(c->context, name) : NULL;
         if (!copy)
             return fail_memory(c);
-        style->properties[style->property_count++] = copy;
-        c->property_slots[slot] = (uint32_t)style->property_count;
+        style->schema.properties[style->schema.property_count++] = copy;
+        c->property_slots[slot] = (uint32_t)style->schema.property_count;
     }
-    if (c->readers && !style->property_readers &&
-        !(style->property_readers = camber_alloc_zero(c->context, CAMBER_PROPERTY_LIMIT, 1)))
+    if (!add_readers(c, c->property_slots[slot] - 1))
         return fail_memory(c);
-    if (c->readers)
-        style->property_readers[c->property_slots[slot] - 1] |= c->readers;
     const camber_node prototype = {
         .evaluate = evaluate,
         .type = camber_typing_of(evaluate == camber_evaluate_has ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE),

@@ -365,12 +365,13 @@ void camber_style_destroy(camber_style *style) {
         camber_free(context, style->sprites[i].id);
         camber_free(context, style->sprites[i].url);
     }
-    for (size_t i = 0; i < style->property_count; i++)
-        camber_free(context, style->properties[i]);
+    for (size_t i = 0; i < style->schema.property_count; i++)
+        camber_free(context, style->schema.properties[i]);
     json_decref(style->state);
     camber_free(context, style->name);
-    camber_free(context, style->properties);
-    camber_free(context, style->property_readers);
+    camber_free(context, style->schema.properties);
+    camber_free(context, style->schema.property_readers);
+    camber_free(context, style->schema.source_layers);
     camber_free(context, style->sprites);
     camber_free(context, style->sources);
     camber_free(context, style->layers);

@@ -209,8 +209,8 @@ static bool read_feature(evaluator *e, const json_t *json, camber_value *values,
         return camber_compiler_fail_memory(&e->compiler);
     if (id && !camber_json_to_value(&e->arena, id, &feature->id))
         return camber_compiler_fail_memory(&e->compiler);
-    for (size_t i = 0; i < e->style.property_count; i++) {
-        const camber_value *value = camber_object_get(all, e->style.properties[i]);
+    for (size_t i = 0; i < e->style.schema.property_count; i++) {
+        const camber_value *value = camber_object_get(all, e->style.schema.properties[i]);
         values[i] = value ? *value : (camber_value){.type = CAMBER_VALUE_NULL};
     }
     return true;
@@ -239,7 +239,7 @@ static bool run_input(evaluator *e, const json_t *input, camber_value *values) {
 
 static bool run_inputs(evaluator *e) {
     const json_t *inputs = json_object_get(e->document, "inputs");
-    camber_value *values = camber_alloc(e->compiler.context, e->style.property_count, sizeof *values);
+    camber_value *values = camber_alloc(e->compiler.context, e->style.schema.property_count, sizeof *values);
     bool done = values != NULL;
     for (size_t i = 0; done && i < json_array_size(inputs); i++)
         done = run_input(e, json_array_get(inputs, i), values);
@@ -298,9 +298,9 @@ camber_status camber_style_evaluate(camber_context *context, const char *json, s
         status = write_result(&e, sink);
     camber_expression_destroy(context, e.expression);
     camber_compiler_end(&e.compiler);
-    for (size_t i = 0; i < e.style.property_count; i++)
-        camber_free(context, e.style.properties[i]);
-    camber_free(context, e.style.properties);
+    for (size_t i = 0; i < e.style.schema.property_count; i++)
+        camber_free(context, e.style.schema.properties[i]);
+    camber_free(context, e.style.schema.properties);
     camber_arena_free(&e.arena);
     json_decref(e.errors);
     json_decref(e.compiled);

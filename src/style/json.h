@@ -2,16 +2,13 @@
 #ifndef CAMBER_STYLE_JSON_H
 #define CAMBER_STYLE_JSON_H
 
+#include "features/value.h"
 #include "style/arena.h"
-#include "style/value.h"
 
 #include <jansson.h>
 
 /* Deepest nesting of a value: jansson reads no deeper documents. */
 #define CAMBER_VALUE_DEPTH 2048
-
-/* Stands in data for infinities and numbers beyond a double, which JSON does not have. */
-#define CAMBER_JSON_INFINITE 1e308
 
 /* Parses with jansson's flags, after a byte order mark. is_data: not written for camber, and read as GDAL reads it: NaN
  * is null, and numbers beyond a double are +-CAMBER_JSON_INFINITE. Returns CAMBER_ERROR_INPUT (*error says why, and

@@ -61,7 +61,7 @@ static bool read_known(camber_document *d, const camber_property_row *row, json_
         return false;
     if (is_default(row, json))
         return true;
-    c->style->directed |= row->directed;
+    c->style->schema.directed |= row->directed;
     return true;
 }
 
@@ -342,9 +342,11 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     }
     camber_style_layer *layer = &style->layers[style->layer_count++];
     layer->kind = kind;
-    c->readers = camber_readers_of(kind, json_object_get(json, "source-layer") != NULL);
+    const unsigned kinds = camber_style_layer_kinds(kind);
+    c->readers = json_object_get(json, "source-layer") ? (camber_property_readers){.named_kinds = kinds}
+                                                       : (camber_property_readers){.kinds = kinds};
     const bool done = read_layer(d, json, layer);
-    c->readers = 0;
+    c->readers = (camber_property_readers){0};
     return done;
 }
 
@@ -418,45 +420,20 @@ bool camber_style_layer_may_take(const camber_style_layer *layer, const char *ty
     return layer->visible && (!layer->filter || camber_filter_may_take(layer->filter->document, type));
 }
 
-/* Finds what else than lines is drawn of the features. */
-static void find_wants(camber_style *style) {
-    style->wants_polygons = style->wants_areas = false;
-    style->wants_plain = style->wants_plain_areas = style->wants_plain_points = false;
-    for (size_t i = 0; i < style->layer_count; i++) {
-        const camber_style_layer *layer = style->layers + i;
-        const bool polygons = layer->kind != CAMBER_LAYER_BACKGROUND && camber_style_layer_may_take(layer, "Polygon");
-        const bool fills = polygons && layer->kind == CAMBER_LAYER_FILL;
-        const bool outlines = polygons && (!fills || layer->properties[CAMBER_FILL_OUTLINE_COLOR]);
-        if (!layer->plain) {
-            style->wants_areas |= fills;
-            style->wants_polygons |= outlines;
-            continue;
-        }
-        style->wants_plain |= layer->visible;
-        style->wants_plain_areas |= polygons;
-        style->wants_plain_points |= layer->kind == CAMBER_LAYER_LINE && camber_style_layer_may_take(layer, "Point");
-    }
-}
-
-bool camber_style_names_layer(const camber_style *style, const char *source_layer) {
-    for (size_t i = 0; i < style->layer_count; i++)
-        if (style->layers[i].source_layer && strcmp(style->layers[i].source_layer, source_layer) == 0)
-            return true;
-    return false;
-}
-
 bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     camber_compiler *c = &d->compiler;
     camber_compiler_enter_key(c, "layers");
     const size_t depth = c->path_length;
     if (!json_is_array(layers))
         return camber_compiler_fail(c, "expected an array of layers; write \"layers\": [...]");
-    c->style->layers = camber_alloc_zero(c->context, json_array_size(layers), sizeof *c->style->layers);
-    if (!c->style->layers)
+    camber_style *style = c->style;
+    const size_t count = json_array_size(layers);
+    if (!(style->layers = camber_alloc_zero(c->context, count, sizeof *style->layers)) ||
+        !(style->schema.source_layers = camber_alloc(c->context, count, sizeof *style->schema.source_layers)))
         return camber_document_fail_memory(d);
     if (!index_layers(d, layers))
         return false;
-    for (size_t i = 0; i < json_array_size(layers); i++) {
+    for (size_t i = 0; i < count; i++) {
         camber_compiler_enter_index(c, i);
         if (read_any_layer(d, json_array_get(layers, i)))
             camber_compiler_leave(c);
@@ -465,7 +442,7 @@ bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     }
     if (!check_ids(d, layers))
         return false;
-    find_wants(c->style);
+    camber_style_describe_layers(style);
     camber_compiler_leave(c);
     return true;
 }

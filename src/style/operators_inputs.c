@@ -115,7 +115,7 @@ static bool compile_member(camber_compiler *c, const camber_operator *row, const
     if (!camber_push_operand(c, name) ||
         (object && !camber_compile_operand(c, array, 2, camber_typing_of(CAMBER_TYPE_OBJECT))))
         return false;
-    c->style->wants_all_properties |= !object;
+    c->style->schema.wants_all_properties |= !object;
     const camber_node prototype = {.evaluate =
                                        row->evaluate == camber_evaluate_get ? evaluate_get_member : evaluate_has_member,
                                    .type = camber_typing_of(row->result),
@@ -186,7 +186,7 @@ static bool compile_reader(camber_compiler *c, const camber_operator *row, json_
                            uint32_t *node) {
     (void)array;
     (void)expected;
-    c->style->wants_all_properties |= row->evaluate == evaluate_properties;
+    c->style->schema.wants_all_properties |= row->evaluate == evaluate_properties;
     return camber_make_reader(c, row->evaluate, row->result, node);
 }
 

@@ -3,18 +3,9 @@
 #define CAMBER_STYLE_STYLE_H
 
 #include "base/base.h"
-#include "camber_map.h"
-#include "style/value.h"
+#include "features/schema.h"
 
 #include <jansson.h>
-
-/* A feature as an expression reads it. */
-typedef struct camber_feature_view {
-    const camber_value *values; /* style->property_count, in the order of style->properties */
-    const char *geometry_type;  /* "Point", "LineString" or "Polygon" */
-    camber_value id;            /* where the style wants it; null: none */
-    const camber_value *all;    /* an object of all properties, where the style wants them. NULL: none */
-} camber_feature_view;
 
 typedef struct camber_expression camber_expression; /* expression.h */
 
@@ -92,9 +83,6 @@ typedef struct camber_style_layer {
     camber_layer_ramp ramp, border_ramp; /* for line-gradient, and for its border where that has no colour */
 } camber_style_layer;
 
-/* Stands for a source that no layer names: any input. */
-#define CAMBER_NO_SOURCE UINT32_MAX
-
 typedef struct camber_style_source {
     char *name;
     char *type;    /* "geojson", "vector", ... */
@@ -127,26 +115,15 @@ struct camber_style {
     size_t layer_count;
     camber_style_source *sources; /* in the document's order */
     size_t source_count;
-    char **properties; /* feature properties that any expression reads, each once */
-    size_t property_count;
-    /* property_count: which layers read it, as camber_readers_of has them; none, where only a source's filter does.
-     * NULL: all read all. */
-    uint8_t *property_readers;
-    bool wants_id;             /* an expression reads the feature's id */
-    bool wants_all_properties; /* an expression reads properties that it does not name */
-    bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
-    bool accumulates; /* a line layer's lines are seen through each other, their ends too */
-    bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, or by a fill
-                            layer that has a colour for them */
-    bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
-    /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
-    bool wants_plain, wants_plain_areas, wants_plain_points;
+    camber_schema schema; /* what readers must know */
+    bool accumulates;     /* a line layer's lines are seen through each other, their ends too */
 };
 
-/* The readers of layers of a kind: a bit for those of any source layer, and another one for those that name theirs. */
-static inline uint8_t camber_readers_of(camber_layer_kind kind, bool names_source_layer) {
-    return (uint8_t)(1u << ((unsigned)kind + (names_source_layer ? 4 : 0)));
-}
+/* The kinds of features, CAMBER_KIND_*, whose properties layers of a kind read; they draw no dots but those of layers
+ * that are plain. */
+unsigned camber_style_layer_kinds(camber_layer_kind kind);
+/* Writes down in the schema what layers say of it: once all are read, and again when some become invisible. */
+void camber_style_describe_layers(camber_style *style);
 
 /* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);
@@ -154,8 +131,6 @@ bool camber_style_source_matches(const camber_style_source *source, const camber
 /* Whether the layer draws features of this class at this zoom (visible, zoom range, filter). A filter that
  * fails to evaluate is false. */
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature);
-/* Whether the style has a layer of its own for this source layer, so that it knows the schema. */
-bool camber_style_names_layer(const camber_style *style, const char *source_layer);
 /* Whether it draws any feature of a type of geometry, "Polygon" or another one. */
 bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type);
 /* Whether it does at any zoom, by a filter that does not depend on it. */

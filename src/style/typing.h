@@ -2,7 +2,7 @@
 #ifndef CAMBER_STYLE_TYPING_H
 #define CAMBER_STYLE_TYPING_H
 
-#include "style/value.h"
+#include "features/value.h"
 
 typedef enum camber_type {
     CAMBER_TYPE_VALUE = 0, /* known only when evaluated */

@@ -2,9 +2,9 @@
 #include "tiles/area.h"
 
 #include "archive/archive.h"
-#include "source/features.h"
-#include "source/mercator.h"
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
+#include "features/features.h"
+#include "features/mercator.h"
 
 #include <math.h>
 #include <stdlib.h>

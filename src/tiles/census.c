@@ -16,7 +16,7 @@
  */
 #include "tiles/census.h"
 
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
 
 #include <math.h>
 #include <stdatomic.h>

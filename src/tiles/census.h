@@ -2,8 +2,8 @@
 #ifndef CAMBER_TILES_CENSUS_H
 #define CAMBER_TILES_CENSUS_H
 
-#include "map/excerpt.h"
-#include "source/tile_set.h"
+#include "archive/tile_set.h"
+#include "map/zoom_plan.h"
 #include "tiles/workers.h"
 
 /* A metatile is a square of tiles that is drawn as one picture: side x side of them, 8 at most. */

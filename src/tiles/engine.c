@@ -1,10 +1,11 @@
 /* The engine: pictures of metatiles of tiles, with a network and a camera for each.
  *
  * Input: features, a renderer, and which tile is wanted. Output: pixels of its metatile. Main idea: a census tells
- * which lines reach into a metatile; of these an excerpt is made, tessellated and drawn as one picture, which tiles are
+ * which lines reach into a metatile; of these a scene is made, tessellated and drawn as one picture, which tiles are
  * cut of.
  */
 #include "tiles/engine.h"
+#include "map/scene.h"
 
 #include "tiles/mesh_area.h"
 
@@ -229,44 +230,53 @@ static camber_status renew_mesh(camber_tiles_engine *engine) {
     return camber_mesh_create(engine->desc.device, engine->desc.renderer, &engine->mesh);
 }
 
-static camber_excerpt_window window_of(const camber_tiles_picture *picture) {
+static camber_view window_of(const camber_zoom_plan *plan, const camber_tiles_picture *picture) {
     const double across = exp2(picture->zoom), half = 0.5 * picture->side;
-    const uint32_t side_px = picture->side * picture->tile_px;
-    return (camber_excerpt_window){(picture->column + half) / across, (picture->row + half) / across, side_px, side_px};
+    camber_view window = plan->view;
+    window.x = (picture->column + half) / across;
+    window.y = (picture->row + half) / across;
+    window.width = window.height = picture->side * picture->tile_px;
+    return window;
 }
 
-/* Makes the excerpt of a metatile and tessellates it. */
+/* Makes the scene of a metatile and tessellates it. */
 static camber_status tessellate(camber_tiles_engine *engine, const camber_metatile *metatile,
-                                const camber_tiles_picture *picture, camber_excerpt *excerpt) {
+                                const camber_tiles_picture *picture, camber_scene **scene) {
     static const uint32_t none[1] = {0};
     const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
-    const camber_excerpt_window window = window_of(picture);
+    const camber_view window = window_of(zoom->plan, picture);
     const double start_ms = camber_now_ms();
     const camber_status status =
-        camber_excerpt_make(zoom->plan, metatile ? zoom->census.polylines + metatile->first : none,
-                            metatile ? metatile->end - metatile->first : 0, &window, excerpt);
+        camber_scene_create_window(zoom->plan, &window, metatile ? zoom->census.polylines + metatile->first : none,
+                                   metatile ? metatile->end - metatile->first : 0, scene);
     engine->make_ms += camber_now_ms() - start_ms;
-    return status == CAMBER_OK ? camber_excerpt_tessellate(excerpt, engine->mesh) : status;
+    return status == CAMBER_OK ? camber_scene_tessellate(*scene, engine->mesh, CAMBER_METHOD_STRIP) : status;
 }
 
-/* Frees the excerpt, and what the mesh holds of a large one. */
-static camber_status end_excerpt(camber_tiles_engine *engine, camber_excerpt *excerpt, camber_status status) {
-    const bool large = excerpt->network && camber_network_get_stats(excerpt->network).kept_points > MANY_POINTS;
-    camber_excerpt_free(excerpt);
+/* Destroys the scene, and what the mesh holds of a large one. */
+static camber_status end_scene(camber_tiles_engine *engine, camber_scene *scene, camber_status status) {
+    camber_camera camera;
+    camber_tessellation_desc desc;
+    const bool large =
+        scene && camber_network_get_stats(camber_scene_get_network(scene, &camera, &desc)).kept_points > MANY_POINTS;
+    camber_scene_destroy(scene);
     return status == CAMBER_OK && large ? renew_mesh(engine) : status;
 }
 
 camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, const camber_metatile *metatile,
                                                 camber_tiles_picture *picture, camber_mesh_picture *lines) {
-    camber_excerpt excerpt = {0};
+    camber_scene *scene = NULL;
+    const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
     const double start_ms = camber_now_ms(), made_ms = engine->make_ms;
-    camber_status status = tessellate(engine, metatile, picture, &excerpt);
+    camber_status status = tessellate(engine, metatile, picture, &scene);
     if (status == CAMBER_OK)
-        status = camber_mesh_picture_take(engine->zooms[picture->zoom].mesh, engine->mesh, lines);
-    if (status == CAMBER_OK && metatile)
-        status = camber_mesh_picture_take_rings(lines, engine->zooms[picture->zoom].census.polylines + metatile->first,
-                                                metatile->end - metatile->first, &excerpt.window);
-    status = end_excerpt(engine, &excerpt, status);
+        status = camber_mesh_picture_take(zoom->mesh, engine->mesh, lines);
+    if (status == CAMBER_OK && metatile) {
+        const camber_view window = window_of(zoom->plan, picture);
+        status = camber_mesh_picture_take_rings(lines, zoom->census.polylines + metatile->first,
+                                                metatile->end - metatile->first, &window);
+    }
+    status = end_scene(engine, scene, status);
     engine->draw_ms += camber_now_ms() - start_ms - (engine->make_ms - made_ms);
     return status;
 }
@@ -274,14 +284,14 @@ camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, con
 camber_status camber_engine_draw_metatile(camber_tiles_engine *engine, const camber_metatile *metatile, uint8_t *rgba,
                                           camber_tiles_picture *picture) {
     const double start_ms = camber_now_ms(), made_ms = engine->make_ms;
-    camber_excerpt excerpt = {0};
-    camber_status status = tessellate(engine, metatile, picture, &excerpt);
+    camber_scene *scene = NULL;
+    camber_status status = tessellate(engine, metatile, picture, &scene);
     if (status == CAMBER_OK) {
-        camber_frame frame = camber_excerpt_get_frame(&excerpt, engine->mesh);
+        camber_frame frame = camber_scene_get_frame(scene, engine->mesh);
         frame.coverage = engine->desc.coverage;
         status = camber_renderer_render_into(engine->desc.renderer, &frame, rgba, 0, NULL);
     }
-    status = end_excerpt(engine, &excerpt, status);
+    status = end_scene(engine, scene, status);
     engine->draw_ms += camber_now_ms() - start_ms - (engine->make_ms - made_ms);
     picture->rgba = status == CAMBER_OK ? rgba : NULL;
     return status;

@@ -102,7 +102,7 @@ static bool append_class(json_t *to, const camber_features *features, const camb
                              (json_int_t) class->geometry, class->unsorted);
     const camber_value none = {.type = CAMBER_VALUE_NULL};
     bool good = json && append_value(json, &class->id) && append_value(json, class->all ? class->all : &none);
-    for (size_t i = 0; i < features->style->property_count && good; i++)
+    for (size_t i = 0; i < features->schema->property_count && good; i++)
         good = append_value(json, features->values + class->first_value + i);
     return json_array_append_new(to, json) == 0 && good;
 }
@@ -126,7 +126,7 @@ static json_t *make_json(const camber_features *features) {
 
 static camber_status take_class(camber_features *features, const json_t *json, camber_value *values, size_t number) {
     enum { BEFORE = 6 };
-    const size_t count = features->style->property_count;
+    const size_t count = features->schema->property_count;
     const json_int_t kind = json_integer_value(json_array_get(json, 2));
     camber_feature_class class = {.layer = (uint32_t)json_integer_value(json_array_get(json, 1)),
                                   .geometry = (camber_geometry_kind)kind,
@@ -154,7 +154,7 @@ static camber_status take_json(camber_features *features, const json_t *json) {
     const json_t *layers = json_object_get(json, "layers"), *classes = json_object_get(json, "classes");
     const uint32_t source = features->source;
     uint32_t layer;
-    camber_value *values = camber_alloc_zero(features->context, features->style->property_count, sizeof *values);
+    camber_value *values = camber_alloc_zero(features->context, features->schema->property_count, sizeof *values);
     camber_status status = values ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK && !(json_is_array(layers) && json_is_array(classes)))
         status = CAMBER_ERROR_INPUT;

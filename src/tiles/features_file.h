@@ -2,7 +2,7 @@
 #ifndef CAMBER_TILES_FEATURES_FILE_H
 #define CAMBER_TILES_FEATURES_FILE_H
 
-#include "source/features.h"
+#include "features/features.h"
 
 /* Writes the set, whole or not at all. input: the hash of the set, which says what it is of. force: it replaces another
  * file. Returns CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (a number that JSON does not have). */

@@ -3,8 +3,8 @@
 #include "tiles/fingerprint.h"
 
 #include "archive/contents.h"
-#include "source/features.h"
-#include "source/sprite.h"
+#include "features/features.h"
+#include "style/sprite.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -45,7 +45,7 @@ static uint64_t hash_classes(const camber_features *features, uint64_t hash) {
         hash = camber_mix(hash, (uint64_t) class->source << 32 | (uint64_t) class->geometry);
         hash = hash_text(hash, features->layer_names ? features->layer_names[class->layer] : NULL);
         hash = hash_value(hash, &class->id);
-        for (size_t k = 0; k < features->style->property_count; k++)
+        for (size_t k = 0; k < features->schema->property_count; k++)
             hash = hash_value(hash, features->values + class->first_value + k);
         if (class->all)
             hash = hash_value(hash, class->all);

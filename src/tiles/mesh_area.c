@@ -10,7 +10,7 @@
 /* ---- The rings of a picture ---- */
 
 static camber_status add_ring(camber_mesh_picture *picture, size_t *point_capacity, size_t *ring_capacity,
-                              const camber_plan_entry *entry, double shift, const camber_excerpt_window *window) {
+                              const camber_plan_entry *entry, double shift, const camber_view *window) {
     const camber_zoom_plan *zoom = picture->plan->zoom;
     const camber_features *f = zoom->features;
     const size_t first = f->offsets[entry->polyline], end = f->offsets[entry->polyline + 1];
@@ -46,7 +46,7 @@ static camber_status add_ring(camber_mesh_picture *picture, size_t *point_capaci
 }
 
 camber_status camber_mesh_picture_take_rings(camber_mesh_picture *picture, const uint32_t *polylines,
-                                             size_t polyline_count, const camber_excerpt_window *window) {
+                                             size_t polyline_count, const camber_view *window) {
     const camber_mesh_plan *meshes = picture->plan;
     const camber_zoom_plan *zoom = picture->plan->zoom;
     const camber_plan *plan = &zoom->plan;

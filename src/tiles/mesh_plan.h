@@ -5,7 +5,7 @@
 #ifndef CAMBER_TILES_MESH_PLAN_H
 #define CAMBER_TILES_MESH_PLAN_H
 
-#include "map/excerpt.h"
+#include "map/zoom_plan.h"
 
 enum { CAMBER_MESH_SAMPLES = 5 };
 

@@ -7,10 +7,11 @@
  *     census -> schedule -> [resumed?] -> draw --> encode (threads) --> writer --> archive
  *                                          ^------- the next picture ----' */
 #include "archive/archive.h"
+#include "archive/pmtiles.h"
+#include "features/features.h"
+#include "features/mercator.h"
 #include "map/plan.h"
-#include "source/features.h"
-#include "source/mercator.h"
-#include "source/pmtiles.h"
+#include "style/style.h"
 #include "tiles/encoding.h"
 #include "tiles/features_file.h"
 #include "tiles/schedule_file.h"

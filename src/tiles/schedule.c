@@ -11,7 +11,7 @@
  * that done, so does the longest part of the other kind. */
 #include "tiles/schedule.h"
 
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 
 #include "archive/contents.h"
 #include "archive/output_file.h"
-#include "source/features.h"
+#include "features/features.h"
 #include "tiles/features_file.h"
 
 #include <errno.h>

@@ -2,7 +2,7 @@
 #ifndef CAMBER_TILES_SCHEDULE_FILE_H
 #define CAMBER_TILES_SCHEDULE_FILE_H
 
-#include "source/region.h"
+#include "features/region.h"
 #include "tiles/fingerprint.h"
 #include "tiles/schedule.h"
 

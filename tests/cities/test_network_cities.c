@@ -83,9 +83,7 @@ static size_t check_city(fixture *b, const camber_features *features, const city
         if (streets)
             assert_int_equal(camber_scene_move(streets, &view), CAMBER_OK);
         else
-            assert_int_equal(
-                camber_scene_create(features, &(camber_scene_desc){.view = view, .on_device = true}, &streets),
-                CAMBER_OK);
+            assert_int_equal(camber_scene_create(features, &(camber_scene_desc){.view = view}, &streets), CAMBER_OK);
         camber_network *network = camber_scene_get_network(streets, &camera, &desc);
         camera.simplify_px = LOOKS[i].simplify_px;
         desc.method = (camber_method)(i % 3);

@@ -73,6 +73,7 @@ static camber_scene *streets_look(const streets *it, const network *n, double zo
     camber_scene *made = NULL;
     size_t rows;
     assert_int_equal(camber_scene_create(it->features, &desc, &made), CAMBER_OK);
+    assert_int_equal(camber_scene_project(made), CAMBER_OK);
     camber_scene_get_strokes(made, &rows);
     assert_int_equal(rows, 1);
     return made;

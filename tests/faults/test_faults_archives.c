@@ -4,7 +4,7 @@
 #include "core.h"
 
 #include "archive/archive.h"
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
 #include "tile_maker.h"
 
 #include <errno.h>

@@ -4,7 +4,7 @@
 #include "core.h"
 
 #include "camber_map.h"
-#include "source/features.h"
+#include "features/features.h"
 #include "tilemaker.h"
 
 #include <errno.h>

@@ -5,8 +5,9 @@
 #include "core.h"
 
 #include "camber_map.h"
+#include "features/features.h"
 #include "kernels/layout.h"
-#include "source/features.h"
+#include "style/style.h"
 #include "tiles/mesh_tile.h"
 
 #include <cpl_conv.h>
@@ -87,7 +88,7 @@ static uint64_t hash_features(const camber_features *f) {
         const camber_feature_class *class = f->classes + f->feature_class[i];
         hash = camber_hash(hash, f->layer_names[class->layer], strlen(f->layer_names[class->layer]));
         hash = camber_hash(hash, &class->geometry, sizeof class->geometry);
-        for (size_t k = 0; k < f->style->property_count; k++) {
+        for (size_t k = 0; k < f->style->schema.property_count; k++) {
             const camber_value *value = f->values + class->first_value + k;
             hash = camber_hash(hash, &value->type, sizeof value->type);
             if (value->type == CAMBER_VALUE_STRING)
@@ -140,9 +141,9 @@ static camber_status try_style(camber_context *context, void *user) {
         return status;
     }
     assert_int_equal(style->layer_count, d->style->layer_count);
-    assert_int_equal(style->property_count, d->style->property_count);
-    for (size_t i = 0; i < style->property_count; i++)
-        assert_string_equal(style->properties[i], d->style->properties[i]);
+    assert_int_equal(style->schema.property_count, d->style->schema.property_count);
+    for (size_t i = 0; i < style->schema.property_count; i++)
+        assert_string_equal(style->schema.properties[i], d->style->schema.properties[i]);
     for (size_t i = 0; i < style->layer_count; i++)
         assert_string_equal(style->layers[i].filter_key, d->style->layers[i].filter_key);
     camber_style_destroy(style);
@@ -185,9 +186,14 @@ static camber_status try_scene(camber_context *context, void *user) {
     uint64_t hash = CAMBER_HASH_START;
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         camber_scene *scene = NULL;
-        const camber_status status = camber_scene_create(d->features, descs + i, &scene);
+        camber_status status = camber_scene_create(d->features, descs + i, &scene);
         if (status != CAMBER_OK) {
             assert_null(scene);
+            return status;
+        }
+        status = camber_scene_project(scene);
+        if (status != CAMBER_OK) {
+            camber_scene_destroy(scene);
             return status;
         }
         const uint64_t one = hash_scene(scene);
@@ -352,6 +358,7 @@ static int set_up(void **state) {
     }
     const camber_scene_desc desc = {.view = {CAMBER_VIEW_BBOX, 9.9, 49.9, 10.6, 50.5}};
     assert_int_equal(camber_scene_create(d->features, &desc, &d->scene), CAMBER_OK);
+    assert_int_equal(camber_scene_project(d->scene), CAMBER_OK);
     size_t count = 0;
     const camber_stroke *strokes = camber_scene_get_strokes(d->scene, &count);
     assert_true(count >= 4 && camber_scene_get_info(d->scene).layers >= 3);

@@ -2,6 +2,7 @@
 #include "fuzz_scene.h"
 
 #include "gdal/vector_file.h"
+#include "style/style.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
@@ -38,7 +39,7 @@ static void check_features(const camber_features *features) {
     /* Areas go on beyond the edges of the world. */
     for (size_t i = 0; i < 2 * features->point_count; i++)
         REQUIRE((features->points[i] >= 0.0 && features->points[i] <= 1.0) ||
-                (features->style->wants_areas && i % 2 == 0 && fabs(features->points[i]) <= 2.0));
+                (features->style->schema.wants_areas && i % 2 == 0 && fabs(features->points[i]) <= 2.0));
     fuzz_check_areas(features);
     REQUIRE(counted == features->feature_count);
     for (size_t i = 0; i < features->point_count; i++)
@@ -65,7 +66,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     VSIFCloseL(file);
     if (fuzz_done(run, camber_style_parse(run->context, style_text, strlen(style_text), "fuzz", &style)) &&
         fuzz_done(run, camber_features_create(run->context, style, &features))) {
-        style->wants_areas = run->hash >> 5 & 1;
+        style->schema.wants_areas = run->hash >> 5 & 1;
         const camber_source_desc desc = {.path = path, .where = run->hash % 16 == 1 ? "level > 1" : NULL};
         const bool read = fuzz_done(run, camber_features_read(features, &desc));
         REQUIRE(read || features->point_count == 0);

@@ -10,6 +10,7 @@
 #include "osm/coast.h"
 #include "osm/node_set.h"
 #include "osm/osm.h"
+#include "style/style.h"
 
 #include "pbf_file.h"
 
@@ -134,18 +135,18 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     snprintf(path, sizeof path, "/tmp/camber-fuzz-%ld.osm.pbf", (long)getpid());
     write_file(path, bytes, size, content);
     const camber_source_desc desc = {.path = path, .threads = 2};
-    REQUIRE(!content || camber_osm_reads(&desc));
-    if (camber_osm_reads(&desc) &&
+    REQUIRE(!content || camber_reader_takes(&camber_osm_reader, &desc));
+    if (camber_reader_takes(&camber_osm_reader, &desc) &&
         fuzz_done(run, camber_style_parse(run->context, style_text, strlen(style_text), "fuzz", &style)) &&
         fuzz_done(run, camber_features_create(run->context, style, &features))) {
         bool declined = false;
-        style->wants_areas = run->hash & 1;
-        const bool read = fuzz_done(run, camber_osm_read(features, &desc, &declined));
+        style->schema.wants_areas = run->hash & 1;
+        const bool read = fuzz_done(run, camber_osm_reader.read(features, &desc, &declined));
         const camber_features_stats stats = camber_features_get_stats(features);
         REQUIRE((read && !declined) || stats.points == 0);
         REQUIRE(stats.points >= stats.polylines);
         if (declined || run->hash & 2)
-            (void)fuzz_done(run, camber_osm_check_for_gdal(run->context, &desc));
+            (void)fuzz_done(run, camber_osm_reader.leave(run->context, &desc));
         fuzz_check_areas(features);
     }
     camber_features_destroy(features);

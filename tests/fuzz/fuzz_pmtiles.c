@@ -1,8 +1,8 @@
 /* An archive of PMTiles: opened, listed, and its tiles taken; and the same bytes as a directory. */
 #include "fuzz.h"
 
-#include "source/pmtiles.h"
-#include "source/tile_set.h"
+#include "archive/pmtiles.h"
+#include "archive/tile_set.h"
 
 #include <stdio.h>
 #include <unistd.h>

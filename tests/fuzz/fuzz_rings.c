@@ -8,11 +8,11 @@
  */
 #include "fuzz_drawing.h"
 
+#include "features/rings.h"
 #include "lines/importance.h"
 #include "lines/lines.h"
 #include "lines/simplify.h"
 #include "map/triangulator.h"
-#include "source/rings.h"
 
 #include <math.h>
 #include <stdlib.h>

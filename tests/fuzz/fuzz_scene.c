@@ -1,6 +1,6 @@
 #include "fuzz_scene.h"
 
-#include "source/rings.h"
+#include "features/rings.h"
 
 #include <math.h>
 #include <string.h>
@@ -53,6 +53,10 @@ void fuzz_scene(fuzz_run *run, const camber_features *features, const camber_sce
     camber_scene *scene = NULL;
     if (!fuzz_done(run, camber_scene_create(features, desc, &scene)))
         return;
+    if (!fuzz_done(run, camber_scene_project(scene))) {
+        camber_scene_destroy(scene);
+        return;
+    }
     check_frame(scene);
     const camber_scene_info info = camber_scene_get_info(scene);
     REQUIRE(isfinite(info.longitude) && fabs(info.longitude) <= 180.0 && fabs(info.latitude) <= 85.06);

@@ -1,7 +1,8 @@
 /* A style's source of GeoJSON, as it stands in the document. */
 #include "fuzz_scene.h"
 
-#include "source/features.h"
+#include "features/features.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,8 +44,8 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     memcpy(text + sizeof head - 1 + size, tail, sizeof tail);
     const size_t length = sizeof head - 1 + size + sizeof tail - 1;
     if (fuzz_done(run, camber_style_parse(run->context, text, length, "fuzz", &style))) {
-        style->wants_id = run->hash >> 20 & 1;
-        style->wants_all_properties = run->hash >> 21 & 1;
+        style->schema.wants_id = run->hash >> 20 & 1;
+        style->schema.wants_all_properties = run->hash >> 21 & 1;
         read_sources(run, style);
     }
     camber_style_destroy(style);

@@ -1,7 +1,7 @@
 /* A style's sprite: an index beside a sheet of 16 x 16 px, or a sheet beside an index of one image. */
 #include "fuzz.h"
 
-#include "source/sprite.h"
+#include "style/sprite.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  * documents of one expression, as style eval takes them. */
 #include "fuzz_scene.h"
 
-#include "source/features.h"
+#include "features/features.h"
 #include "style/style.h"
 
 #include <math.h>
@@ -44,7 +44,7 @@ static const double shapes[][8] = {
 
 /* Features whose class gives the properties values one after the other, so that each meets each in time. */
 static bool add_features(fuzz_run *run, camber_features *features) {
-    const size_t count = features->style->property_count;
+    const size_t count = features->style->schema.property_count;
     camber_value all[1024] = {0};
     uint32_t layer = 0, class_index = 0;
     REQUIRE(count <= sizeof all / sizeof *all);

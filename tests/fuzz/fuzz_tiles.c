@@ -1,7 +1,8 @@
 /* One vector tile: its layers, its pieces joined, and on to a scene. */
 #include "fuzz_scene.h"
 
-#include "source/mvt.h"
+#include "formats/mvt.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,7 +21,7 @@ static void check(const camber_features *features, double reach) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
         REQUIRE(!one->all || one->all->type == CAMBER_VALUE_OBJECT);
-        for (size_t k = 0; k < features->style->property_count; k++)
+        for (size_t k = 0; k < features->style->schema.property_count; k++)
             REQUIRE(!isnan(features->values[one->first_value + k].number));
     }
 }
@@ -61,8 +62,8 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     if (fuzz_done(run, camber_style_parse(run->context, style_text, strlen(style_text), "fuzz", &style))) {
-        style->wants_id = run->hash >> 20 & 1;
-        style->wants_all_properties = run->hash >> 21 & 1;
+        style->schema.wants_id = run->hash >> 20 & 1;
+        style->schema.wants_all_properties = run->hash >> 21 & 1;
         if (fuzz_done(run, camber_features_create(run->context, style, &features)))
             read_tile(run, features, bytes, size);
     }

@@ -146,9 +146,8 @@ static void test_released_points(void **state) {
     network_write(source, 7.0, 46.0, 40, 2000, false);
     for (int i = 0; i < STYLES; i++) {
         camber_scene_desc desc = {.view = {.width = 300, .height = 200, .bearing_deg = 20.0 * i}, .simplify_px = 3.0};
-        desc.still = true;
+        desc.use = CAMBER_SCENE_ONE_VIEW;
         map whole = open_for(f, styles[i], source, &desc);
-        desc.on_device = true;
         map once = open_for(f, styles[i], source, &desc);
         camber_features_release_points(once.features);
         picture a = map_draw(f, &whole), b = map_draw(f, &once);
@@ -173,20 +172,22 @@ static void test_spent_points(void **state) {
     network_write(source, 7.0, 46.0, 40, 2000, false);
     for (int i = 0; i < STYLES; i++) {
         camber_scene_desc desc = {.view = {.width = 300, .height = 200, .bearing_deg = 20.0 * i}, .simplify_px = 3.0};
-        desc.still = true;
+        desc.use = CAMBER_SCENE_ONE_VIEW;
         map whole = open_for(f, styles[i], source, &desc), spent = {.style = whole.style};
         assert_int_equal(camber_features_create(f->context, spent.style, &spent.features), CAMBER_OK);
         assert_int_equal(camber_features_read(spent.features, &(camber_source_desc){.path = source}), CAMBER_OK);
-        desc.spent = spent.features;
-        assert_int_equal(camber_scene_create(spent.features, &desc, &spent.scene), CAMBER_OK);
+        assert_int_equal(camber_scene_create_last(spent.features, &desc, &spent.scene), CAMBER_OK);
+        assert_int_equal(camber_scene_project(spent.scene), CAMBER_OK);
+        assert_int_equal(camber_scene_project(whole.scene), CAMBER_OK);
         const camber_scene_info a_info = camber_scene_get_info(whole.scene),
                                 b_info = camber_scene_get_info(spent.scene);
+        assert_true(a_info.points > 0);
         assert_int_equal(a_info.points, b_info.points);
         assert_int_equal(a_info.points_in, b_info.points_in);
         picture a = map_draw(f, &whole), b = map_draw(f, &spent);
         assert_memory_equal(a.rgba, b.rgba, 4 * (size_t)a.width * a.height);
         camber_scene *none = NULL;
-        assert_int_equal(camber_scene_create(spent.features, &desc, &none), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_scene_create_last(spent.features, &desc, &none), CAMBER_ERROR_ARGUMENT);
         assert_story(&f->h, "released");
         picture_free(&a);
         picture_free(&b);

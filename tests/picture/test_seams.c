@@ -3,7 +3,7 @@
 #include "tilemaker.h"
 
 #include "camber_map.h"
-#include "source/mercator.h"
+#include "features/mercator.h"
 
 #include <unistd.h>
 

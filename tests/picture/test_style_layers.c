@@ -327,7 +327,7 @@ static void test_many_layers(void **state) {
         fail_msg("%s", s->h.last);
     assert_int_equal(camber_features_create(s->context, m.style, &m.features), CAMBER_OK);
     assert_int_equal(camber_features_read(m.features, &(camber_source_desc){.path = path}), CAMBER_OK);
-    const camber_scene_desc desc = {.on_device = true};
+    const camber_scene_desc desc = {.use = CAMBER_SCENE_VIEWS};
     assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
     /* A frame evaluates another zoom of the same features. */
     const camber_scene_info info = camber_scene_get_info(m.scene);

@@ -94,6 +94,8 @@ static map open_with(camber_context *context, const char *base, const char *laye
         m.status = camber_features_read_sprites(m.features, view.ratio, base);
     if (m.status == CAMBER_OK)
         m.status = camber_scene_create(m.features, &desc, &m.scene);
+    if (m.status == CAMBER_OK)
+        m.status = camber_scene_project(m.scene);
     return m;
 }
 

@@ -3,7 +3,7 @@
 #include "pictures.h"
 
 #include "camber_tiles.h"
-#include "source/features.h"
+#include "features/features.h"
 
 #include <math.h>
 
@@ -111,7 +111,7 @@ static void test_empty(void **state) {
     map_close(&map);
 }
 
-/* Tiles are cuts of the picture of a scene that is still, to the byte in a metatile. */
+/* Tiles are cuts of the picture of a scene of one view, to the byte in a metatile. */
 static void test_cuts(void **state) {
     const fixture *s = *state;
     made_map map;
@@ -130,8 +130,7 @@ static void test_cuts(void **state) {
                                              .width = 2048,
                                              .height = 2048},
                                     .simplify_px = 0.1,
-                                    .on_device = true,
-                                    .still = true};
+                                    .use = CAMBER_SCENE_ONE_VIEW};
     camber_scene *scene = NULL;
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_scene_create(map.features, &desc, &scene), CAMBER_OK);

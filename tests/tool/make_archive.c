@@ -10,7 +10,7 @@
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
 #include "tile_maker.h"
 
 #include <stdio.h>

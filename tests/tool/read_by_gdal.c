@@ -6,7 +6,7 @@
  * has the pixels that it was made of; the one behind the last is transparent. Exit status 1: a tile is another, 77:
  * GDAL here has no such driver. */
 #include "archive/archive.h"
-#include "source/pmtiles.h"
+#include "archive/pmtiles.h"
 #include "tile_maker.h"
 
 #include <gdal.h>

@@ -166,6 +166,12 @@ class Lint(unittest.TestCase):
         self.write("src/CMakeLists.txt", "camber_layer(all base io draw)\n")
         self.finds("src/CMakeLists.txt:1", "no layers")
 
+    def test_archive_that_knows_styles(self):
+        self.write("src/style/style.c", "int style(void) {\n    return 0;\n}\n")
+        self.write("src/archive/read.c", "int archive(void) {\n    return 0;\n}\n")
+        self.append("src/CMakeLists.txt", "camber_layer(style LINKS base)\ncamber_layer(archive LINKS style)\n")
+        self.finds("src/CMakeLists.txt:9", "layer archive reaches style")
+
     def test_layers_in_a_circle(self):
         self.write("src/gl/gl.c", HEAD)
         self.append("src/CMakeLists.txt", "camber_layer(gl LINKS gl)\n")
@@ -175,6 +181,15 @@ class Lint(unittest.TestCase):
         self.append("src/base/base.c", "int camber_png(void);\nint camber_up(void);\n"
                                        "int camber_up(void) { return camber_png(); }\n")
         self.finds("src/base/base.c:1", "layer base calls camber_png of src/io/png.c", self.compile())
+
+    def test_link_of_two_definitions(self):
+        """One is of a layer that the caller links; the other one takes its place in another library."""
+        self.append("src/CMakeLists.txt", "camber_layer(gl LINKS base)\n")
+        for layer in ("base", "gl"):
+            self.write("src/%s/found.c" % layer, HEAD + "int camber_found(void);\nint camber_found(void) { return 1; }\n")
+        self.append("src/draw/draw.c", "int camber_found(void);\nint camber_draw(void);\n"
+                                       "int camber_draw(void) { return camber_found(); }\n")
+        self.assertEqual(self.findings(self.compile()), [])
 
     def test_link_cycle(self):
         """Where no layers are named, those that the objects show must have no circle."""

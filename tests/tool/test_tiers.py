@@ -106,7 +106,7 @@ class Tiers(unittest.TestCase):
                                                    "mutation", "oclgrind", "asan", "ubsan", "tsan"), (test.name, label))
         self.assertIn("osm", arrows.covered("serve"))
         self.assertIn("raster", arrows.covered("map"))
-        self.assertNotIn("source", arrows.covered("camber"))
+        self.assertNotIn("features", arrows.covered("camber"))
 
     def test_seven_commits_run_all(self):
         shares = tiers.assign_shares(TESTS)

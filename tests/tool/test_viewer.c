@@ -115,7 +115,7 @@ static bool take_shot_rows(void *user, const uint8_t *rgba, uint32_t first_row, 
 /* The same view, drawn from the files by a scene, a device and a renderer of its own. */
 static shot shot_of_view(viewer *v, const camber_view_desc *view) {
     side own = {0};
-    const camber_scene_desc desc = {.view = *view, .simplify_px = SIMPLIFY_PX, .on_device = true};
+    const camber_scene_desc desc = {.view = *view, .simplify_px = SIMPLIFY_PX};
     camber_device *device = NULL;
     camber_renderer *renderer = NULL;
     const camber_renderer_desc how = {.rasterizer = v->options.rasterizer};

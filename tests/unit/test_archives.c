@@ -4,9 +4,9 @@
 #include "core.h"
 
 #include "archive/archive.h"
+#include "archive/pmtiles.h"
 #include "archive/writer.h"
 #include "camber_tiles.h"
-#include "source/pmtiles.h"
 #include "tile_maker.h"
 
 #include <gdal.h>

@@ -3,10 +3,10 @@
 #include "file_reading.h"
 #include "tilemaker.h"
 
-#include "source/geojson.h"
-#include "source/mercator.h"
-#include "source/mvt.h"
-#include "source/rings.h"
+#include "features/mercator.h"
+#include "features/rings.h"
+#include "formats/geojson.h"
+#include "formats/mvt.h"
 #include "tiles/census.h"
 #include "tiles/features_file.h"
 #include "validate/random.h"
@@ -19,7 +19,7 @@ static int set_up(void **state) {
     file_reading *it = calloc(1, sizeof *it);
     assert_non_null(it);
     reading_start(it, properties, 1);
-    it->style.wants_areas = true;
+    it->style.schema.wants_areas = true;
     *state = it;
     return 0;
 }
@@ -79,8 +79,7 @@ static void read_source(file_reading *it, const char *geometry, unsigned kinds) 
     camber_geojson_stats stats;
     json_t *root = json_loads(geometry, 0, NULL);
     assert_non_null(root);
-    const camber_style_source source = {.json = root};
-    const camber_geojson_desc desc = {.what = "source", .root = root, .source = &source, .kinds = kinds};
+    const camber_geojson_desc desc = {.what = "source", .root = root, .kinds = kinds};
     start_again(it);
     expect_ok(it, camber_geojson_read(it->features, &desc, &stats));
     json_decref(root);
@@ -280,16 +279,16 @@ static void test_kinds(void **state) {
     assert_int_equal(it->features->feature_count, 2);
     assert_int_equal(camber_features_kind(it->features, 0), CAMBER_GEOMETRY_LINE);
     assert_int_equal(camber_features_kind(it->features, 1), CAMBER_GEOMETRY_AREA);
-    it->style.wants_polygons = true;
+    it->style.schema.wants_polygons = true;
     read_geometry(it, both);
     assert_int_equal(it->features->feature_count, 3);
     assert_int_equal(camber_features_kind(it->features, 1), CAMBER_GEOMETRY_POLYGON);
-    it->style.wants_areas = false;
+    it->style.schema.wants_areas = false;
     read_geometry(it, both);
     assert_int_equal(it->features->feature_count, 2);
     read_source(it, both, 0);
     assert_int_equal(it->features->feature_count, 2);
-    it->style.wants_areas = true;
+    it->style.schema.wants_areas = true;
     read_source(it, both, 0);
     assert_int_equal(it->features->feature_count, 3);
     read_source(it, both, CAMBER_KIND_AREA);
@@ -302,7 +301,7 @@ static void test_kinds(void **state) {
 static void test_invalid_points(void **state) {
     file_reading *it = *state;
     for (int outlines = 0; outlines < 2; outlines++) {
-        it->style.wants_polygons = outlines;
+        it->style.schema.wants_polygons = outlines;
         read_geometry(it, POLYGON("[[0,0],[10,0],[NaN,5],[10,10],[0,10],[0,0]]"));
         assert_int_equal(it->features->stats.invalid_points, 1);
         const size_t last = it->features->polyline_count - 1;

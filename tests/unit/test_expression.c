@@ -37,9 +37,9 @@ static void setup(fixture *f) {
 
 static void teardown(fixture *f) {
     camber_expression_destroy(f->context, f->expression);
-    for (size_t i = 0; i < f->style.property_count; i++)
-        camber_free(f->context, f->style.properties[i]);
-    camber_free(f->context, f->style.properties);
+    for (size_t i = 0; i < f->style.schema.property_count; i++)
+        camber_free(f->context, f->style.schema.properties[i]);
+    camber_free(f->context, f->style.schema.properties);
     camber_compiler_end(&f->compiler);
     camber_context_destroy(f->context);
 }
@@ -65,9 +65,9 @@ static camber_value to_value(const json_t *json) {
 static bool evaluate(fixture *f, double zoom, const json_t *properties, camber_evaluation *evaluation,
                      camber_value *value) {
     camber_value values[16];
-    assert_true(f->style.property_count <= 16);
-    for (size_t i = 0; i < f->style.property_count; i++)
-        values[i] = to_value(json_object_get(properties, f->style.properties[i]));
+    assert_true(f->style.schema.property_count <= 16);
+    for (size_t i = 0; i < f->style.schema.property_count; i++)
+        values[i] = to_value(json_object_get(properties, f->style.schema.properties[i]));
     const camber_feature_view feature = {.values = values, .geometry_type = "LineString"};
     camber_evaluation_begin(evaluation, zoom, &feature);
     return camber_expression_evaluate(f->expression, evaluation, value);
@@ -349,9 +349,9 @@ static void test_folding(void **state) {
     camber_expression_destroy(f.context, f.expression);
     json = load("[\"any\", [\"has\", \"b\"], [\"==\", \"a\", 1], [\"==\", [\"get\", \"b\"], 1], [\"in\", \"a\", 2]]");
     assert_true(compile(&f, json, BOOL));
-    assert_int_equal(f.style.property_count, 2);
-    assert_string_equal(f.style.properties[0], "b");
-    assert_string_equal(f.style.properties[1], "a");
+    assert_int_equal(f.style.schema.property_count, 2);
+    assert_string_equal(f.style.schema.properties[0], "b");
+    assert_string_equal(f.style.schema.properties[1], "a");
     json_decref(json);
     teardown(&f);
 }
@@ -383,8 +383,8 @@ static void test_reads(void **state) {
         if (!camber_compile_property(&f.compiler, json, &property, &f.expression))
             fail_msg("%s: %s", samples[i].expression, f.message);
         if (f.expression->reads_zoom != samples[i].zoom || f.expression->reads_feature != samples[i].feature ||
-            f.expression->reads_line_progress != samples[i].line_progress || f.style.wants_id != samples[i].id ||
-            f.style.wants_all_properties != samples[i].all)
+            f.expression->reads_line_progress != samples[i].line_progress || f.style.schema.wants_id != samples[i].id ||
+            f.style.schema.wants_all_properties != samples[i].all)
             fail_msg("%s depends on something else", samples[i].expression);
         json_decref(json);
         teardown(&f);

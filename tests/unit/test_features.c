@@ -1,5 +1,6 @@
 /* The set of features: strings and classes are kept once, polylines where they were put; and memory that runs out. */
-#include "source/features.h"
+#include "features/features.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +25,8 @@ static int set_up(void **state) {
     fixture *it = calloc(1, sizeof *it);
     assert_non_null(it);
     assert_int_equal(camber_context_create(NULL, &it->context), CAMBER_OK);
-    it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = 2};
+    it->style =
+        (struct camber_style){.context = it->context, .schema = {.properties = properties, .property_count = 2}};
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
     *state = it;
     return 0;
@@ -221,11 +223,15 @@ static void test_bounds(void **state) {
 static void test_read_values(void **state) {
     fixture *it = *state;
     char *names[] = {"highway", "landuse", "ramp"};
-    uint8_t readers[] = {camber_readers_of(CAMBER_LAYER_LINE, false), camber_readers_of(CAMBER_LAYER_FILL, false),
-                         camber_readers_of(CAMBER_LAYER_LINE, true)};
-    camber_style_layer named = {.source_layer = "transport"};
-    camber_style style = {
-        .properties = names, .property_count = 3, .property_readers = readers, .layers = &named, .layer_count = 1};
+    const unsigned lined = camber_style_layer_kinds(CAMBER_LAYER_LINE),
+                   filled = camber_style_layer_kinds(CAMBER_LAYER_FILL);
+    camber_property_readers readers[] = {{.kinds = lined}, {.kinds = filled}, {.named_kinds = lined}};
+    const char *named = "transport";
+    camber_style style = {.schema = {.properties = names,
+                                     .property_count = 3,
+                                     .property_readers = readers,
+                                     .source_layers = &named,
+                                     .source_layer_count = 1}};
     camber_features *features = NULL;
     assert_int_equal(camber_features_create(it->context, &style, &features), CAMBER_OK);
     uint32_t layers[2], classes[4];
@@ -255,13 +261,13 @@ static void test_read_values(void **state) {
                 fail_msg("%s, case %zu", names[p], c);
         }
     /* Another style that names other source layers would have read other values. */
-    camber_style_layer other_layer = {.source_layer = "roads"};
+    const char *other_layer = "roads";
     camber_style other = style;
-    other.layers = &other_layer;
+    other.schema.source_layers = &other_layer;
     assert_int_equal(camber_features_restyle(features, &other), CAMBER_ERROR_ARGUMENT);
-    uint8_t other_readers[] = {readers[0], readers[1], readers[0]};
+    camber_property_readers other_readers[] = {readers[0], readers[1], readers[0]};
     other = style;
-    other.property_readers = other_readers;
+    other.schema.property_readers = other_readers;
     assert_int_equal(camber_features_restyle(features, &other), CAMBER_ERROR_ARGUMENT);
     camber_features_destroy(features);
 }
@@ -272,9 +278,9 @@ static void test_restyle(void **state) {
     fixture *it = *state;
     struct camber_style same = it->style, order = it->style, fewer = it->style, directed = it->style,
                         pictured = it->style;
-    order.properties = turned;
-    fewer.property_count = 1;
-    directed.directed = true;
+    order.schema.properties = turned;
+    fewer.schema.property_count = 1;
+    directed.schema.directed = true;
     pictured.sprite_count = 1;
     const struct camber_style *const others[] = {&order, &fewer, &directed, &pictured};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
@@ -333,7 +339,8 @@ static void test_out_of_memory(void **state) {
         const camber_context_desc desc = {.reallocate = reallocate_some, .allocator_user = &left};
         camber_context *context;
         assert_int_equal(camber_context_create(&desc, &context), CAMBER_OK);
-        const struct camber_style style = {.context = context, .properties = properties, .property_count = 2};
+        const struct camber_style style = {.context = context,
+                                           .schema = {.properties = properties, .property_count = 2}};
         const camber_source_desc source = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles",
                                            .where = "type = 'motorway'"};
         camber_features *features = NULL;

@@ -1,5 +1,5 @@
 /* Web Mercator against values from outside this project. */
-#include "source/mercator.h"
+#include "features/mercator.h"
 
 #include <math.h>
 #include <setjmp.h>

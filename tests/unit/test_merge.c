@@ -2,7 +2,8 @@
  * GEOS where it is there. */
 #include "core.h"
 
-#include "source/features.h"
+#include "features/features.h"
+#include "style/style.h"
 
 #include <math.h>
 
@@ -23,7 +24,8 @@ typedef struct fixture {
 static void begin(fixture *it) {
     static char *properties[] = {"highway"};
     it->context = host_context(&it->h);
-    it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = 1};
+    it->style =
+        (struct camber_style){.context = it->context, .schema = {.properties = properties, .property_count = 1}};
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
     for (int i = 0; i <= CLASSES; i++) {
         const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = i % CLASSES};

@@ -1,5 +1,6 @@
 /* Vector tiles' messages: geometry, tags and values as they stand, and what is damaged counted. */
-#include "source/mvt.h"
+#include "formats/mvt.h"
+#include "style/style.h"
 #include "tilemaker.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static int set_up(void **state) {
     fixture *it = calloc(1, sizeof *it);
     assert_non_null(it);
     assert_int_equal(camber_context_create(NULL, &it->context), CAMBER_OK);
-    it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = 3};
+    it->style =
+        (struct camber_style){.context = it->context, .schema = {.properties = properties, .property_count = 3}};
     begin(it);
     *state = it;
     return 0;
@@ -151,7 +153,7 @@ static void test_values(void **state) {
 /* Where the style wants them: the id, a promoted one, and all properties as an object. */
 static void test_ids_and_all(void **state) {
     fixture *it = *state;
-    it->style.wants_id = it->style.wants_all_properties = true;
+    it->style.schema.wants_id = it->style.schema.wants_all_properties = true;
     blob tile = {0}, layer = begin_layer("road", 4096);
     put_key(&layer, "zeta");
     put_key(&layer, "alpha");

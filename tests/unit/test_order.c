@@ -1,6 +1,6 @@
 /* One order out of several: each list's own, where they agree. */
 #include "core.h"
-#include "source/order.h"
+#include "features/order.h"
 
 #define END CAMBER_LIST_END
 #define MERGE(count, ...) merge(count, sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t), (uint32_t[]){__VA_ARGS__})

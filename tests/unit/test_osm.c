@@ -2,9 +2,9 @@
  * small ones with whatever a file may have; and damaged files. GDAL reads the same file behind /vsisubfile/. */
 #include "file_reading.h"
 
+#include "features/mercator.h"
+#include "features/rings.h"
 #include "osm/osm.h"
-#include "source/mercator.h"
-#include "source/rings.h"
 
 #include "pbf_file.h"
 
@@ -74,8 +74,8 @@ static size_t expect_as_gdal(fixture *it, const char *path, bool keep_apart, boo
         camber_features_destroy(features);
         bool declined = false;
         camber_features_create(it->on.context, &it->on.style, &features);
-        assert_true(camber_osm_reads(&desc));
-        (void)camber_osm_read(features, &desc, &declined);
+        assert_true(camber_reader_takes(&camber_osm_reader, &desc));
+        (void)camber_osm_reader.read(features, &desc, &declined);
         assert_int_equal(declined, !takes);
         camber_features_destroy(features);
     }
@@ -104,11 +104,11 @@ static void test_real_files(void **state) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char path[1024];
         snprintf(path, sizeof path, "%s/data/%s", data, names[i]);
-        it->on.style.wants_polygons = i % 2 == 0;
-        it->on.style.directed = i % 3 == 0;
+        it->on.style.schema.wants_polygons = i % 2 == 0;
+        it->on.style.schema.directed = i % 3 == 0;
         const size_t apart = expect_as_gdal(it, path, true, true);
         print_message("%s: %zu features\n", names[i], apart);
-        it->on.style.wants_polygons = !it->on.style.wants_polygons;
+        it->on.style.schema.wants_polygons = !it->on.style.schema.wants_polygons;
         assert_true(expect_as_gdal(it, path, false, true) > 500);
     }
 }
@@ -143,7 +143,7 @@ static void test_real_areas(void **state) {
         print_message("CAMBER_DATA is not set: real files are not read\n");
         skip();
     }
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char path[1024], behind[1200];
         camber_status status;
@@ -209,8 +209,8 @@ static void test_ways(void **state) {
     fixture *it = *state;
     for (int style = 0; style < 5; style++) {
         begin(it);
-        it->on.style.wants_polygons = style % 3 == 1;
-        it->on.style.wants_areas = style >= 3;
+        it->on.style.schema.wants_polygons = style % 3 == 1;
+        it->on.style.schema.wants_areas = style >= 3;
         if (style == 2)
             use_style(it, nothing, 1);
         WAY(it, street, 10, 11, 12);
@@ -305,7 +305,7 @@ static void test_packing(void **state) {
 static void test_ends(void **state) {
     static const char *const relation[] = {"type", "multipolygon", NULL};
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     for (int n = 0; n < 6 * 7 * 3; n++) {
         const int node_blobs = 1 + n / 3 % 7 * 2, way_blobs = 1 + n / 21 * 3, relation_blobs = n % 3 * 2;
         pbf_header(&it->file, "DenseNodes");
@@ -335,12 +335,13 @@ static void test_declined(void **state) {
     WAY(it, street, -5, -4);
     (void)finish(it, false);
     /* Another layer, no PBF, a file that is not there. */
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
-    assert_true(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .layer = "lines"}));
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = "/tmp"}));
+    assert_false(camber_reader_takes(&camber_osm_reader,
+                                     &(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
+    assert_true(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path, .layer = "lines"}));
+    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
+    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = "/tmp"}));
     write_file(&it->on, "file", "<osm version=\"0.6\"></osm>", 25);
-    assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path}));
+    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path}));
 }
 
 /* Filters that this reader knows, and those that it leaves to GDAL, which says what is wrong with the last. */
@@ -366,12 +367,13 @@ static void test_filters(void **state) {
     WAY(it, empty, 13, 14, 15);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         it->where = known[i];
-        it->on.style.wants_polygons = i % 2;
+        it->on.style.schema.wants_polygons = i % 2;
         assert_true(finish(it, true) > 0);
     }
     for (size_t i = 0; i < sizeof left / sizeof *left; i++)
-        assert_false(camber_osm_reads(&(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
-                     strcmp(left[i], "HIGHWAY = 'primary'") != 0);
+        assert_false(
+            camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
+            strcmp(left[i], "HIGHWAY = 'primary'") != 0);
     /* Keys that differ in case alone, and a filter that nothing passes: GDAL warns of that. */
     it->where = "HIGHWAY = 'primary'";
     (void)finish(it, false);
@@ -441,7 +443,7 @@ static void expect_areas(fixture *it, const char *areas, size_t open) {
         camber_features *features;
         assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
         const camber_source_desc desc = {.path = it->on.path, .where = it->where, .threads = threads[i]};
-        expect_ok(&it->on, camber_osm_read(features, &desc, &declined));
+        expect_ok(&it->on, camber_osm_reader.read(features, &desc, &declined));
         assert_false(declined);
         list_areas(features, got, sizeof got);
         assert_string_equal(got, areas);
@@ -458,7 +460,7 @@ static void test_relations(void **state) {
                              *const admin[] = {"type", "boundary", "x", "y", NULL},
                              *const route[] = {"type", "route", "x", "y", NULL};
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     begin_grid(it);
     GRID_WAY(it, 1, NULL, 0, 500, 505); /* two halves of a square of 5 x 5, one of them turned */
     GRID_WAY(it, 2, NULL, 0, 5, 505);
@@ -508,7 +510,7 @@ static void test_sea(void **state) {
     static const int64_t box[4] = {1005000000, 1085000000, 2085000000, 2005000000};
     fixture *it = *state;
     use_style(it, natural, sizeof natural / sizeof *natural);
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     add_coast(it, box);
     expect_areas(it, " +1.0 +36.0-1.0", 0);
     add_coast(it, box);
@@ -519,7 +521,7 @@ static void test_sea(void **state) {
     expect_areas(it, " +1.0", 0);
     assert_int_equal(it->on.warnings, 2); /* once a number of threads */
     use_style(it, natural, 1);
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     add_coast(it, box);
     expect_areas(it, " +1.0", 0);
     assert_int_equal(it->on.warnings, 2);
@@ -529,9 +531,9 @@ static void test_sea(void **state) {
 static void test_old_relations(void **state) {
     static const char *const bare[] = {"type", "multipolygon", NULL};
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     for (int outlines = 0; outlines < 2; outlines++) {
-        it->on.style.wants_polygons = outlines;
+        it->on.style.schema.wants_polygons = outlines;
         begin_grid(it);
         GRID_WAY(it, 1, house, 0, 500, 505, 5, 0);
         GRID_WAY(it, 2, NULL, 101, 102, 202, 201, 101);
@@ -562,11 +564,11 @@ static camber_status read_damaged(fixture *it, uint32_t threads) {
     const camber_source_desc desc = {.path = it->on.path, .threads = threads};
     assert_int_equal(camber_features_create(it->on.context, &it->on.style, &features), CAMBER_OK);
     it->on.errors = 0;
-    if (!camber_osm_reads(&desc)) {
+    if (!camber_reader_takes(&camber_osm_reader, &desc)) {
         camber_features_destroy(features);
         return CAMBER_ERROR_INPUT;
     }
-    status = camber_osm_read(features, &desc, &declined);
+    status = camber_osm_reader.read(features, &desc, &declined);
     assert_int_equal(it->on.errors, status != CAMBER_OK);
     assert_true(status == CAMBER_OK || status == CAMBER_ERROR_INPUT);
     if (status != CAMBER_OK || declined)
@@ -637,7 +639,7 @@ static void test_flipped_blocks(void **state) {
 /* The same with a relation. */
 static void test_damaged_relations(void **state) {
     fixture *it = *state;
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     begin_grid(it);
     const size_t head = it->file.size;
     pbf_bytes content = {.size = 0};
@@ -705,7 +707,7 @@ static void test_memory(void **state) {
     RELATION(it, wood, {1000, "outer"}, {1006, "inner"});
     pbf_end_block(&it->file, &it->block);
     write_file(&it->on, "file", it->file.bytes, it->file.size);
-    it->on.style.wants_areas = true;
+    it->on.style.schema.wants_areas = true;
     size_t failed = 0;
     for (uint64_t bytes = 4096; bytes < 600000; bytes += bytes / 8) {
         camber_budget *budget;
@@ -722,7 +724,8 @@ static void test_memory(void **state) {
         it->on.errors = 0;
         status = camber_features_create(context, &it->on.style, &features);
         if (status == CAMBER_OK)
-            status = camber_osm_read(features, &(camber_source_desc){.path = it->on.path, .threads = 3}, &declined);
+            status =
+                camber_osm_reader.read(features, &(camber_source_desc){.path = it->on.path, .threads = 3}, &declined);
         assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
         assert_int_equal(it->on.errors, status != CAMBER_OK);
         failed += status != CAMBER_OK;

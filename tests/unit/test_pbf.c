@@ -1,8 +1,8 @@
 /* PBF files as osmium reads them: in whatever packing, order and shape they have the same features. */
 #include "file_reading.h"
 
+#include "features/rings.h"
 #include "osm/osm.h"
-#include "source/rings.h"
 
 #include "pbf_file.h"
 
@@ -20,7 +20,7 @@ static int set_up(void **state) {
     fixture *it = calloc(1, sizeof *it);
     assert_non_null(it);
     reading_start(&it->on, properties, sizeof properties / sizeof *properties);
-    it->on.style.wants_areas = it->on.style.wants_polygons = true;
+    it->on.style.schema.wants_areas = it->on.style.schema.wants_polygons = true;
     *state = it;
     return 0;
 }
@@ -36,8 +36,8 @@ static int tear_down(void **state) {
 static camber_status read_written(fixture *it, uint32_t threads, bool *declined) {
     start_again(&it->on);
     const camber_source_desc desc = {.path = it->on.path, .threads = threads};
-    assert_true(camber_osm_reads(&desc));
-    return camber_osm_read(it->on.features, &desc, declined);
+    assert_true(camber_reader_takes(&camber_osm_reader, &desc));
+    return camber_osm_reader.read(it->on.features, &desc, declined);
 }
 
 static void write_road(fixture *it) {
@@ -120,7 +120,7 @@ static void test_damaged_packings(void **state) {
             it->file.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
             write_road(it);
             it->file.bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
-            if (!camber_osm_reads(&(camber_source_desc){.path = it->on.path}))
+            if (!camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path}))
                 continue;
             const camber_status status = read_written(it, 1, &declined);
             assert_true(status == CAMBER_OK || status == CAMBER_ERROR_INPUT);
@@ -296,7 +296,7 @@ static void read_plain_city(fixture *it, camber_features **plain) {
     bool declined;
     make_city(it, &(city_form){"NWR", PBF_ZLIB});
     assert_int_equal(camber_features_create(it->on.context, &it->on.style, plain), CAMBER_OK);
-    expect_ok(&it->on, camber_osm_read(*plain, &(camber_source_desc){.path = it->on.path}, &declined));
+    expect_ok(&it->on, camber_osm_reader.read(*plain, &(camber_source_desc){.path = it->on.path}, &declined));
     assert_false(declined);
     assert_int_equal((*plain)->feature_count, 2 * SIDE + SIDE / 2 * 2 + 1);
 }

@@ -1,6 +1,6 @@
 /* PMTiles: numbers along the curve, directories, archives written here and archives that lie. */
-#include "source/pmtiles.h"
-#include "source/tile_set.h"
+#include "archive/pmtiles.h"
+#include "archive/tile_set.h"
 #include "tilemaker.h"
 
 #include <setjmp.h>

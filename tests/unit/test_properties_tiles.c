@@ -2,7 +2,8 @@
  * order, as if it had never been cut. */
 #include "property.h"
 
-#include "source/tile_stitcher.h"
+#include "features/tile_stitcher.h"
+#include "style/style.h"
 
 enum { ZOOM = 2, TILES = 3, TILE = 4096, BUFFER = 128, UNITS_A_PX = 96, POINTS_MAX = 4 * PROPERTY_POINTS };
 
@@ -156,7 +157,7 @@ static property_outcome check_joined(void *user, const property_case *c, char st
     const line l = line_of(c);
     if (l.count < 2 || is_on_border(&l) || crosses_twice(&l, 0) || crosses_twice(&l, 1))
         return PROPERTY_SILENT;
-    struct camber_style style = {.context = b->context, .properties = names, .property_count = 1};
+    struct camber_style style = {.context = b->context, .schema = {.properties = names, .property_count = 1}};
     const camber_value value = {.type = CAMBER_VALUE_NUMBER};
     camber_features *features = NULL;
     camber_tile_stitcher *tiles = NULL;

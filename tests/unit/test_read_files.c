@@ -1,8 +1,8 @@
 /* Reading files: real ones against counts made by other programs, small ones written here, and bad ones. */
 #include "file_reading.h"
 
+#include "features/mercator.h"
 #include "gdal/vector_file.h"
-#include "source/mercator.h"
 
 #include <gdal_utils.h>
 
@@ -122,7 +122,7 @@ static void test_tiger_tiles(void **state) {
 /* Its buildings have five features that OGR cannot parse. */
 static void test_damaged_features(void **state) {
     fixture *it = *state;
-    it->style.wants_polygons = true;
+    it->style.schema.wants_polygons = true;
     const camber_source_desc desc = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles", .layer = "buildings"};
     expect_ok(it, camber_features_read(it->features, &desc));
     const camber_features_stats stats = camber_features_get_stats(it->features);
@@ -165,7 +165,7 @@ static void test_real_files(void **state) {
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[1024];
         snprintf(path, sizeof path, "%s/data/%s", data, files[i].name);
-        it->style.wants_polygons = true; /* squares are areas */
+        it->style.schema.wants_polygons = true; /* squares are areas */
         start_again(it);
         it->keep_apart = true;
         expect_ok(it, read_path(it, path));
@@ -195,7 +195,7 @@ static void test_real_shapefile(void **state) {
     }
     char path[1024];
     snprintf(path, sizeof path, "%s/data/pittsburgh/edges.shp", data);
-    it->keep_apart = it->style.wants_plain = true;
+    it->keep_apart = it->style.schema.wants_plain = true;
     expect_ok(it, read_path(it, path));
     const camber_features *set = it->features;
     assert_int_equal(set->feature_count, 29834);
@@ -212,7 +212,7 @@ static void test_real_shapefile(void **state) {
 
 static void test_line(void **state) {
     fixture *it = *state;
-    it->style.wants_plain = true;
+    it->style.schema.wants_plain = true;
     expect_ok(it, read_geometry(it, "{\"type\":\"LineString\",\"coordinates\":[[13,52],[13.5,52.25],[13.5,52.25]]}"));
     assert_int_equal(it->features->polyline_count, 1);
     assert_int_equal(it->features->point_count, 3); /* the repeated one too */
@@ -269,7 +269,7 @@ static void test_many_kinds(void **state) {
     assert_int_equal(camber_features_get_stats(it->features).skipped_features, 1);
     assert_int_equal(it->warnings, 0); /* nobody asked for it */
 
-    it->style.wants_polygons = true;
+    it->style.schema.wants_polygons = true;
     expect_ok(it, read_geometry(it, mixed));
     assert_int_equal(it->features->feature_count, 2); /* lines and outlines are of two classes */
     assert_int_equal(it->features->polyline_count, 3);
@@ -431,7 +431,7 @@ static void test_osm(void **state) {
     assert_string_equal(value_of(set, 3, LAYER)->string, "-1");
     assert_string_equal(camber_features_get_attribution(set), "(c) OpenStreetMap contributors");
 
-    it->style.wants_polygons = true;
+    it->style.schema.wants_polygons = true;
     start_again(it);
     expect_ok(it, read_path(it, it->path));
     assert_int_equal(it->features->feature_count, 6);

@@ -3,8 +3,8 @@
 #include "file_reading.h"
 #include "indexed_files.h"
 
-#include "source/frontier.h"
-#include "source/mercator.h"
+#include "features/frontier.h"
+#include "features/mercator.h"
 #include "style/bounds.h"
 
 #include <math.h>
@@ -165,7 +165,7 @@ static void test_indexed_files(void **state) {
             const double west = camber_random_between(&seed, 6.5, 11.5),
                          south = camber_random_between(&seed, 45.8, 50.3);
             const camber_region region = region_of(west, south, west + size, south + 0.7 * size);
-            it->style.directed = k % 3 == 0;
+            it->style.schema.directed = k % 3 == 0;
             it->keep_apart = k % 5 == 0;
             const size_t count = expect_as_whole(it, indexed, plain, &region, !shapes);
             lines += count;
@@ -184,7 +184,7 @@ static void test_indexed_files(void **state) {
 static void test_indexed_areas(void **state) {
     file_reading *it = *state;
     char source[128], indexed[128], plain[128];
-    it->style.wants_areas = true;
+    it->style.schema.wants_areas = true;
     snprintf(source, sizeof source, "%s", in_folder(it, "source.json"));
     snprintf(plain, sizeof plain, "%s", in_folder(it, "plain.geojson"));
     mosaic_write(source, 7.0, 46.0);
@@ -199,10 +199,10 @@ static void test_indexed_areas(void **state) {
             const double west = camber_random_between(&seed, 6.8, 10.0),
                          south = camber_random_between(&seed, 45.8, 49.0);
             const camber_region region = region_of(west, south, west + size, south + 0.7 * size);
-            it->style.wants_polygons = k % 4 == 0;
+            it->style.schema.wants_polygons = k % 4 == 0;
             (void)expect_as_whole(it, indexed, plain, &region, false);
         }
-        it->style.wants_polygons = false;
+        it->style.schema.wants_polygons = false;
         const camber_region middle = region_of(8.57, 47.57, 8.571, 47.571),
                             edge = region_of(7.37, 47.57, 7.371, 47.571), beside = region_of(6.9, 46.5, 6.95, 46.6);
         assert_int_equal(expect_as_whole(it, indexed, plain, &middle, false), 2); /* a square, and the large one */

@@ -1,8 +1,9 @@
 /* Scenes: features under a view become polylines, rows, strokes, fills and networks. */
 #include "camber_map.h"
+#include "features/features.h"
 #include "lines/importance.h"
 #include "map/plan_network.h"
-#include "source/features.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +42,7 @@ static void take_log(void *user, camber_log_level level, const char *message) {
 
 static size_t kind_index(const town *t) {
     size_t i = 0;
-    while (i < t->style->property_count && strcmp(t->style->properties[i], "kind") != 0)
+    while (i < t->style->schema.property_count && strcmp(t->style->schema.properties[i], "kind") != 0)
         i++;
     return i;
 }
@@ -77,7 +78,7 @@ static void close_town(town *t) {
 }
 
 static uint32_t add_class(town *t, const char *kind, uint32_t layer) {
-    const size_t width = t->style->property_count, c = t->features.class_count++;
+    const size_t width = t->style->schema.property_count, c = t->features.class_count++;
     t->classes[c] = (camber_feature_class){.source = CAMBER_NO_SOURCE, .layer = layer, .first_value = c * width};
     assert_true((c + 1) * width <= sizeof t->values / sizeof *t->values);
     if (kind_index(t) < width)
@@ -110,7 +111,7 @@ static const camber_view_desc WORLD = {.kind = CAMBER_VIEW_CENTER, .zoom = 1.0};
 static camber_scene *make_scene(town *t, camber_view_desc view) {
     camber_scene *scene = NULL;
     const camber_scene_desc desc = {.view = view};
-    if (camber_scene_create(&t->features, &desc, &scene) != CAMBER_OK)
+    if (camber_scene_create(&t->features, &desc, &scene) != CAMBER_OK || camber_scene_project(scene) != CAMBER_OK)
         fail_msg("%s", t->last);
     return scene;
 }
@@ -410,27 +411,65 @@ static void test_areas_are_filled(void **state) {
     close_town(&t);
 }
 
-/* The network is told which of its entries are rings to fill. */
+/* The network is told which of its entries are rings to fill; a plan of lines only has none. */
 static void test_entries_of_areas(void **state) {
     (void)state;
     town t;
-    camber_view view;
-    camber_plan plan;
+    camber_zoom_plan *zoom = NULL;
     camber_plan_network network;
     open_town(&t, FILL("area", KIND("a"), BLUE) "," LINE("line", KIND("a"), "#0f0", "3"));
     add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_LINE), (double[]){300, 100, 400, 100}, 2);
     add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_AREA), SQUARE, 5);
-    assert_int_equal(camber_view_create(t.context, &WORLD, &view), CAMBER_OK);
-    assert_int_equal(camber_plan_create(&t.features, &view, &plan), CAMBER_OK);
-    assert_int_equal(camber_plan_network_create(&t.features, &view, &plan, NULL, &network), CAMBER_OK);
-    assert_int_equal(network.first_entries[2], 3 * 2); /* in the worlds to both sides, too */
-    for (size_t i = 0; i < 3 * 2; i++) {
-        const bool is_area = network.entries[i].polyline == 1;
-        assert_int_equal(network.entries[i].is_area, is_area);
-        assert_near((double)plan.strokes[plan.pair_rows[network.entries[i].row]].width_px, is_area ? 0 : 3, 0);
+    for (int lines_only = 0; lines_only < 2; lines_only++) {
+        assert_int_equal(camber_zoom_plan_create_view(&t.features, &WORLD, 0.0, &zoom), CAMBER_OK);
+        zoom->lines_only = lines_only == 1;
+        assert_int_equal(camber_plan_network_create(zoom, &zoom->view, CAMBER_NETWORK_VIEWS, &zoom->plan.all, &network),
+                         CAMBER_OK);
+        const size_t count = network.first_entries[2];
+        assert_int_equal(count, lines_only ? 3 : 3 * 2); /* in the worlds to both sides, too */
+        for (size_t i = 0; i < count; i++) {
+            const bool is_area = network.entries[i].polyline == 1;
+            const camber_plan *plan = &zoom->plan;
+            assert_int_equal(network.entries[i].is_area, is_area);
+            assert_near((double)plan->strokes[plan->pair_rows[network.entries[i].row]].width_px, is_area ? 0 : 3, 0);
+        }
+        camber_plan_network_destroy(&network);
+        camber_zoom_plan_destroy(zoom);
     }
-    camber_plan_network_destroy(&network);
-    camber_plan_destroy(&plan);
+    close_town(&t);
+}
+
+/* A window takes only the copies of the world that touch it. */
+static void test_entries_of_windows(void **state) {
+    (void)state;
+    static const struct {
+        double x;
+        size_t count;
+        double shift;
+    } windows[] = {{0.35, 1, 0.0}, {-0.65, 1, -1.0}, {1.35, 1, 1.0}, {0.7, 0, 0.0}};
+    static const uint32_t first[] = {0};
+    town t;
+    camber_zoom_plan *zoom = NULL;
+    open_town(&t, LINE("line", KIND("a"), "#0f0", "3"));
+    add_px(&t, add_shape(&t, "a", CAMBER_GEOMETRY_LINE), (double[]){300, 100, 400, 100}, 2);
+    const camber_zoom_desc desc = {.zoom = 1.0, .scale_px = 1024.0, .ratio = 1.0};
+    assert_int_equal(camber_zoom_plan_create(&t.features, &desc, &zoom), CAMBER_OK);
+    for (size_t i = 0; i < sizeof windows / sizeof *windows; i++) {
+        camber_view window = zoom->view;
+        camber_plan_entries listed = {0};
+        camber_plan_network network;
+        window.x = windows[i].x;
+        window.width = window.height = 256;
+        assert_int_equal(camber_plan_list(&t.features, &zoom->plan, first, 1, &listed), CAMBER_OK);
+        assert_int_equal(camber_plan_network_create(zoom, &window, CAMBER_NETWORK_WINDOW, &listed, &network),
+                         CAMBER_OK);
+        assert_null(listed.entries);
+        assert_int_equal(network.first_entries[1], windows[i].count);
+        if (windows[i].count)
+            assert_near(network.entries[0].shift_x, windows[i].shift, 0);
+        camber_plan_network_destroy(&network);
+    }
+    camber_zoom_plan_destroy(zoom);
     close_town(&t);
 }
 
@@ -732,6 +771,8 @@ static void test_simplification(void **state) {
     camber_scene *scene = NULL;
     assert_int_equal(camber_scene_create(&t.features, &(camber_scene_desc){.view = WORLD, .simplify_px = 0.25}, &scene),
                      CAMBER_OK);
+    assert_int_equal(camber_scene_get_info(scene).points, 0); /* not projected */
+    assert_int_equal(camber_scene_project(scene), CAMBER_OK);
     assert_int_equal(camber_scene_get_info(scene).points, 2);
     assert_int_equal(camber_scene_get_info(scene).points_in, 60);
     camber_scene_destroy(scene);
@@ -891,6 +932,8 @@ static void test_out_of_memory(void **state) {
         camber_scene *scene = NULL;
         a.left = left;
         status = camber_scene_create(&t.features, &(camber_scene_desc){.simplify_px = 0.1}, &scene);
+        if (status == CAMBER_OK)
+            status = camber_scene_project(scene);
         assert_true(status == CAMBER_ERROR_MEMORY || (status == CAMBER_OK && left > 10));
         camber_scene_destroy(scene);
         assert_int_equal(a.blocks, resting);
@@ -909,6 +952,7 @@ int main(void) {
         cmocka_unit_test(test_backgrounds),
         cmocka_unit_test(test_areas_are_filled),
         cmocka_unit_test(test_entries_of_areas),
+        cmocka_unit_test(test_entries_of_windows),
         cmocka_unit_test(test_fills_follow_data),
         cmocka_unit_test(test_fill_layers),
         cmocka_unit_test(test_sorted_areas),

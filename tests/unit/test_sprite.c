@@ -2,8 +2,8 @@
 #include "core.h"
 #include "png_file.h"
 
-#include "source/features.h"
-#include "source/sprite.h"
+#include "features/features.h"
+#include "style/sprite.h"
 
 typedef struct desk {
     host h;

@@ -86,13 +86,13 @@ static void set_values(const camber_style *style, const feature *road, camber_va
         {"MTFCC", text_value(road->mtfcc)},     {"bridge", text_value(road->bridge)},
         {"tunnel", text_value(road->tunnel)},
     };
-    assert_in_range(style->property_count, 1, PROPERTY_LIMIT);
-    for (size_t i = 0; i < style->property_count; i++) {
+    assert_in_range(style->schema.property_count, 1, PROPERTY_LIMIT);
+    for (size_t i = 0; i < style->schema.property_count; i++) {
         size_t k = 0;
-        while (k < sizeof known / sizeof *known && strcmp(known[k].name, style->properties[i]) != 0)
+        while (k < sizeof known / sizeof *known && strcmp(known[k].name, style->schema.properties[i]) != 0)
             k++;
         if (k == sizeof known / sizeof *known)
-            fail_msg("the style reads %s", style->properties[i]);
+            fail_msg("the style reads %s", style->schema.properties[i]);
         values[i] = known[k].value;
     }
 }
@@ -266,7 +266,7 @@ static void test_roads(void **state) {
         const char *text = camber_style_get_text("roads", which, &size_bytes);
         assert_int_equal(camber_style_parse(f.context, text, size_bytes, "roads", &f.style), CAMBER_OK);
         assert_int_equal(f.error_count + f.warning_count, 0);
-        assert_false(f.style->wants_polygons || f.style->wants_areas);
+        assert_false(f.style->schema.wants_polygons || f.style->schema.wants_areas);
         check_order(f.style);
         check_widths(f.style);
         check_roads(f.style);
@@ -291,15 +291,15 @@ static camber_value tag_value(const char *text) {
 
 /* A feature with some of a style's properties: "landuse=forest class=wood". */
 static void set_tags(const camber_style *style, const char *tags, camber_value *values, char texts[128]) {
-    memset(values, 0, style->property_count * sizeof *values);
+    memset(values, 0, style->schema.property_count * sizeof *values);
     snprintf(texts, 128, "%s", tags);
     for (char *tag = strtok(texts, " "); tag; tag = strtok(NULL, " ")) {
         char *value = strchr(tag, '=');
         size_t i = 0;
         *value++ = 0;
-        while (i < style->property_count && strcmp(style->properties[i], tag) != 0)
+        while (i < style->schema.property_count && strcmp(style->schema.properties[i], tag) != 0)
             i++;
-        if (i == style->property_count)
+        if (i == style->schema.property_count)
             fail_msg("the style does not read %s", tag);
         values[i] = tag_value(value);
     }
@@ -310,7 +310,7 @@ static const char *drawn_by(const camber_style *style, camber_layer_kind kind, c
                             const char *tags, char ids[256]) {
     camber_value values[32];
     char texts[128];
-    assert_in_range(style->property_count, 1, sizeof values / sizeof *values);
+    assert_in_range(style->schema.property_count, 1, sizeof values / sizeof *values);
     set_tags(style, tags, values, texts);
     const camber_feature_view view = {.values = values,
                                       .geometry_type = kind == CAMBER_LAYER_FILL ? "Polygon" : "LineString"};
@@ -474,8 +474,9 @@ static void test_builtin(void **state) {
         assert_string_equal(camber_style_list(0), "city");
         assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
         assert_int_equal(f.error_count + f.warning_count, 0);
-        assert_true(f.style->wants_areas);
-        assert_false(f.style->wants_polygons || f.style->directed || f.style->wants_all_properties);
+        assert_true(f.style->schema.wants_areas);
+        assert_false(f.style->schema.wants_polygons || f.style->schema.directed ||
+                     f.style->schema.wants_all_properties);
         check_city(f.style);
         check_city_roads(which);
         teardown(&f);
@@ -494,7 +495,7 @@ static void test_fill(void **state) {
     const camber_feature_view bare = {.geometry_type = "Polygon"};
     const camber_layer_paint plain = camber_style_layer_paint(f.style->layers, 10.0, &bare);
     assert_int_equal(f.style->layers[0].kind, CAMBER_LAYER_FILL);
-    assert_true(f.style->wants_areas && !f.style->wants_polygons);
+    assert_true(f.style->schema.wants_areas && !f.style->schema.wants_polygons);
     assert_true(plain.color.r <= 0.0f && plain.color.a >= 1.0f && plain.antialias && plain.border_color.a <= 0.0f);
     assert_true(plain.layer_opacity >= 1.0 && fabs(plain.translate[0]) + fabs(plain.translate[1]) <= 0.0);
     assert_int_equal(plain.translate_anchor, CAMBER_TRANSLATE_MAP);
@@ -510,10 +511,10 @@ static void test_fill(void **state) {
                   "\"fill-layer-opacity\": 0.25, \"fill-color-transition\": {\"duration\": 1}}")),
         CAMBER_OK);
     assert_int_equal(f.error_count + f.warning_count, 0);
-    assert_true(f.style->wants_areas && f.style->wants_polygons);
-    assert_int_equal(f.style->property_count, 2);
+    assert_true(f.style->schema.wants_areas && f.style->schema.wants_polygons);
+    assert_int_equal(f.style->schema.property_count, 2);
     camber_value values[2];
-    const size_t key = strcmp(f.style->properties[0], "k") == 0 ? 0 : 1;
+    const size_t key = strcmp(f.style->schema.properties[0], "k") == 0 ? 0 : 1;
     values[key] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = 7.0};
     values[1 - key] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "#0000ff"};
     const camber_feature_view view = {.values = values, .geometry_type = "Polygon"};
@@ -530,7 +531,7 @@ static void test_fill(void **state) {
 
     /* A layer that nobody sees needs no areas. */
     assert_int_equal(parse(&f, FILL_LAYER("\"layout\": {\"visibility\": \"none\"}")), CAMBER_OK);
-    assert_false(f.style->wants_areas);
+    assert_false(f.style->schema.wants_areas);
     teardown(&f);
 }
 
@@ -583,15 +584,15 @@ static void test_layer(void **state) {
     assert_int_equal(parse(&f, json), CAMBER_OK);
     assert_int_equal(f.error_count + f.warning_count, 0);
     assert_int_equal(f.style->layer_count, 5);
-    assert_true(f.style->wants_polygons);
+    assert_true(f.style->schema.wants_polygons);
     const camber_style_layer *paper = &f.style->layers[0], *roads = &f.style->layers[1], *plain = &f.style->layers[2];
     assert_true(fabsf(camber_style_layer_paint(paper, 0.0, NULL).color.a - 0.5f) < 1e-6f);
     assert_string_equal(roads->source, "city");
     assert_string_equal(roads->source_layer, "transport");
     assert_string_equal(roads->filter_key, "[\"==\",\"highway\",\"primary\"]");
-    assert_int_equal(f.style->property_count, 2);
+    assert_int_equal(f.style->schema.property_count, 2);
     camber_value values[2];
-    const size_t highway = strcmp(f.style->properties[0], "highway") == 0 ? 0 : 1;
+    const size_t highway = strcmp(f.style->schema.properties[0], "highway") == 0 ? 0 : 1;
     values[highway] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "primary"};
     values[1 - highway] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = 7.0};
     const camber_feature_view view = {.values = values, .geometry_type = "LineString"};

@@ -1,6 +1,7 @@
 /* The sources that a style names: where they lead, which tiles a view sees, and what of them becomes lines. */
-#include "source/features.h"
-#include "source/mercator.h"
+#include "features/features.h"
+#include "features/mercator.h"
+#include "style/style.h"
 #include "tilemaker.h"
 
 #include <dirent.h>
@@ -81,7 +82,7 @@ static camber_status read_view(fixture *it, const char *sources, const char *lay
     forget(it);
     if (camber_style_parse(it->context, text, (size_t)size, "style.json", &it->style) != CAMBER_OK)
         fail_msg("%s", it->error);
-    it->style->wants_id = it->style->wants_id || it->wants_id;
+    it->style->schema.wants_id = it->style->schema.wants_id || it->wants_id;
     assert_int_equal(camber_features_create(it->context, it->style, &it->features), CAMBER_OK);
     it->warnings = 0;
     return camber_features_read_sources(it->features, view, it->base);
@@ -544,8 +545,8 @@ static void test_endless_database(void **state) {
 
 static const camber_value *value_of(const fixture *it, size_t feature, const char *name) {
     const camber_features *set = it->features;
-    for (size_t i = 0; i < it->style->property_count; i++)
-        if (strcmp(it->style->properties[i], name) == 0)
+    for (size_t i = 0; i < it->style->schema.property_count; i++)
+        if (strcmp(it->style->schema.properties[i], name) == 0)
             return &set->values[set->classes[set->feature_class[feature]].first_value + i];
     fail_msg("no property %s", name);
     return NULL;

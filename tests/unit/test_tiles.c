@@ -1,5 +1,6 @@
 /* Pieces of vector tiles: cut at the border, joined across it, drawn once. */
-#include "source/tile_stitcher.h"
+#include "features/tile_stitcher.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -28,7 +29,8 @@ static int set_up(void **state) {
     fixture *it = calloc(1, sizeof *it);
     assert_non_null(it);
     assert_int_equal(camber_context_create(NULL, &it->context), CAMBER_OK);
-    it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = 1};
+    it->style =
+        (struct camber_style){.context = it->context, .schema = {.properties = properties, .property_count = 1}};
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
     assert_int_equal(camber_tile_stitcher_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
     for (int i = 0; i < 2; i++) {
@@ -270,7 +272,7 @@ static void test_progress(void **state) {
 /* Where lines have a direction, two that begin where they meet stay two. */
 static void test_directed(void **state) {
     fixture *it = *state;
-    it->style.directed = true;
+    it->style.schema.directed = true;
     ADD(it, 0, 0, 7, 5000, 200, 100, 200);
     ADD(it, 1, 0, 7, 4000, 200, 5000, 200);
     finish(it, 2, 0);

@@ -1,0 +1,34 @@
+/* The schemas that the style city draws (city.cmake), and what each is known by. */
+#include "archive/tile_schema.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+enum { LAYERS = 6 };
+
+/* Any of these layers, or this field in any layer, tells the schema. Names that anyone may give a layer, as roads or
+ * water, tell nothing. Protomaps 3 has the layer of 4, so it comes first. */
+static const struct {
+    const char *name, *layers[LAYERS], *field;
+} schemas[] = {
+    {"Protomaps 3", {"physical_line", "physical_point"}, "pmap:kind"},
+    {"Protomaps 4", {"earth"}, "kind_detail"},
+    {"Shortbread", {"water_polygons", "water_lines", "street_polygons", "street_labels", "pier_polygons"}, NULL},
+    {"OpenMapTiles", {"transportation", "transportation_name", "water_name", "mountain_peak", "aerodrome_label"}, NULL},
+};
+
+static bool is_told_by(size_t schema, const json_t *layer) {
+    const char *id = json_string_value(json_object_get(layer, "id")), *field = schemas[schema].field;
+    for (size_t i = 0; id && i < LAYERS && schemas[schema].layers[i]; i++)
+        if (strcmp(id, schemas[schema].layers[i]) == 0)
+            return true;
+    return field && json_object_get(json_object_get(layer, "fields"), field);
+}
+
+const char *camber_tile_schema_of_layers(const json_t *layers) {
+    for (size_t s = 0; s < sizeof schemas / sizeof *schemas; s++)
+        for (size_t i = 0; i < json_array_size(layers); i++)
+            if (is_told_by(s, json_array_get(layers, i)))
+                return schemas[s].name;
+    return NULL;
+}

@@ -1,0 +1,50 @@
+/* Hands files to GDAL, which is loaded with the first of them: it comes with a hundred libraries. Linking them takes
+ * longer than drawing a small map, and every driver that is loaded after them looks through their names for its own. */
+#include "formats/gdal.h"
+#include "features/features.h"
+#include "features/gdal_calls.h"
+
+/* The result is kept, since asking the loader again waits while another thread loads a driver. */
+camber_status camber_gdal_load(camber_context *context) {
+    const char *why = NULL;
+    if (!context->gdal)
+        context->gdal = camber_gdal_find(&why);
+    if (context->gdal)
+        return CAMBER_OK;
+    const camber_status status = camber_budget_check_drivers(context);
+    if (status != CAMBER_OK)
+        return status;
+    return camber_fail(context, CAMBER_ERROR_IO, "GDAL cannot be loaded: %s; install camber and GDAL again",
+                       why ? why : "no reason given");
+}
+
+static bool knows(const char *path) {
+    (void)path;
+    return true;
+}
+
+static bool reads(const camber_source_desc *desc) {
+    (void)desc;
+    return true;
+}
+
+static camber_status read_by_gdal(camber_features *features, const camber_source_desc *desc, bool *declined) {
+    *declined = false;
+    const camber_status status = camber_gdal_load(features->context);
+    const camber_gdal_calls *calls = features->context->gdal;
+    return status == CAMBER_OK ? calls->read(features, desc) : status;
+}
+
+static const char *format(size_t n) {
+    const char *why;
+    const camber_gdal_calls *calls = camber_gdal_find(&why);
+    return calls ? calls->format_name(n) : NULL;
+}
+
+const char *camber_gdal_get_version(void) {
+    const char *why;
+    const camber_gdal_calls *calls = camber_gdal_find(&why);
+    return calls ? calls->version() : NULL;
+}
+
+const camber_reader camber_gdal_reader = {.knows = knows, .reads = reads, .read = read_by_gdal, .format = format};

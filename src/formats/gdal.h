@@ -1,0 +1,9 @@
+/* The last reader: GDAL, for all files that no other one reads. */
+#ifndef CAMBER_FORMATS_GDAL_H
+#define CAMBER_FORMATS_GDAL_H
+
+#include "features/reader.h"
+
+extern const camber_reader camber_gdal_reader;
+
+#endif

@@ -1,0 +1,29 @@
+/* The geometry of a vector tile's feature: drawing commands become lines. */
+#ifndef CAMBER_FORMATS_MVT_GEOMETRY_H
+#define CAMBER_FORMATS_MVT_GEOMETRY_H
+
+#include "features/features.h"
+#include "features/tile_stitcher.h"
+
+typedef struct camber_mvt_geometry {
+    camber_context *context;
+    double *points; /* world coordinates */
+    size_t *ends;
+    size_t point_count, point_capacity, line_count, line_capacity;
+    size_t closed_rings; /* of areas, which were not closed */
+    const char *damage;  /* NULL: none. The lines are those that can be read */
+} camber_mvt_geometry;
+
+typedef struct camber_mvt_commands {
+    const uint32_t *words;
+    size_t count;
+    camber_geometry_kind kind;
+    uint32_t column, row, extent;
+    double side; /* the world's width in tiles */
+} camber_mvt_commands;
+
+/* Replaces the lines. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands);
+void camber_mvt_geometry_free(camber_mvt_geometry *geometry);
+
+#endif

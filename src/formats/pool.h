@@ -1,0 +1,38 @@
+/* Memory for messages of vector tiles: freed all at once, and limited, since a few bytes of a hostile tile can ask
+ * for megabytes. */
+#ifndef CAMBER_FORMATS_POOL_H
+#define CAMBER_FORMATS_POOL_H
+
+#include "base/base.h"
+
+#include <protobuf-c/protobuf-c.h>
+
+typedef struct camber_pool_block camber_pool_block;
+
+typedef struct camber_pool {
+    camber_context *context;
+    size_t limit_bytes;
+    camber_pool_block *blocks, *current; /* the first, and the one in use */
+    size_t used_bytes;                   /* used bytes of the current block */
+    size_t total_bytes;                  /* size of all blocks */
+    bool exhausted;                      /* something was refused since the last reset: the limit, or memory */
+    bool out_of_memory;
+    ProtobufCAllocator allocator; /* allocates from this pool; freed memory stays until a reset */
+} camber_pool;
+
+/* A mark to reset the pool to. */
+typedef struct camber_pool_mark {
+    camber_pool_block *current;
+    size_t used_bytes;
+} camber_pool_mark;
+
+/* The pool must not move. */
+void camber_pool_init(camber_pool *pool, camber_context *context, size_t limit_bytes);
+void camber_pool_free(camber_pool *pool);
+/* NULL where refused; memory that ran out is logged. */
+void *camber_pool_alloc(camber_pool *pool, size_t size_bytes);
+camber_pool_mark camber_pool_here(const camber_pool *pool);
+/* Frees all that was allocated since the mark; blocks stay for later use. */
+void camber_pool_reset(camber_pool *pool, camber_pool_mark mark);
+
+#endif

@@ -1,0 +1,80 @@
+/* Fills in a style's schema, and makes sets of features that are read by it.
+ *
+ * Input: a style whose layers are compiled. Output: what the schema says of layers. Its properties, and who reads them,
+ * are added while the compiler meets them. */
+#include "features/features.h"
+#include "style/style.h"
+
+#include <string.h>
+
+unsigned camber_style_layer_kinds(camber_layer_kind kind) {
+    switch (kind) {
+    case CAMBER_LAYER_BACKGROUND: break;
+    case CAMBER_LAYER_LINE: return CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | CAMBER_KIND_POINT;
+    case CAMBER_LAYER_FILL: return CAMBER_KIND_POLYGON | CAMBER_KIND_AREA | CAMBER_KIND_POINT;
+    }
+    return 0;
+}
+
+/* Finds what else than lines is drawn of the features. */
+static void find_wants(const camber_style *style, camber_schema *schema) {
+    schema->wants_polygons = schema->wants_areas = false;
+    schema->wants_plain = schema->wants_plain_areas = schema->wants_plain_points = false;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        const bool polygons = layer->kind != CAMBER_LAYER_BACKGROUND && camber_style_layer_may_take(layer, "Polygon");
+        const bool fills = polygons && layer->kind == CAMBER_LAYER_FILL;
+        const bool outlines = polygons && (!fills || layer->properties[CAMBER_FILL_OUTLINE_COLOR]);
+        if (!layer->plain) {
+            schema->wants_areas |= fills;
+            schema->wants_polygons |= outlines;
+            continue;
+        }
+        schema->wants_plain |= layer->visible;
+        schema->wants_plain_areas |= polygons;
+        schema->wants_plain_points |= layer->kind == CAMBER_LAYER_LINE && camber_style_layer_may_take(layer, "Point");
+    }
+}
+
+static void list_source_layers(const camber_style *style, camber_schema *schema) {
+    schema->source_layer_count = 0;
+    for (int visible = 1; visible >= 0; visible--) {
+        for (size_t i = 0; i < style->layer_count; i++)
+            if (style->layers[i].source_layer && style->layers[i].visible == (visible == 1))
+                schema->source_layers[schema->source_layer_count++] = style->layers[i].source_layer;
+        if (visible)
+            schema->drawn_source_layer_count = schema->source_layer_count;
+    }
+}
+
+/* Whether a layer that is not plain draws the feature. Dots are drawn by layers that are plain only. */
+static bool takes(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
+                  const camber_feature_view *feature) {
+    for (size_t i = 0; i < style->layer_count && kind != CAMBER_GEOMETRY_POINT; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        const bool fits = camber_style_layer_kinds(layer->kind) >> kind & 1;
+        if (fits && !layer->plain && (!layer->source_layer || strcmp(layer->source_layer, source_layer) == 0) &&
+            camber_style_layer_takes(layer, feature))
+            return true;
+    }
+    return false;
+}
+
+void camber_style_describe_layers(camber_style *style) {
+    find_wants(style, &style->schema);
+    list_source_layers(style, &style->schema);
+    style->schema.takes = takes;
+}
+
+camber_status camber_features_create(camber_context *context, const camber_style *style, camber_features **features) {
+    return camber_features_create_for(context, &style->schema, style, features);
+}
+
+camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
+    if (style->sprite_count || features->sprites || !camber_features_suit(features, &style->schema, style))
+        return camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
+                           "style: reads other properties or images than the one before; read the files again");
+    features->schema = &style->schema;
+    features->style = style;
+    return CAMBER_OK;
+}

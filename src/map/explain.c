@@ -80,7 +80,7 @@ static bool any_at(const camber_features *features, double zoom) {
  * come first. */
 static void list_properties(const camber_style *style, sentence *s) {
     const size_t count = style->property_count;
-    const uint8_t readers = camber_readers_of(CAMBER_LAYER_LINE, false);
+    const camber_readers readers = camber_readers_of(CAMBER_LAYER_LINE, false);
     size_t listed = 0;
     for (size_t k = 0; k < 2 * count && listed <= 8; k++) {
         const size_t i = k < count ? k : k - count;

@@ -28,6 +28,7 @@ typedef struct interner {
 } interner;
 
 enum { FIRST_SLOTS = 256 };
+static const camber_readers ALL_READERS = UINT32_MAX;
 
 /* Frees a value whose items and members are the set's own memory. */
 static void free_value(camber_context *context, camber_value *value) {
@@ -150,8 +151,8 @@ static bool reads_the_same(const camber_style *one, const camber_style *other) {
                 one->wants_plain_points == other->wants_plain_points;
     for (size_t i = 0; same && i < one->property_count; i++)
         same = strcmp(one->properties[i], other->properties[i]) == 0 &&
-               (one->property_readers ? one->property_readers[i] : UINT8_MAX) ==
-                   (other->property_readers ? other->property_readers[i] : UINT8_MAX);
+               (one->property_readers ? one->property_readers[i] : ALL_READERS) ==
+                   (other->property_readers ? other->property_readers[i] : ALL_READERS);
     return same && names_layers_of(one, other) && names_layers_of(other, one);
 }
 
@@ -461,9 +462,9 @@ static bool equal_classes(const camber_feature_class *a, const camber_feature_cl
 }
 
 /* The layers of the style that may draw the class, as camber_readers_of has them. */
-static uint8_t readers_of(camber_features *features, const camber_feature_class *one) {
+static camber_readers readers_of(camber_features *features, const camber_feature_class *one) {
     interner *set = features->interned;
-    uint8_t readers = 0;
+    camber_readers readers = 0;
     if (!set->read || set->layer != one->layer)
         set->layer_is_named = one->layer < features->layer_count &&
                               camber_style_names_layer(features->style, features->layer_names[one->layer]);
@@ -483,7 +484,7 @@ static const camber_value *read_values(camber_features *features, const camber_f
                                        const camber_value *values) {
     interner *set = features->interned;
     const camber_style *style = features->style;
-    const uint8_t readers = readers_of(features, one);
+    const camber_readers readers = readers_of(features, one);
     if (!set->read)
         set->read = camber_alloc(features->context, style->property_count, sizeof *set->read);
     for (size_t i = 0; i < style->property_count && set->read; i++) {

@@ -236,7 +236,8 @@ bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, cons
         c->property_slots[slot] = (uint32_t)style->property_count;
     }
     if (c->readers && !style->property_readers &&
-        !(style->property_readers = camber_alloc_zero(c->context, CAMBER_PROPERTY_LIMIT, 1)))
+        !(style->property_readers =
+              camber_alloc_zero(c->context, CAMBER_PROPERTY_LIMIT, sizeof *style->property_readers)))
         return fail_memory(c);
     if (c->readers)
         style->property_readers[c->property_slots[slot] - 1] |= c->readers;

@@ -56,9 +56,9 @@ typedef struct camber_compiler camber_compiler;
 
 struct camber_compiler {
     camber_context *context;
-    camber_style *style; /* gets the properties that are read */
-    uint8_t readers;     /* camber_readers_of: the layer that reads them. 0: none does */
-    const char *name;    /* name of the document */
+    camber_style *style;    /* gets the properties that are read */
+    camber_readers readers; /* camber_readers_of: the layer that reads them. 0: none does */
+    const char *name;       /* name of the document */
     camber_status status;
     camber_path_step path[CAMBER_PATH_DEPTH];
     size_t path_length;

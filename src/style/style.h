@@ -31,6 +31,8 @@ typedef enum camber_layer_kind {
     CAMBER_LAYER_FILL,
 } camber_layer_kind;
 
+enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_FILL + 1 };
+
 /* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
 typedef enum camber_property_id {
     CAMBER_LINE_CAP,
@@ -68,6 +70,22 @@ typedef enum camber_property_id {
     CAMBER_FILL_TRANSLATE_ANCHOR,
     CAMBER_PROPERTIES
 } camber_property_id;
+
+/* A set of properties. */
+typedef struct camber_property_set {
+    uint64_t words[(CAMBER_PROPERTIES + 63) / 64];
+} camber_property_set;
+
+static inline void camber_property_set_add(camber_property_set *set, camber_property_id id) {
+    set->words[id / 64] |= UINT64_C(1) << id % 64;
+}
+
+static inline bool camber_property_set_has(const camber_property_set *set, camber_property_id id) {
+    return set->words[id / 64] >> id % 64 & 1;
+}
+
+/* The layers that read a property, as camber_readers_of has them. */
+typedef uint32_t camber_readers;
 
 /* The colours of a line-gradient. */
 typedef struct camber_layer_ramp {
@@ -131,7 +149,7 @@ struct camber_style {
     size_t property_count;
     /* property_count: which layers read it, as camber_readers_of has them; none, where only a source's filter does.
      * NULL: all read all. */
-    uint8_t *property_readers;
+    camber_readers *property_readers;
     bool wants_id;             /* an expression reads the feature's id */
     bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
@@ -144,8 +162,9 @@ struct camber_style {
 };
 
 /* The readers of layers of a kind: a bit for those of any source layer, and another one for those that name theirs. */
-static inline uint8_t camber_readers_of(camber_layer_kind kind, bool names_source_layer) {
-    return (uint8_t)(1u << ((unsigned)kind + (names_source_layer ? 4 : 0)));
+static inline camber_readers camber_readers_of(camber_layer_kind kind, bool names_source_layer) {
+    _Static_assert(2 * CAMBER_LAYER_KINDS <= 8 * sizeof(camber_readers), "each kind of layer has two bits");
+    return (camber_readers)1 << ((unsigned)kind + (names_source_layer ? (unsigned)CAMBER_LAYER_KINDS : 0u));
 }
 
 /* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */
@@ -198,7 +217,8 @@ typedef struct camber_layer_look {
     const camber_style_layer *layer;
     double zoom;
     camber_layer_paint paint;
-    uint64_t by_feature; /* bits of camber_property_id */
+    bool reads_feature; /* there is a property that depends on features: */
+    camber_property_set by_feature;
 } camber_layer_look;
 
 camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom);

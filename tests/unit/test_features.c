@@ -221,8 +221,9 @@ static void test_bounds(void **state) {
 static void test_read_values(void **state) {
     fixture *it = *state;
     char *names[] = {"highway", "landuse", "ramp"};
-    uint8_t readers[] = {camber_readers_of(CAMBER_LAYER_LINE, false), camber_readers_of(CAMBER_LAYER_FILL, false),
-                         camber_readers_of(CAMBER_LAYER_LINE, true)};
+    camber_readers readers[] = {camber_readers_of(CAMBER_LAYER_LINE, false),
+                                camber_readers_of(CAMBER_LAYER_FILL, false),
+                                camber_readers_of(CAMBER_LAYER_LINE, true)};
     camber_style_layer named = {.source_layer = "transport"};
     camber_style style = {
         .properties = names, .property_count = 3, .property_readers = readers, .layers = &named, .layer_count = 1};
@@ -259,7 +260,7 @@ static void test_read_values(void **state) {
     camber_style other = style;
     other.layers = &other_layer;
     assert_int_equal(camber_features_restyle(features, &other), CAMBER_ERROR_ARGUMENT);
-    uint8_t other_readers[] = {readers[0], readers[1], readers[0]};
+    camber_readers other_readers[] = {readers[0], readers[1], readers[0]};
     other = style;
     other.property_readers = other_readers;
     assert_int_equal(camber_features_restyle(features, &other), CAMBER_ERROR_ARGUMENT);

@@ -1097,6 +1097,23 @@ static void test_reference(void **state) {
     }
 }
 
+/* Each property is one element of a set of properties, and each kind of layers has two bits of its own. */
+static void test_sets(void **state) {
+    (void)state;
+    for (unsigned one = 0; one < CAMBER_PROPERTIES; one++) {
+        camber_property_set set = {{0}};
+        camber_property_set_add(&set, (camber_property_id)one);
+        for (unsigned other = 0; other < CAMBER_PROPERTIES; other++)
+            assert_int_equal(camber_property_set_has(&set, (camber_property_id)other), one == other);
+    }
+    camber_readers all = 0;
+    for (unsigned i = 0; i < 2 * CAMBER_LAYER_KINDS; i++) {
+        const camber_readers one = camber_readers_of((camber_layer_kind)(i / 2), i % 2);
+        assert_true(one && !(one & (one - 1)) && !(all & one));
+        all |= one;
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),       cmocka_unit_test(test_fill),
@@ -1104,7 +1121,7 @@ int main(void) {
         cmocka_unit_test(test_odd_dashes),  cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),
         cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting),
         cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers), cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

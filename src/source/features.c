@@ -147,7 +147,8 @@ static bool reads_the_same(const camber_style *one, const camber_style *other) {
     bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
                 one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
                 one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
-                one->wants_plain == other->wants_plain && one->wants_plain_areas == other->wants_plain_areas &&
+                one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
+                one->wants_plain_areas == other->wants_plain_areas &&
                 one->wants_plain_points == other->wants_plain_points;
     for (size_t i = 0; same && i < one->property_count; i++)
         same = strcmp(one->properties[i], other->properties[i]) == 0 &&
@@ -498,7 +499,7 @@ unsigned camber_features_kinds(const camber_style *style, bool unsorted) {
     const bool plain_areas = unsorted && style->wants_plain_areas;
     return CAMBER_KIND_LINE | (style->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
            (style->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
-           (unsorted && style->wants_plain_points ? CAMBER_KIND_POINT : 0u);
+           (style->wants_points || (unsorted && style->wants_plain_points) ? CAMBER_KIND_POINT : 0u);
 }
 
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {

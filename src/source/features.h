@@ -14,7 +14,7 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
-    CAMBER_GEOMETRY_POINT,   /* lines of one point, for layers that are plain */
+    CAMBER_GEOMETRY_POINT,   /* lines of one point each */
     CAMBER_GEOMETRY_KINDS
 } camber_geometry_kind;
 

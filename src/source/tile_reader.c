@@ -289,6 +289,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
                                                  .wants_areas = style->wants_areas,
+                                                 .wants_points = style->wants_points,
                                                  .unsorted = true,
                                                  .no_schema = !has_schema(self)}};
     return camber_features_read_tiles(self->features, &reading, result);

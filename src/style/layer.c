@@ -420,7 +420,7 @@ bool camber_style_layer_may_take(const camber_style_layer *layer, const char *ty
 
 /* Finds what else than lines is drawn of the features. */
 static void find_wants(camber_style *style) {
-    style->wants_polygons = style->wants_areas = false;
+    style->wants_polygons = style->wants_areas = style->wants_points = false;
     style->wants_plain = style->wants_plain_areas = style->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;

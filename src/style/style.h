@@ -157,6 +157,7 @@ struct camber_style {
     bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, or by a fill
                             layer that has a colour for them */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
+    bool wants_points;   /* points are drawn */
     /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
 };

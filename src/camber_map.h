@@ -23,8 +23,8 @@ typedef enum camber_theme {
 
 typedef struct camber_style camber_style;
 
-/* Parses a style document and compiles its background, line and fill layers. Layers of other types, and properties
- * that are not drawn, are warned of, each once.
+/* Parses a style document and compiles its background, line, fill and circle layers. Layers of other types, and
+ * properties that are not drawn, are warned of, each once.
  * name stands in messages.
  * Returns CAMBER_ERROR_INPUT, CAMBER_ERROR_MEMORY. The message says the line and column where the text is no JSON, and
  * the JSON pointer of a wrong type or value. */
@@ -258,8 +258,8 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
-/* Reads the sources that the style's line and fill layers name, in place of files. Sources of type vector give the
- * tiles that the view sees: their tiles or url name files by a template, TileJSON, MBTiles or PMTiles. Tiles are 512
+/* Reads the sources that the style's line, fill and circle layers name, in place of files. Sources of type vector give
+ * the tiles that the view sees, and those from which circles of up to 256 CSS px reach into it: their tiles or url name files by a template, TileJSON, MBTiles or PMTiles. Tiles are 512
  * CSS px wide, and are of the zoom that the view's zoom asks for, within the source's. Sources of type geojson are read
  * whole. A tile that is missing is empty; damage is counted and warned of.
  * Lines that the style cannot tell apart become one where they go on almost straight, unless the style names what

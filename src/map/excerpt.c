@@ -91,7 +91,7 @@ typedef struct reached {
 static bool add_copies(const camber_zoom_plan *zoom, const camber_plan_set *set, camber_plan_entry entry,
                        const reached *window, entry_list *list) {
     const camber_features *features = zoom->features;
-    const bool is_area = camber_plan_is_area(&zoom->plan, set);
+    const bool is_area = camber_plan_is_area(&zoom->plan, set), is_dots = camber_plan_is_circles(&zoom->plan, set);
     double west = INFINITY, east = -INFINITY;
     for (size_t i = features->offsets[entry.polyline]; i < features->offsets[entry.polyline + 1]; i++) {
         const double x = features->points[2 * i];
@@ -103,7 +103,7 @@ static bool add_copies(const camber_zoom_plan *zoom, const camber_plan_set *set,
     for (double shift = ceil(window->west - east); shift <= floor(window->east - west); shift += 1.0) {
         if (!camber_grow(zoom->context, &list->entries, &list->capacity, list->count + 1, sizeof *list->entries))
             return false;
-        list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area};
+        list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area, is_dots};
     }
     return true;
 }

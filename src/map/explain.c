@@ -76,11 +76,12 @@ static bool any_at(const camber_features *features, double zoom) {
     return false;
 }
 
-/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines of any source layer go by
- * come first. */
+/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines and circles of any source
+ * layer go by come first. */
 static void list_properties(const camber_style *style, sentence *s) {
     const size_t count = style->property_count;
-    const camber_readers readers = camber_readers_of(CAMBER_LAYER_LINE, false);
+    const camber_readers readers =
+        camber_readers_of(CAMBER_LAYER_LINE, false) | camber_readers_of(CAMBER_LAYER_CIRCLE, false);
     size_t listed = 0;
     for (size_t k = 0; k < 2 * count && listed <= 8; k++) {
         const size_t i = k < count ? k : k - count;

@@ -105,6 +105,7 @@ typedef struct entry_list {
 static camber_status list_set(const camber_features *features, const camber_plan *plan, size_t set,
                               const copies *worlds, entry_list *list) {
     const bool is_area = camber_plan_is_area(plan, plan->sets + set);
+    const bool is_dots = camber_plan_is_circles(plan, plan->sets + set);
     for (size_t i = plan->all.first_entries[set]; i < plan->all.first_entries[set + 1]; i++) {
         const camber_plan_entry entry = plan->all.entries[i];
         double first, last;
@@ -115,7 +116,7 @@ static camber_status list_set(const camber_features *features, const camber_plan
                              sizeof *list->entries) ||
                 !list->entries)
                 return CAMBER_ERROR_MEMORY;
-            list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area};
+            list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area, is_dots};
         }
     }
     return CAMBER_OK;

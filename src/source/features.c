@@ -161,7 +161,8 @@ static const camber_value *values_of(const camber_features *features, const camb
     return features->style->property_count ? features->values + one->first_value : NULL;
 }
 
-/* Whether a layer takes the class: fills take areas, and so their outlines; lines take all but areas and points. */
+/* Whether a layer takes the class: fills take areas, and so their outlines; lines take all but areas and points, and
+ * circles all but areas. */
 static bool is_taken(const camber_features *features, const camber_style *style, const camber_feature_class *one,
                      const camber_value *values) {
     const camber_feature_view feature = {
@@ -170,7 +171,8 @@ static bool is_taken(const camber_features *features, const camber_style *style,
     const bool lined = one->geometry == CAMBER_GEOMETRY_LINE || one->geometry == CAMBER_GEOMETRY_POLYGON;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        const bool fits = (layer->kind == CAMBER_LAYER_FILL && filled) || (layer->kind == CAMBER_LAYER_LINE && lined);
+        const bool fits = (layer->kind == CAMBER_LAYER_FILL && filled) || (layer->kind == CAMBER_LAYER_LINE && lined) ||
+                          (layer->kind == CAMBER_LAYER_CIRCLE && one->geometry != CAMBER_GEOMETRY_AREA);
         const char *name = layer->source_layer;
         if (fits && !layer->plain && (!name || strcmp(name, features->layer_names[one->layer]) == 0) &&
             camber_style_layer_takes(layer, &feature))
@@ -472,7 +474,7 @@ static camber_readers readers_of(camber_features *features, const camber_feature
     set->layer = one->layer;
     for (int named = 0; named <= set->layer_is_named; named++) {
         if (one->geometry != CAMBER_GEOMETRY_AREA)
-            readers |= camber_readers_of(CAMBER_LAYER_LINE, named);
+            readers |= camber_readers_of(CAMBER_LAYER_LINE, named) | camber_readers_of(CAMBER_LAYER_CIRCLE, named);
         if (one->geometry != CAMBER_GEOMETRY_LINE)
             readers |= camber_readers_of(CAMBER_LAYER_FILL, named);
     }

@@ -166,6 +166,7 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
     }
     paint.border_color.a *= (float)paint.opacity;
     paint.color.a *= (float)paint.opacity;
+    paint.stroke_color.a *= (float)paint.stroke_opacity;
     return paint;
 }
 
@@ -177,10 +178,12 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
 
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image) {
-    static const camber_property_id patterns[] = {[CAMBER_LAYER_BACKGROUND] = CAMBER_BACKGROUND_PATTERN,
-                                                  [CAMBER_LAYER_LINE] = CAMBER_LINE_PATTERN,
-                                                  [CAMBER_LAYER_FILL] = CAMBER_FILL_PATTERN};
-    const camber_expression *pattern = layer->properties[patterns[layer->kind]];
+    static const camber_property_id patterns[CAMBER_LAYER_CIRCLE] = {[CAMBER_LAYER_BACKGROUND] =
+                                                                         CAMBER_BACKGROUND_PATTERN,
+                                                                     [CAMBER_LAYER_LINE] = CAMBER_LINE_PATTERN,
+                                                                     [CAMBER_LAYER_FILL] = CAMBER_FILL_PATTERN};
+    const camber_expression *pattern =
+        layer->kind < CAMBER_LAYER_CIRCLE ? layer->properties[patterns[layer->kind]] : NULL;
     camber_evaluation evaluation;
     camber_value value;
     *image = 0;

@@ -29,9 +29,10 @@ typedef enum camber_layer_kind {
     CAMBER_LAYER_BACKGROUND,
     CAMBER_LAYER_LINE,
     CAMBER_LAYER_FILL,
+    CAMBER_LAYER_CIRCLE,
 } camber_layer_kind;
 
-enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_FILL + 1 };
+enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_CIRCLE + 1 };
 
 /* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
 typedef enum camber_property_id {
@@ -41,6 +42,7 @@ typedef enum camber_property_id {
     CAMBER_LINE_OFFSET,
     CAMBER_LINE_SORT_KEY,
     CAMBER_FILL_SORT_KEY,
+    CAMBER_CIRCLE_SORT_KEY,
     CAMBER_LAYER_GEOMETRY, /* layers that differ in those before share no polylines */
     CAMBER_LINE_WIDTH = CAMBER_LAYER_GEOMETRY,
     CAMBER_LINE_ROUND_LIMIT,
@@ -68,6 +70,17 @@ typedef enum camber_property_id {
     CAMBER_FILL_PATTERN,
     CAMBER_FILL_TRANSLATE,
     CAMBER_FILL_TRANSLATE_ANCHOR,
+    CAMBER_CIRCLE_RADIUS,
+    CAMBER_CIRCLE_COLOR,
+    CAMBER_CIRCLE_BLUR,
+    CAMBER_CIRCLE_OPACITY,
+    CAMBER_CIRCLE_TRANSLATE,
+    CAMBER_CIRCLE_TRANSLATE_ANCHOR,
+    CAMBER_CIRCLE_PITCH_SCALE,
+    CAMBER_CIRCLE_PITCH_ALIGNMENT,
+    CAMBER_CIRCLE_STROKE_WIDTH,
+    CAMBER_CIRCLE_STROKE_COLOR,
+    CAMBER_CIRCLE_STROKE_OPACITY,
     CAMBER_PROPERTIES
 } camber_property_id;
 
@@ -154,10 +167,10 @@ struct camber_style {
     bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool accumulates; /* a line layer's lines are seen through each other, their ends too */
-    bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, or by a fill
-                            layer that has a colour for them */
+    bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, by a fill
+                            layer that has a colour for them, or their corners by a circle layer */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
-    bool wants_points;   /* points are drawn */
+    bool wants_points;   /* a circle layer is drawn whose filter does not leave points out */
     /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
 };
@@ -193,7 +206,8 @@ typedef struct camber_layer_dashes {
     float lengths[CAMBER_DASH_LENGTHS_MAX];
 } camber_layer_dashes;
 
-/* How a layer draws a feature at a zoom, in CSS px. Numbers are finite and within the specification's ranges. */
+/* How a layer draws a feature at a zoom, in CSS px; the blur of circles is a share of the radius with the stroke.
+ * Numbers are finite and within the specification's ranges. */
 typedef struct camber_layer_paint {
     camber_cap cap;
     camber_join join;
@@ -204,6 +218,9 @@ typedef struct camber_layer_paint {
     double opacity;
     double border_width;       /* of the line's own width, on each side */
     camber_color border_color; /* the alpha includes the opacity; of a fill, its outline's colour */
+    double radius;             /* of a circle, without its stroke, which lies around it */
+    double stroke_width, stroke_opacity;
+    camber_color stroke_color; /* the alpha includes the opacity */
     camber_layer_dashes dashes;
     /* These are the same for all features. */
     bool antialias; /* of a fill: it may have an outline */
@@ -211,6 +228,7 @@ typedef struct camber_layer_paint {
     double translate[2];
     double trim[2]; /* the line is not drawn from one to the other: shares of its length */
     camber_translate_anchor translate_anchor;
+    camber_translate_anchor pitch_scale, pitch_alignment; /* of circles */
 } camber_layer_paint;
 
 /* A layer at a zoom, with all properties evaluated that do not depend on features. */

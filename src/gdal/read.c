@@ -407,9 +407,8 @@ static void warn_of_losses(const reader *self) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s, empty geometry) of %zu features", path,
-                   self->lines.kinds & CAMBER_KIND_AREA ? "neither line nor area (points" : "no line (points, areas",
-                   stats->skipped_features);
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", path,
+                   camber_features_left_out(self->lines.kinds), stats->skipped_features);
     if (stats->invalid_points)
         camber_log(self->context, CAMBER_LOG_WARNING,
                    "%s: %zu points are not numbers and are left out; their lines are split there", path,

@@ -594,9 +594,8 @@ static void add_stats(const reader *self) {
     features->stats.clamped_points += self->clamped;
     features->stats.antimeridian_splits += self->splits;
     if (self->skipped)
-        camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
-                   self->skipped);
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
+                   camber_features_left_out(camber_features_kinds(features->style, false)), self->skipped);
     if (self->missing)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: ways name %zu nodes that are not in it", self->desc->path,
                    self->missing);

@@ -504,6 +504,14 @@ unsigned camber_features_kinds(const camber_style *style, bool unsorted) {
            (style->wants_points || (unsorted && style->wants_plain_points) ? CAMBER_KIND_POINT : 0u);
 }
 
+const char *camber_features_left_out(unsigned kinds) {
+    const bool areas = kinds & CAMBER_KIND_AREA;
+    if (kinds & CAMBER_KIND_POINT)
+        return areas ? "neither line, area nor point (empty geometry)"
+                     : "neither line nor point (areas, empty geometry)";
+    return areas ? "neither line nor area (points, empty geometry)" : "no line (points, areas, empty geometry)";
+}
+
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {
     const camber_feature_class *one = &features->classes[class_index];
     return !one->unsorted || one->plain || camber_features_kinds(features->style, false) >> one->geometry & 1;

@@ -121,6 +121,8 @@ camber_status camber_features_find_class_of(camber_features *features, const cam
                                             const camber_value *values, uint32_t *class_index);
 /* The kinds of geometry that are read of features, CAMBER_KIND_*. unsorted: as a class has it. */
 unsigned camber_features_kinds(const camber_style *style, bool unsorted);
+/* Names what is left out if these kinds are read, to follow "left out what is". */
+const char *camber_features_left_out(unsigned kinds);
 /* Whether features of a class are kept: those of some kinds are read in case that they are plain. */
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);

@@ -122,7 +122,8 @@ static void warn_of_losses(const camber_sources *sources, const char *what, size
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
     if (skipped)
-        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is not a line of %zu features", what, skipped);
+        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", what,
+                   camber_features_left_out(camber_features_kinds(sources->features->style, false)), skipped);
 }
 
 static camber_status fail_damaged(const camber_sources *sources, const char *what, const char *damage) {

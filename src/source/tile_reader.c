@@ -325,8 +325,8 @@ static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
+                   camber_features_left_out(camber_features_kinds(self->features->style, false)),
                    stats->skipped_features);
 }
 

@@ -17,7 +17,7 @@
  * takes two: its position, and its premultiplied colour. */
 typedef struct camber_brush_ext {
     camber_u32 features;
-    float half_gap, blur, period; /* px */
+    float half_gap, blur, period; /* px; a blur below 0 fades by a smooth step */
     camber_u32 first_dash, dash_count, round_dashes, image;
     camber_u32 first_stop, stop_count;
     float trim_from, trim_to; /* as shares of the line's length */
@@ -96,18 +96,19 @@ CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extra
  * along and across the segment. */
 CAMBER_FN camber_u32 camber_extras_cell(const camber_edge *p, const camber_extras *e, camber_u32 meets, float x,
                                         float y) {
-    const float aside = CAMBER_FABS(y), reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy));
+    const float aside = CAMBER_FABS(y), blur = CAMBER_FABS(e->blur),
+                reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy));
     const camber_u32 blurs = e->features & CAMBER_FEATURE_BLUR;
     camber_u32 inside = meets == CAMBER_CELL_FULL;
     if (meets == CAMBER_CELL_OUTSIDE || meets == CAMBER_CELL_NEAR_END)
         return meets;
     if (e->features & CAMBER_FEATURE_GAP) {
-        if (aside + reach <= e->half_gap - (blurs ? e->blur + 0.5f : p->side.extent))
+        if (aside + reach <= e->half_gap - (blurs ? blur + 0.5f : p->side.extent))
             return CAMBER_CELL_OUTSIDE;
         inside &= aside - reach >= e->half_gap + (blurs ? 0.5f : p->side.extent);
     }
     if (blurs)
-        inside &= aside + reach <= p->half_width - e->blur - 0.5f;
+        inside &= aside + reach <= p->half_width - blur - 0.5f;
     if (e->features & (CAMBER_FEATURE_DASH | CAMBER_FEATURE_TRIM)) {
         float low, high;
         camber_extras_range(p, e, x, &low, &high);

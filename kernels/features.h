@@ -31,7 +31,7 @@
 /* The coefficients that a segment with features has besides its edge. */
 CAMBER_STRUCT(camber_extras) {
     camber_u32 features;
-    float half_gap, blur;
+    float half_gap, blur;     /* blur below 0: it fades by a smooth step */
     float along, rate, total; /* arc length of A, px; arc length of a px; the line's whole length, px */
     float trim_from, trim_to; /* px along the line */
     float period, drawn;      /* of dashes: the period, px; the share of it that is drawn */
@@ -226,6 +226,7 @@ CAMBER_FN camber_real camber_rim_at(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
  * sharp: joins may cut the pixel. */
 CAMBER_FN camber_real camber_blurred(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e, CAMBER_IN(camber_pixel) at,
                                      camber_flag sharp) {
+    const float blur = CAMBER_FABS(e->blur);
     const camber_real outer = p->half_width - at->d;
     camber_real rim = outer;
     if (sharp) {
@@ -234,10 +235,11 @@ CAMBER_FN camber_real camber_blurred(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_
     }
     rim = camber_seen_away(p, at, rim);
     if (CAMBER_HAS(e->features, CAMBER_FEATURE_GAP)) {
-        const camber_real inner = camber_seen_away(p, at, at->d - e->half_gap) + e->blur;
+        const camber_real inner = camber_seen_away(p, at, at->d - e->half_gap) + blur;
         rim = CAMBER_LESS(rim, inner);
     }
-    return camber_clamp_to_one((rim + 0.5f) / (e->blur + 1.0f));
+    const camber_real fade = camber_clamp_to_one((rim + 0.5f) / (blur + 1.0f));
+    return e->blur < 0.0f ? fade * fade * (3.0f - 2.0f * fade) : fade;
 }
 
 /* ---- Areas ---- */

@@ -223,7 +223,7 @@ camber_extras extras_here() {
     e.half_gap = v_band.x;
     e.blur = v_band.y;
     e.features |= GAP != 0 && e.half_gap > 0.0 ? CAMBER_FEATURE_GAP : 0u;
-    e.features |= BLUR != 0 && e.blur > 0.0 ? CAMBER_FEATURE_BLUR : 0u;
+    e.features |= BLUR != 0 && e.blur != 0.0 ? CAMBER_FEATURE_BLUR : 0u;
 #endif
 #if MEASURED
     e.along = v_measure.x;

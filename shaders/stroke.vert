@@ -16,7 +16,7 @@ layout(binding = 1) uniform highp usamplerBuffer u_records; // all other sampler
 // Tables of rows, TEXELS_A_ROW texels a row, then the side table of dashes and ramps. The texels of a row:
 //     0  half the width px, -1: not drawn; the step of a fan; translation x, y px
 //     1  premultiplied colour
-//     2  half the gap px, below 0: none; blur px; 0; 0
+//     2  half the gap px, below 0: none; blur px, below 0: by a smooth step; 0; 0
 //     3  dashes: first texel in the side table; twice their count, and 1 more where they are round; period px; 0
 //     4  two shares of the line, between which it is not drawn; its ramp's first texel in the side table; stops of that
 //     5  its image in the atlas: corner x, y and size x, y, in texture coordinates; 0: no image

@@ -602,6 +602,7 @@ typedef struct camber_paint {
     float gap_px; /* 0: none. Else the line is two rails, each as wide as width_px, and this is the room between them */
     float blur_px;                        /* 0: none. Else edges fade inwards, over so much more than a pixel */
     float translate_x_px, translate_y_px; /* from where the polyline lies to where it is drawn */
+    bool smooth_blur;                     /* the blur fades by a smooth step, 3 t^2 - 2 t^3, in place of evenly */
     const camber_dash *dash;              /* NULL: none */
     float dash_unit_px;                   /* the unit of the dash's lengths. 0: 1 */
     /* Shares of the line's length, between which it is not drawn. A trim at an end takes the cap away too. Where

@@ -23,8 +23,8 @@ typedef enum camber_theme {
 
 typedef struct camber_style camber_style;
 
-/* Parses a style document and compiles its background, line and fill layers. Layers of other types, and properties
- * that are not drawn, are warned of, each once.
+/* Parses a style document and compiles its background, line, fill and circle layers. Layers of other types, and
+ * properties that are not drawn, are warned of, each once.
  * name stands in messages.
  * Returns CAMBER_ERROR_INPUT, CAMBER_ERROR_MEMORY. The message says the line and column where the text is no JSON, and
  * the JSON pointer of a wrong type or value. */
@@ -257,17 +257,16 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
-/* Reads the sources that the style's line and fill layers name, in place of files. Sources of type vector give the
- * tiles that the view sees: their tiles or url name files by a template, TileJSON, MBTiles or PMTiles. Tiles are 512
- * CSS px wide, and are of the zoom that the view's zoom asks for, within the source's. Sources of type geojson are read
- * whole. A tile that is missing is empty; damage is counted and warned of.
- * Lines that the style cannot tell apart become one where they go on almost straight, unless the style names what
- * follows a line's direction.
- * view says which tiles; for another view read into another set. A view that fits is that of the sources' bounds, or
- * the whole world where none is known.
- * base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working folder.
- * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
- * that does not read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. */
+/* Reads the sources that the style's line, fill and circle layers name, in place of files. Sources of type vector give
+ * the tiles that the view sees, and those from which circles of up to 256 CSS px reach into it: their tiles or url name
+ * files by a template, TileJSON, MBTiles or PMTiles. Tiles are 512 CSS px wide, and are of the zoom that the view's
+ * zoom asks for, within the source's. Sources of type geojson are read whole. A tile that is missing is empty; damage
+ * is counted and warned of. Lines that the style cannot tell apart become one where they go on almost straight, unless
+ * the style names what follows a line's direction. view says which tiles; for another view read into another set. A
+ * view that fits is that of the sources' bounds, or the whole world where none is known. base_path is the style's file:
+ * paths are relative to its folder. NULL: they are relative to the working folder. Returns CAMBER_ERROR_ARGUMENT (the
+ * view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file that does not read),
+ * CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
                                                       const char *base_path);
 

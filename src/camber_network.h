@@ -19,6 +19,7 @@ typedef struct camber_network_entry {
     /* The polyline is a ring, to be filled: what it winds around stays so where a camera cuts the ring. A ring with an
      * invalid point is left out. */
     bool is_area;
+    bool is_dots; /* each point of the polyline is a dot by itself, and none is left out */
 } camber_network_entry;
 
 typedef struct camber_network_desc {

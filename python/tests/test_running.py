@@ -134,12 +134,12 @@ def test_objects_go_in_any_order(city):
 
 def test_the_log(caplog, tmp_path):
     (tmp_path / "bad.geojson").write_text('{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}')
-    style = {"version": 8, "sources": {}, "layers": [{"id": "a", "type": "circle"}]}
+    style = {"version": 8, "sources": {}, "layers": [{"id": "a", "type": "heatmap"}]}
     with caplog.at_level(logging.DEBUG, "camber"):
         camber.render(tmp_path / "bad.geojson", style=style, size=(9, 9))
         with pytest.raises(FileNotFoundError) as told:
             camber.render("/nowhere")
-    assert any(record.levelno == logging.WARNING and "circle" in record.message for record in caplog.records)
+    assert any(record.levelno == logging.WARNING and "heatmap" in record.message for record in caplog.records)
     assert any(record.levelno == logging.DEBUG and record.message == str(told.value) for record in caplog.records)
 
 

@@ -176,7 +176,7 @@ static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row
         return make_area_row(m->list, paint, row);
     *row = (camber_row_paint){.half_width_px = camber_paint_half_width(paint),
                               .half_gap_px = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f,
-                              .blur_px = fmaxf(paint->blur_px, 0.0f),
+                              .blur_px = (paint->smooth_blur ? -1.0f : 1.0f) * fmaxf(paint->blur_px, 0.0f),
                               .translate_px = {paint->translate_x_px, paint->translate_y_px},
                               .color = paint->image ? white : paint->color,
                               .fill = CAMBER_NO_FILL,

@@ -26,7 +26,7 @@ typedef enum camber_composite {
 typedef struct camber_row_paint {
     float half_width_px; /* with the gap. Below 0: the row is not drawn */
     float half_gap_px;   /* below 0: no gap */
-    float blur_px;
+    float blur_px;       /* below 0: as wide, by a smooth step */
     float translate_px[2];
     float trim[2]; /* shares of the line, between which it is not drawn; what is trimmed at an end takes the cap too */
     camber_color color; /* straight; with an image white, and the paint's alpha */

@@ -161,7 +161,8 @@ static bool reads_the_same(const camber_schema *one, const camber_schema *other)
     bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
                 one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
                 one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
-                one->wants_plain == other->wants_plain && one->wants_plain_areas == other->wants_plain_areas &&
+                one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
+                one->wants_plain_areas == other->wants_plain_areas &&
                 one->wants_plain_points == other->wants_plain_points;
     for (size_t i = 0; same && i < one->property_count; i++) {
         const camber_property_readers a = readers_of(one, i), b = readers_of(other, i);
@@ -491,7 +492,15 @@ unsigned camber_schema_kinds(const camber_schema *schema, bool unsorted) {
     const bool plain_areas = unsorted && schema->wants_plain_areas;
     return CAMBER_KIND_LINE | (schema->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
            (schema->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
-           (unsorted && schema->wants_plain_points ? CAMBER_KIND_POINT : 0u);
+           (schema->wants_points || (unsorted && schema->wants_plain_points) ? CAMBER_KIND_POINT : 0u);
+}
+
+const char *camber_features_left_out(unsigned kinds) {
+    const bool areas = kinds & CAMBER_KIND_AREA;
+    if (kinds & CAMBER_KIND_POINT)
+        return areas ? "neither line, area nor point (empty geometry)"
+                     : "neither line nor point (areas, empty geometry)";
+    return areas ? "neither line nor area (points, empty geometry)" : "no line (points, areas, empty geometry)";
 }
 
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {

@@ -107,6 +107,8 @@ camber_status camber_features_find_class(camber_features *features, uint32_t lay
 /* Does the same with an id and all properties; wanted's source, first_value and plain are not read. */
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index);
+/* Names what is left out if these kinds are read, to follow "left out what is". */
+const char *camber_features_left_out(unsigned kinds);
 /* Whether features of a class are kept: those of some kinds are read in case that they are plain. */
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);

@@ -9,7 +9,7 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
-    CAMBER_GEOMETRY_POINT,   /* lines of one point, for layers that are plain */
+    CAMBER_GEOMETRY_POINT,   /* lines of one point each */
     CAMBER_GEOMETRY_KINDS
 } camber_geometry_kind;
 
@@ -55,9 +55,10 @@ typedef struct camber_schema {
     bool wants_id;             /* an expression reads the feature's id */
     bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
-    bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, or by a fill
-                            layer that has a colour for them */
+    bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, by a fill
+                            layer that has a colour for them, or their corners by a circle layer */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
+    bool wants_points;   /* a circle layer is drawn whose filter does not leave points out */
     /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
     /* Whether a layer that is not plain draws such features of this source layer at any zoom. NULL: none does. */

@@ -1,7 +1,7 @@
 /* Reads a GeoJSON source of a style into a set of features.
  *
- * Input: a JSON document and the source's filter. Output: lines, outlines, areas, classes, ids. Damage is counted, not
- * fatal: a line is split where a point is not valid, and what can be read of a feature is kept.
+ * Input: a JSON document and the source's filter. Output: lines, outlines, areas, points, classes, ids. Damage is
+ * counted, not fatal: a line is split where a point is not valid, and what can be read of a feature is kept.
  */
 #include "formats/geojson.h"
 #include "features/mercator.h"
@@ -13,6 +13,7 @@
 
 /* Collections in collections. */
 enum { DEEPEST = 32 };
+enum { POLYGONS = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA };
 
 /* A line may go on over the antimeridian, but not round and round. */
 static const double FARTHEST_DEG = 540.0;
@@ -225,14 +226,28 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
     return add_parts(self, count);
 }
 
-/* depth: how deep the lines are in the coordinates. hole: all lines of a polygon but the first are holes. */
+/* A point is a line of one point. */
+static camber_status read_point(reader *self, const json_t *json) {
+    double position[2];
+    if (!read_position(json, position)) {
+        note_damage(self, "a position that is not a longitude and a latitude");
+        return CAMBER_OK;
+    }
+    if (!isnan(position[0]))
+        return add_line(self, position, 1);
+    self->stats->invalid_points++;
+    return CAMBER_OK;
+}
+
+/* depth: how deep the lines, or points, are in the coordinates. hole: all lines of a polygon but the first are holes.
+ */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool hole) {
     if (!json_is_array(json)) {
         note_damage(self, "coordinates that are not an array");
         return CAMBER_OK;
     }
     if (depth == 0)
-        return read_line(self, json, hole);
+        return self->kind == CAMBER_GEOMETRY_POINT ? read_point(self, json) : read_line(self, json, hole);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < json_array_size(json) && status == CAMBER_OK; i++)
         status = read_lines(self, json_array_get(json, i), depth - 1, depth == 1 && i > 0);
@@ -242,10 +257,14 @@ static camber_status read_lines(reader *self, const json_t *json, int depth, boo
 static camber_status read_geometry(reader *self, const json_t *geometry, int depth) {
     static const struct {
         const char *name;
-        int depth; /* below 0: no lines */
-        bool polygon;
-    } types[] = {{"LineString", 0, false},  {"MultiLineString", 1, false}, {"Polygon", 1, true},
-                 {"MultiPolygon", 2, true}, {"Point", -1, false},          {"MultiPoint", -1, false}};
+        int depth;
+        unsigned kinds;
+    } types[] = {{"LineString", 0, CAMBER_KIND_LINE},
+                 {"MultiLineString", 1, CAMBER_KIND_LINE},
+                 {"Polygon", 1, POLYGONS},
+                 {"MultiPolygon", 2, POLYGONS},
+                 {"Point", 0, CAMBER_KIND_POINT},
+                 {"MultiPoint", 1, CAMBER_KIND_POINT}};
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (type && strcmp(type, "GeometryCollection") == 0 && depth < DEEPEST) {
         const json_t *parts = json_object_get(geometry, "geometries");
@@ -261,13 +280,12 @@ static camber_status read_geometry(reader *self, const json_t *geometry, int dep
         note_damage(self, "a geometry of an unknown type");
         return CAMBER_OK;
     }
-    self->left_out |= types[i].depth < 0;
-    if (types[i].depth < 0 || types[i].polygon != (self->kind != CAMBER_GEOMETRY_LINE))
+    if (!(types[i].kinds >> self->kind & 1))
         return CAMBER_OK;
     return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, false);
 }
 
-/* Whether a geometry has lines, or polygons, at all. */
+/* Whether a geometry has lines, polygons or points at all. */
 static bool has_kind(const json_t *geometry, camber_geometry_kind kind, int depth) {
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (!type)
@@ -296,13 +314,12 @@ static void end_feature(reader *self) {
 }
 
 static camber_status read_feature(reader *self, const json_t *feature, const json_t *geometry) {
-    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
     self->damage = NULL;
     self->left_out = !geometry || json_is_null(geometry);
     camber_status status = CAMBER_OK;
     bool any = self->left_out;
     unsigned unread = 0;
-    for (int kind = 0; kind < CAMBER_GEOMETRY_POINT && status == CAMBER_OK; kind++) {
+    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
         bool drawn = false;
         self->kind = (camber_geometry_kind)kind;
         if (!has_kind(geometry, self->kind, 0))
@@ -319,8 +336,8 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
     }
     self->kind = CAMBER_GEOMETRY_LINE;
     if (!any)
-        status = read_geometry(self, geometry, 0); /* the other kind that the geometry may have */
-    self->left_out |= (unread & CAMBER_KIND_LINE) || (unread & polygons) == polygons;
+        status = read_geometry(self, geometry, 0); /* of an unknown type */
+    self->left_out |= (unread & (CAMBER_KIND_LINE | CAMBER_KIND_POINT)) || (unread & POLYGONS) == POLYGONS;
     end_feature(self);
     return status;
 }
@@ -357,7 +374,8 @@ camber_status camber_geojson_read(camber_features *features, const camber_geojso
                    .rings.stats = &features->stats};
     self.kinds = desc->kinds;
     if (!desc->kinds)
-        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->schema->wants_areas ? CAMBER_KIND_AREA : 0u);
+        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->schema->wants_areas ? CAMBER_KIND_AREA : 0u) |
+                     (features->schema->wants_points ? CAMBER_KIND_POINT : 0u);
     *stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
     self.values = camber_alloc(features->context, features->schema->property_count, sizeof *self.values);
     const camber_status status = self.values ? read_root(&self) : CAMBER_ERROR_MEMORY;

@@ -278,15 +278,22 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     return CAMBER_OK;
 }
 
-/* Adds the points that lie in the tile: those of its buffer are in the next one, too. */
+/* Whether a point is the tile's own: those of its buffer are in the next one, too, unless that is not read. */
+static bool is_own(const camber_tile_address *address, const double *point) {
+    const double side = ldexp(1.0, address->zoom);
+    const double column = floor(point[0] * side) - address->column, row = floor(point[1] * side) - address->row;
+    const unsigned beyond = (column < 0 ? CAMBER_SIDE_WEST : 0u) | (column > 0 ? CAMBER_SIDE_EAST : 0u) |
+                            (row < 0 ? CAMBER_SIDE_NORTH : 0u) | (row > 0 ? CAMBER_SIDE_SOUTH : 0u);
+    return !(beyond & ~address->open_sides);
+}
+
 static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
     const camber_mvt_geometry *geometry = &mvt->geometry;
-    const double side = ldexp(1.0, mvt->address.zoom);
     camber_status status = CAMBER_OK;
     bool added = false;
     for (size_t i = 0; i < geometry->point_count && status == CAMBER_OK; i++) {
         const double *point = geometry->points + 2 * i;
-        if (floor(point[0] * side) != mvt->address.column || floor(point[1] * side) != mvt->address.row)
+        if (!is_own(&mvt->address, point))
             continue;
         if (!added)
             status = camber_features_add_feature(mvt->desc.features, class_index);
@@ -403,7 +410,7 @@ static unsigned wanted_kinds(const camber_mvt *mvt) {
         if (mvt->unsorted)
             return camber_schema_kinds(desc->features->schema, true);
         return CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
-               (desc->wants_areas ? CAMBER_KIND_AREA : 0u);
+               (desc->wants_areas ? CAMBER_KIND_AREA : 0u) | (desc->wants_points ? CAMBER_KIND_POINT : 0u);
     }
     return 0;
 }

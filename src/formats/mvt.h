@@ -21,7 +21,7 @@ typedef struct camber_mvt_desc {
         *layers; /* the names of the wanted layers. NULL: none; the layers that the tiles hold are only listed */
     size_t layer_count;
     const unsigned *layer_kinds; /* layer_count: CAMBER_KIND_*, what is read of each. NULL: as the next two say */
-    bool wants_polygons, wants_areas;
+    bool wants_polygons, wants_areas, wants_points;
     json_t *promote_id;  /* the property that is the id, as a string, or by layer as an object. NULL: none */
     bool wants_progress; /* mapbox_clip_start and mapbox_clip_end are line-progress at a feature's ends */
     bool unsorted;       /* the tiles may have no schema that the style knows, unless it names their layers */

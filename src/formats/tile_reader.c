@@ -284,6 +284,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = schema->wants_polygons,
                                                  .wants_areas = schema->wants_areas,
+                                                 .wants_points = schema->wants_points,
                                                  .unsorted = true,
                                                  .no_schema = !has_schema(self)}};
     return camber_features_read_tiles(self->features, &reading, result);
@@ -319,8 +320,8 @@ static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
+                   camber_features_left_out(camber_schema_kinds(self->features->schema, false)),
                    stats->skipped_features);
 }
 

@@ -99,7 +99,7 @@ static camber_status fail_layer(const camber_dataset *dataset) {
 camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema *schema, int **layers, size_t *count) {
     GDALDatasetH handle = dataset->handle;
     const int total = GDALDatasetGetLayerCount(handle);
-    int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1) + 1, sizeof *chosen);
+    int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1) + 2, sizeof *chosen);
     if (!chosen)
         return CAMBER_ERROR_MEMORY;
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(handle));
@@ -117,9 +117,11 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;
-    /* Closed ways are among the lines; what relations make of ways is in a layer of its own. */
+    /* Closed ways are among the lines; what relations make of ways is in a layer of its own, and so are nodes. */
     if (dataset->osm && !dataset->desc->layer && schema->wants_areas &&
         (one = find_layer(handle, "multipolygons")) >= 0)
+        chosen[found++] = one;
+    if (dataset->osm && !dataset->desc->layer && schema->wants_points && (one = find_layer(handle, "points")) >= 0)
         chosen[found++] = one;
     if (found == 0) {
         camber_free(dataset->context, chosen);

@@ -18,6 +18,16 @@ static const double PROGRESS_MS = 50;
 /* The clock is read once in this many features. */
 enum { PROGRESS_FEATURES = 64 };
 
+/* A layer of OSM's driver that is read along with the lines: what relations make of ways, for its areas, or nodes. */
+typedef struct osm_layer {
+    OGRLayerH handle;
+    uint32_t index;
+    unsigned kinds; /* CAMBER_KIND_*: what is read of it */
+    camber_columns columns;
+} osm_layer;
+
+enum { MOST_OTHERS = 2 };
+
 typedef struct reader {
     camber_context *context;
     camber_features *features;
@@ -31,13 +41,11 @@ typedef struct reader {
     uint32_t layer_index;
     camber_columns columns;
 
-    camber_features_stats stats; /* counts of this file */
-    char damage[512];            /* a message about the first damage */
-    size_t read;                 /* features of the layer so far */
-    /* OSM's layer of what relations make of ways, which is read along with the lines for its areas. NULL: it is not */
-    OGRLayerH relations;
-    uint32_t relations_index;
-    camber_columns relation_columns;
+    camber_features_stats stats;   /* counts of this file */
+    char damage[512];              /* a message about the first damage */
+    size_t read;                   /* features of the layer so far */
+    osm_layer others[MOST_OTHERS]; /* other_count */
+    size_t other_count;
     bool boxed;    /* the layer is read by its index, for a region */
     bool failed;   /* OGR reported a failure with the last feature */
     size_t passed; /* features of all layers so far */
@@ -68,6 +76,20 @@ static camber_status begin_layer(reader *self, int index) {
     return CAMBER_OK;
 }
 
+static camber_status begin_other(reader *self, OGRLayerH layer) {
+    osm_layer *other = &self->others[self->other_count++];
+    *other = (osm_layer){.handle = layer, .kinds = CAMBER_KIND_AREA};
+    if (strcmp(OGR_L_GetName(layer), "points") == 0)
+        other->kinds = CAMBER_KIND_POINT;
+    if (self->desc->where)
+        OGR_L_SetAttributeFilter(layer, self->desc->where); /* the lines tell whether it fits */
+    camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(layer), &other->index);
+    if (status == CAMBER_OK)
+        status = camber_columns_find(&other->columns, self->features, OGR_L_GetLayerDefn(layer), false, false);
+    other->columns.unsorted = false;
+    return status;
+}
+
 /* Tells the OSM driver what is read: it skips what belongs to its other layers, which is twice as fast. Its features of
  * all layers come in one stream. */
 static camber_status begin_osm(reader *self, const int *layers, size_t count) {
@@ -78,17 +100,9 @@ static camber_status begin_osm(reader *self, const int *layers, size_t count) {
                  OGR_L_GetName(GDALDatasetGetLayer(handle, layers[i])));
     GDALDatasetReleaseResultSet(
         handle, GDALDatasetExecuteSQL(handle, CPLSPrintf("SET interest_layers = %s", names), NULL, NULL));
-    if (count < 2)
-        return CAMBER_OK;
-    self->relations = GDALDatasetGetLayer(handle, layers[1]);
-    if (self->desc->where)
-        OGR_L_SetAttributeFilter(self->relations, self->desc->where); /* the lines tell whether it fits */
-    camber_status status =
-        camber_features_find_layer(self->features, OGR_L_GetName(self->relations), &self->relations_index);
-    if (status == CAMBER_OK)
-        status = camber_columns_find(&self->relation_columns, self->features, OGR_L_GetLayerDefn(self->relations),
-                                     false, false);
-    self->relation_columns.unsorted = false;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 1; i < count && i <= MOST_OTHERS && status == CAMBER_OK; i++)
+        status = begin_other(self, GDALDatasetGetLayer(handle, layers[i]));
     return status;
 }
 
@@ -117,15 +131,19 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
 }
 
-static bool is_relation(const reader *self, OGRFeatureH feature) {
-    return self->relations && OGR_F_GetDefnRef(feature) == OGR_L_GetLayerDefn(self->relations);
+/* The other layer that a feature is of. NULL: it is of the one that is being read. */
+static osm_layer *find_other(reader *self, OGRFeatureH feature) {
+    for (size_t i = 0; i < self->other_count; i++)
+        if (OGR_F_GetDefnRef(feature) == OGR_L_GetLayerDefn(self->others[i].handle))
+            return &self->others[i];
+    return NULL;
 }
 
 static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
-    const bool relation = is_relation(self, feature);
+    osm_layer *other = find_other(self, feature);
     uint32_t index;
-    camber_status status = camber_columns_class(relation ? &self->relation_columns : &self->columns, feature,
-                                                relation ? self->relations_index : self->layer_index, kind, &index);
+    camber_status status = camber_columns_class(other ? &other->columns : &self->columns, feature,
+                                                other ? other->index : self->layer_index, kind, &index);
     if (status != CAMBER_OK || !camber_features_draw_class(self->features, index))
         return status;
     if (self->stitcher) {
@@ -168,10 +186,10 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     lines->left_out = !geometry && !failed;
     lines->damaged = failed;
-    const bool relation = is_relation(self, feature);
-    const bool area = geometry && !relation && camber_columns_is_area(&self->columns, feature, geometry);
+    const osm_layer *other = find_other(self, feature);
+    const bool area = geometry && !other && camber_columns_is_area(&self->columns, feature, geometry);
     const unsigned areas = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
-    const unsigned kinds = lines->kinds & (relation ? CAMBER_KIND_AREA : area ? areas : ~0u);
+    const unsigned kinds = lines->kinds & (other ? other->kinds : area ? areas : ~0u);
     camber_status status = CAMBER_OK;
     for (int kind = 0; geometry && kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
         if (!(kinds >> kind & 1))
@@ -390,9 +408,8 @@ static void warn_of_losses(const reader *self) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s, empty geometry) of %zu features", path,
-                   self->lines.kinds & CAMBER_KIND_AREA ? "neither line nor area (points" : "no line (points, areas",
-                   stats->skipped_features);
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", path,
+                   camber_features_left_out(self->lines.kinds), stats->skipped_features);
     if (stats->invalid_points)
         camber_log(self->context, CAMBER_LOG_WARNING,
                    "%s: %zu points are not numbers and are left out; their lines are split there", path,
@@ -460,7 +477,8 @@ done:
 static void close_reader(reader *self) {
     camber_feature_lines_free(&self->lines);
     camber_tile_stitcher_destroy(self->stitcher);
-    camber_columns_free(&self->relation_columns, self->context);
+    for (size_t i = 0; i < self->other_count; i++)
+        camber_columns_free(&self->others[i].columns, self->context);
     camber_columns_free(&self->columns, self->context);
     camber_dataset_close(&self->dataset);
 }

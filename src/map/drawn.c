@@ -9,6 +9,9 @@
 
 static bool is_painted(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
     const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, feature);
+    if (layer->kind == CAMBER_LAYER_CIRCLE)
+        return (paint.color.a > 0.0f && paint.radius > 0.0) ||
+               (paint.stroke_color.a > 0.0f && paint.stroke_width > 0.0);
     const bool visible = paint.color.a > 0.0f || paint.border_color.a > 0.0f ||
                          layer->properties[CAMBER_FILL_PATTERN] || layer->properties[CAMBER_LINE_PATTERN] ||
                          layer->ramp.count;

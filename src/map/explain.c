@@ -76,8 +76,8 @@ static bool any_at(const camber_features *features, double zoom) {
     return false;
 }
 
-/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines of any source layer go by
- * come first. */
+/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines and circles of any source
+ * layer go by come first. */
 static void list_properties(const camber_style *style, sentence *s) {
     const size_t count = style->schema.property_count;
     size_t listed = 0;

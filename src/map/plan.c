@@ -29,14 +29,15 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
     };
 }
 
-/* Areas are filled; the outlines of polygons are lines too, and points the dots of plain layers' round caps. */
+/* Areas are filled; the outlines of polygons are lines too, and points the dots of plain layers' round caps. Circles
+ * lie about all points of anything. */
 static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, camber_geometry_kind kind) {
     if (part == CAMBER_PLAN_AREA)
         return kind == CAMBER_GEOMETRY_AREA;
     if (part == CAMBER_PLAN_OUTLINE)
         return kind == CAMBER_GEOMETRY_POLYGON;
-    return kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POLYGON ||
-           (kind == CAMBER_GEOMETRY_POINT && layer->plain);
+    const bool points = part == CAMBER_PLAN_CIRCLES || layer->plain;
+    return kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POLYGON || (kind == CAMBER_GEOMETRY_POINT && points);
 }
 
 /* Whether features of the class come to the layer's filter. */
@@ -49,13 +50,19 @@ static bool comes_to(const camber_features *features, const camber_style_layer *
     return !layer->source_layer || strcmp(layer->source_layer, features->layer_names[class->layer]) == 0;
 }
 
+/* The part of a layer that is named after it. */
+static camber_plan_part part_of(const camber_style_layer *layer) {
+    return layer->kind == CAMBER_LAYER_FILL     ? CAMBER_PLAN_AREA
+           : layer->kind == CAMBER_LAYER_CIRCLE ? CAMBER_PLAN_CIRCLES
+                                                : CAMBER_PLAN_LINE;
+}
+
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class) {
     const camber_feature_view feature = camber_plan_view_of(features, class);
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
-    const bool fits =
-        takes_kind(layer, layer->kind == CAMBER_LAYER_FILL ? CAMBER_PLAN_AREA : CAMBER_PLAN_LINE, class->geometry) ||
-        (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
+    const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
+                      (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
     return layer->kind != CAMBER_LAYER_BACKGROUND && fits && comes_to(features, layer, class) &&
            camber_style_layer_matches(layer, zoom, &feature);
 }
@@ -183,7 +190,9 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         }
         if (layer->properties[CAMBER_LINE_BORDER_WIDTH])
             add_layer(plan, &table, layer, view, CAMBER_PLAN_BORDER);
-        add_layer(plan, &table, layer, view, layer->kind == CAMBER_LAYER_FILL ? CAMBER_PLAN_AREA : CAMBER_PLAN_LINE);
+        add_layer(plan, &table, layer, view, part_of(layer));
+        if (layer->properties[CAMBER_CIRCLE_STROKE_WIDTH])
+            plan->dot_count = 2;
         if (layer->properties[CAMBER_FILL_OUTLINE_COLOR] && camber_style_layer_look(layer, zoom).paint.antialias)
             add_layer(plan, &table, layer, view, CAMBER_PLAN_OUTLINE);
     }
@@ -202,9 +211,10 @@ typedef struct row_table {
     uint32_t *slots;         /* row + 1; 0: free */
     size_t slot_count;       /* a power of two */
     bool failed;             /* no memory for dashes or patterns */
+    bool of_stroke;          /* of circles: the dot is that of the stroke */
 } row_table;
 
-/* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the key in a sorted set. */
+/* By set, class and dot: the row, CAMBER_NO_ROW where the set does not draw it, and the key in a sorted set. */
 typedef struct plan_classes {
     uint32_t *rows;
     double *keys;
@@ -265,6 +275,37 @@ static void put_paint(const camber_plan_layer *layer, const camber_layer_paint *
     paint->trim_start = (float)whole->trim[0];
     paint->trim_end = (float)whole->trim[1];
     paint->ramp = layer->ramp;
+}
+
+/* The half width of a dot for a circle of a radius, px. As in MapLibre circles fade within their radius, by a smooth
+ * step over a pixel at least. A dot's edge is as sharp as pixels are: it has the area of what fades so, the integral of
+ * 2 pi x step(r - x). Wider fades are the blur's. */
+static double dot_radius(double radius, double blur) {
+    if (blur > 1.0)
+        return fmax(radius - 0.5, 0.0);
+    return radius >= 1.0 ? sqrt(radius * (radius - 1.0) + 0.3) : radius * radius * sqrt(0.5 - 0.2 * radius);
+}
+
+/* A circle's fill is a dot, and its stroke a ring around that. Where both are opaque and sharp, the stroke is a whole
+ * dot below the fill: along a ring what lies below would be seen through pixels that both cut. */
+static void put_circle(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio, bool of_stroke,
+                       camber_paint *paint) {
+    const camber_color color = of_stroke ? whole->stroke_color : whole->color;
+    const double size = whole->radius + whole->stroke_width, blur = whole->blur * size * ratio;
+    const double inner = dot_radius(whole->radius * ratio, blur), outer = dot_radius(size * ratio, blur);
+    const bool solid = whole->color.a >= 1.0f && whole->stroke_color.a >= 1.0f && !(blur > 1.0);
+    const bool is_ring = of_stroke && inner > 0.0 && !solid;
+    memset(paint, 0, sizeof *paint);
+    if (!((of_stroke ? whole->stroke_width : inner) > 0.0 && color.a > 0.0f))
+        return;
+    const double width = is_ring ? outer - inner : 2.0 * (of_stroke ? outer : inner);
+    paint->width_px = (float)fmin(width, is_ring ? WIDEST_PX / 3.0 : WIDEST_PX);
+    paint->gap_px = is_ring ? (float)fmin(2.0 * inner, WIDEST_PX / 3.0) : 0.0f;
+    paint->color = color;
+    paint->blur_px = (float)fmin(fmax(blur - 1.0, 0.0), WIDEST_PX);
+    paint->smooth_blur = paint->blur_px > 0.0f;
+    paint->translate_x_px = layer->translate_px[0];
+    paint->translate_y_px = layer->translate_px[1];
 }
 
 static size_t dash_slot(const camber_plan *plan, const camber_layer_dashes *dashes) {
@@ -502,6 +543,24 @@ static bool fill_areas(camber_plan *plan, const camber_plan_set *set, const camb
     return draws || table->failed;
 }
 
+/* Fills the tuple of a class of circles for one of their dots; false where no layer draws it. */
+static bool fill_circles(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
+                         const camber_feature_view *feature, row_table *table, double *key) {
+    size_t at = set->first_layer;
+    table->stroke = (camber_stroke){.cap = CAMBER_CAP_ROUND, .join = CAMBER_JOIN_ROUND, .miter_limit = 2.0f};
+    for (size_t i = 0; i < set->layer_count; i++, at = plan->layers[at].next) {
+        const camber_plan_layer *layer = plan->layers + at;
+        const camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
+        camber_paint *made = table->tuple + layer->slot;
+        put_circle(layer, &paint, view->ratio, table->of_stroke, made);
+        table->stroke.width_px = fmaxf(table->stroke.width_px, whole_width(made));
+        *key = paint.sort_key;
+        if (made->width_px > 0.0f)
+            plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
+    }
+    return table->stroke.width_px > 0.0f;
+}
+
 /* Points the paints of areas at their fills, which stay where they are from now on. */
 static void link_areas(camber_plan *plan) {
     const camber_plan_fill *areas = plan->patterns.areas;
@@ -513,6 +572,25 @@ static void link_areas(camber_plan *plan) {
     }
 }
 
+/* Finds the row of one of a class's dots in a set that draws the class. */
+static camber_status match_dot(const camber_view *view, camber_plan *plan, camber_plan_set *set,
+                               const camber_feature_view *feature, size_t at, class_rows *rows) {
+    row_table *table = &rows->table;
+    double *key = rows->by_class.keys + at;
+    if (!(camber_plan_is_area(plan, set)      ? fill_areas(plan, set, view, feature, table, key)
+          : camber_plan_is_circles(plan, set) ? fill_circles(plan, set, view, feature, table, key)
+                                              : fill_tuple(plan, set, view, feature, table, key)))
+        return CAMBER_OK;
+    if (table->failed)
+        return CAMBER_ERROR_MEMORY;
+    if (plan->row_count >= MOST_ROWS)
+        return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
+                           "style: more than %zu different widths and colours; let them depend on fewer properties",
+                           MOST_ROWS);
+    rows->by_class.rows[at] = intern_row(plan, set, table);
+    return rows->by_class.rows[at] == CAMBER_NO_ROW ? CAMBER_ERROR_MEMORY : CAMBER_OK;
+}
+
 /* Finds the rows of every class in one set. */
 static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
                                camber_plan_set *set, class_rows *rows) {
@@ -522,27 +600,23 @@ static camber_status match_set(const camber_features *features, const camber_vie
     set->first_paint = plan->paint_count;
     set->first_area = plan->patterns.area_count;
     memset(table->slots, 0, table->slot_count * sizeof *table->slots);
-    for (size_t c = 0; c < features->class_count; c++) {
-        const size_t at = (size_t)(set - plan->sets) * features->class_count + c;
-        rows->by_class.rows[at] = CAMBER_NO_ROW;
-        if (!draws_class(features, first, view, features->classes + c))
+    const size_t last = plan->dot_count - 1, first_dot = camber_plan_is_circles(plan, set) ? 0 : last;
+    camber_status status = CAMBER_OK;
+    for (size_t c = 0; c < features->class_count && status == CAMBER_OK; c++) {
+        const camber_feature_class *class = features->classes + c;
+        const size_t at = ((size_t)(set - plan->sets) * features->class_count + c) * plan->dot_count;
+        for (size_t dot = 0; dot <= last; dot++)
+            rows->by_class.rows[at + dot] = CAMBER_NO_ROW;
+        if (!draws_class(features, first, view, class))
             continue;
-        const camber_feature_view feature = camber_plan_view_of(features, features->classes + c);
-        double *key = rows->by_class.keys + at;
-        if (!(camber_plan_is_area(plan, set) ? fill_areas(plan, set, view, &feature, table, key)
-                                             : fill_tuple(plan, set, view, &feature, table, key)))
-            continue;
-        if (table->failed)
-            return CAMBER_ERROR_MEMORY;
-        if (plan->row_count >= MOST_ROWS)
-            return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
-                               "style: more than %zu different widths and colours; let them depend on fewer properties",
-                               MOST_ROWS);
-        rows->by_class.rows[at] = intern_row(plan, set, table);
-        if (rows->by_class.rows[at] == CAMBER_NO_ROW)
-            return CAMBER_ERROR_MEMORY;
+        const camber_feature_view feature = camber_plan_view_of(features, class);
+        plan->has_corners |= camber_plan_is_circles(plan, set) && class->geometry != CAMBER_GEOMETRY_POINT;
+        for (size_t dot = first_dot; dot <= last && status == CAMBER_OK; dot++) {
+            table->of_stroke = dot < last;
+            status = match_dot(view, plan, set, &feature, at + dot, rows);
+        }
     }
-    return CAMBER_OK;
+    return status;
 }
 
 /* ---- Entries: polylines by set, in input order, or in that of their features' keys where a set is sorted ---- */
@@ -587,27 +661,29 @@ static void end_set(camber_plan *plan, camber_plan_set *set) {
 
 /* Numbers the pairs of sets and classes, by set. */
 static camber_status number_pairs(const camber_features *features, camber_plan *plan, const plan_classes *by_class) {
-    const size_t class_count = features->class_count;
+    const size_t column_count = features->class_count * plan->dot_count; /* of classes and their dots */
     size_t total = 0;
-    for (size_t i = 0; i < plan->set_count * class_count; i++)
+    for (size_t i = 0; i < plan->set_count * column_count; i++)
         total += by_class->rows[i] != CAMBER_NO_ROW;
     if (total >= MOST_ROWS)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
                            "style: more than %zu combinations of layers and properties; let filters depend on fewer",
                            MOST_ROWS);
     if (!(plan->pair_rows = camber_alloc(plan->context, total, sizeof *plan->pair_rows)) ||
-        !(plan->pair_keys = camber_alloc(plan->context, total, sizeof *plan->pair_keys)))
+        !(plan->pair_keys = camber_alloc(plan->context, total, sizeof *plan->pair_keys)) ||
+        !(plan->pair_dots = camber_alloc(plan->context, total, sizeof *plan->pair_dots)))
         return CAMBER_ERROR_MEMORY;
     plan->key = camber_hash(CAMBER_HASH_START, &features->polyline_count, sizeof features->polyline_count);
     for (size_t s = 0; s < plan->set_count; s++) {
         plan->sets[s].first_pair = plan->pair_count;
-        for (size_t c = 0; c < class_count; c++) {
-            const size_t at = s * class_count + c;
+        for (size_t c = 0; c < column_count; c++) {
+            const size_t at = s * column_count + c;
             if (by_class->rows[at] == CAMBER_NO_ROW)
                 continue;
             const size_t pair[2] = {s, c};
             plan->key = camber_hash(plan->key, pair, sizeof pair);
             plan->pair_keys[plan->pair_count] = by_class->keys[at];
+            plan->pair_dots[plan->pair_count] = (uint8_t)(c % plan->dot_count);
             plan->pair_rows[plan->pair_count++] = by_class->rows[at];
         }
         end_set(plan, plan->sets + s);
@@ -616,7 +692,7 @@ static camber_status number_pairs(const camber_features *features, camber_plan *
 }
 
 static camber_status group_by_class(const camber_features *features, camber_plan *plan, const uint32_t *rows) {
-    const size_t class_count = features->class_count;
+    const size_t class_count = features->class_count, dots = plan->dot_count;
     camber_class_sets *by_class = &plan->by_class;
     by_class->first = camber_alloc(plan->context, class_count + 1, sizeof *by_class->first);
     if (!by_class->first)
@@ -625,7 +701,8 @@ static camber_status group_by_class(const camber_features *features, camber_plan
     for (size_t c = 0; c < class_count; c++) {
         by_class->first[c] = total;
         for (size_t s = 0; s < plan->set_count; s++)
-            total += rows[s * class_count + c] != CAMBER_NO_ROW;
+            for (size_t dot = 0; dot < dots; dot++)
+                total += rows[(s * class_count + c) * dots + dot] != CAMBER_NO_ROW;
     }
     by_class->first[class_count] = total;
     by_class->pairs = camber_alloc(plan->context, total, sizeof *by_class->pairs);
@@ -634,9 +711,9 @@ static camber_status group_by_class(const camber_features *features, camber_plan
     /* By set: each class takes its pairs in turn, as they are numbered. */
     uint32_t pair = 0;
     for (size_t s = 0; s < plan->set_count; s++)
-        for (size_t c = 0; c < class_count; c++)
-            if (rows[s * class_count + c] != CAMBER_NO_ROW)
-                by_class->pairs[by_class->first[c]++] = (camber_set_pair){(uint32_t)s, pair++};
+        for (size_t c = 0; c < class_count * dots; c++)
+            if (rows[s * class_count * dots + c] != CAMBER_NO_ROW)
+                by_class->pairs[by_class->first[c / dots]++] = (camber_set_pair){(uint32_t)s, pair++};
     for (size_t c = class_count; c > 0; c--)
         by_class->first[c] = by_class->first[c - 1];
     by_class->first[0] = 0;
@@ -745,23 +822,23 @@ static camber_status list_all(const camber_features *features, camber_plan *plan
 
 camber_status camber_plan_evaluate(const camber_features *features, const camber_view *view, camber_plan *plan) {
     camber_context *context = features->context;
-    *plan = (camber_plan){.context = context};
+    *plan = (camber_plan){.context = context, .dot_count = 1};
     plan->patterns = (camber_plan_patterns){.context = context, .sprites = features->sprites};
     camber_status status = group_layers(plan, features->style, view);
     if (status != CAMBER_OK)
         return status;
 
-    if (plan->set_count > MOST_MATCHES / (features->class_count + 1))
+    if (plan->set_count > MOST_MATCHES / plan->dot_count / (features->class_count + 1))
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "style: %zu layers that differ over %zu kinds of features; use fewer layers, or properties",
                            plan->set_count, features->class_count);
     class_rows rows = {.table = {.slot_count = 16}};
     row_table *table = &rows.table;
-    while (table->slot_count / 2 < features->class_count)
+    while (table->slot_count / 2 < features->class_count * plan->dot_count)
         table->slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
-    /* One row more than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
-    const size_t count = features->class_count + 1;
+    /* More rows than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
+    const size_t count = (features->class_count + 1) * plan->dot_count;
     if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
         !(table->areas = camber_alloc(context, plan->layer_count, sizeof *table->areas)) ||
         !(table->slots = camber_alloc(context, table->slot_count, sizeof *table->slots)) ||
@@ -803,6 +880,7 @@ void camber_plan_destroy(camber_plan *plan) {
     camber_plan_entries_free(&plan->all);
     camber_free(plan->context, plan->by_class.pairs);
     camber_free(plan->context, plan->by_class.first);
+    camber_free(plan->context, plan->pair_dots);
     camber_free(plan->context, plan->pair_keys);
     camber_free(plan->context, plan->pair_rows);
     camber_free(plan->context, plan->strokes);

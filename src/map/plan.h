@@ -28,6 +28,7 @@ typedef enum camber_plan_part {
     CAMBER_PLAN_BORDER,  /* of the line that comes next */
     CAMBER_PLAN_AREA,    /* what lies inside of rings */
     CAMBER_PLAN_OUTLINE, /* of the area before */
+    CAMBER_PLAN_CIRCLES, /* dots about points, and about the corners of lines and outlines */
 } camber_plan_part;
 
 typedef struct camber_plan_layer {
@@ -91,8 +92,13 @@ typedef struct camber_plan {
     camber_ramp *ramps; /* ramp_count: the style's */
     size_t ramp_count;
     bool has_arc_length; /* a paint has what lies along its lines */
+    /* The dots of a circle, each a pair of its class, one over the other: that of its fill is the last, and where the
+     * style has strokes, theirs is below it. Sets of anything else have the last alone. */
+    size_t dot_count;
+    bool has_corners;    /* circles are drawn about the corners of lines, of which all are needed */
     uint32_t *pair_rows; /* pair_count */
     double *pair_keys;   /* pair_count: their features' places in a sorted set */
+    uint8_t *pair_dots;  /* pair_count: which of its class's dots a pair is, below dot_count */
     size_t pair_count;
     uint64_t
         key; /* a hash of the pairs' sets and classes: two plans of the same features with one key have equal entries */
@@ -134,6 +140,11 @@ void camber_plan_destroy(camber_plan *plan);
 /* Whether the set's polylines are rings that are filled. */
 static inline bool camber_plan_is_area(const camber_plan *plan, const camber_plan_set *set) {
     return plan->layers[set->first_layer].part == CAMBER_PLAN_AREA;
+}
+
+/* Whether each point of the set's polylines is a dot. */
+static inline bool camber_plan_is_circles(const camber_plan *plan, const camber_plan_set *set) {
+    return plan->layers[set->first_layer].part == CAMBER_PLAN_CIRCLES;
 }
 
 /* The paint that a row of the set has in the set's layer number slot. */

@@ -118,6 +118,7 @@ typedef struct entry_list {
 static camber_status list_set(const camber_zoom_plan *zoom, const camber_plan_entries *listed, size_t set,
                               const copies *worlds, entry_list *list) {
     const bool is_area = camber_plan_is_area(&zoom->plan, zoom->plan.sets + set);
+    const bool is_dots = camber_plan_is_circles(&zoom->plan, zoom->plan.sets + set);
     for (size_t i = listed->first_entries[set]; i < listed->first_entries[set + 1]; i++) {
         const camber_plan_entry entry = listed->entries[i];
         double first, last;
@@ -127,7 +128,7 @@ static camber_status list_set(const camber_zoom_plan *zoom, const camber_plan_en
             if (!camber_grow(zoom->context, &list->entries, &list->capacity, list->count + 1, sizeof *list->entries) ||
                 !list->entries)
                 return CAMBER_ERROR_MEMORY;
-            list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area};
+            list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift, is_area, is_dots};
         }
     }
     return CAMBER_OK;

@@ -21,7 +21,8 @@ static double bound(const camber_style_layer *layer, camber_property_id property
 }
 
 /* How far from its polyline a layer reaches at most, px. A line: half of its width, gap and both rails, at the tips of
- * its joins, and its offset, which joins lengthen too. Of a fill these are the defaults, enough for its outline. */
+ * its joins, and its offset, which joins lengthen too. Of a fill these are the defaults, enough for its outline. A
+ * circle: its radius with the stroke. */
 static double reach_of(const camber_style_layer *layer, const camber_view *view) {
     const double zoom = camber_view_style_zoom(view), ratio = view->ratio;
     const double width = fmin(bound(layer, CAMBER_LINE_WIDTH, zoom) * ratio, WIDEST_PX);
@@ -31,19 +32,23 @@ static double reach_of(const camber_style_layer *layer, const camber_view *view)
     const double limit =
         fmax(fmax(bound(layer, CAMBER_LINE_MITER_LIMIT, zoom), bound(layer, CAMBER_LINE_ROUND_LIMIT, zoom)), 2.0);
     const camber_layer_look look = camber_style_layer_look(layer, zoom);
-    const double half = 0.5 * gap + width + blur;
+    const double circle = fmin(
+        (bound(layer, CAMBER_CIRCLE_RADIUS, zoom) + bound(layer, CAMBER_CIRCLE_STROKE_WIDTH, zoom)) * ratio, WIDEST_PX);
+    const double half = layer->kind == CAMBER_LAYER_CIRCLE ? circle : 0.5 * gap + width + blur;
     const double moved = hypot(look.paint.translate[0], look.paint.translate[1]) * ratio;
     return fmin(half * limit, fmax(half, LARGEST_REACH_PX)) + fmin(offset * limit, fmax(offset, LARGEST_REACH_PX)) +
            fmin(moved, WIDEST_PX);
 }
 
-static double reach_of_style(const camber_style *style, const camber_view *view) {
+/* The farthest of all layers, or of those of circles only. */
+static double reach_of_style(const camber_style *style, const camber_view *view, bool circles_only) {
     const double zoom = camber_view_style_zoom(view);
     double reach = 0.0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
-        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->visible && !out)
+        const bool counts = layer->kind == CAMBER_LAYER_CIRCLE || !circles_only;
+        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->visible && !out && counts)
             reach = fmax(reach, reach_of(layer, view));
     }
     return reach;
@@ -59,7 +64,11 @@ static double far_pixel(const camber_view *view) {
 
 double camber_view_margin(const camber_style *style, const camber_view *view, double simplify_px) {
     const double simplified = simplify_px >= 0.0 ? 2.0 * simplify_px : INFINITY;
-    return (1.25 * reach_of_style(style, view) + simplified + far_pixel(view) + SLACK_PX) / view->scale_px;
+    return (1.25 * reach_of_style(style, view, false) + simplified + far_pixel(view) + SLACK_PX) / view->scale_px;
+}
+
+double camber_view_circle_reach(const camber_style *style, const camber_view *view) {
+    return reach_of_style(style, view, true);
 }
 
 camber_status camber_features_read_for(camber_features *features, const camber_scene_desc *scene) {

@@ -3,8 +3,12 @@
 #include "map/sources.h"
 #include "map/view.h"
 
+#include <math.h>
+
 /* The same as in fit.c. */
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
+/* No more tiles are read for larger circles, and for those whose size only features tell; CSS px. */
+static const double MOST_CIRCLE_PX = 256.0;
 
 /* Moves the view, where no camera is given, over all that the sources say they have. */
 static void fit_bounds(const camber_sources *sources, camber_view *view) {
@@ -19,9 +23,18 @@ static void fit_bounds(const camber_sources *sources, camber_view *view) {
     camber_view_frame(view, bounds, FILL, LARGEST_FIT_ZOOM);
 }
 
-static camber_tile_cover cover_of(const camber_view *view) {
+/* The tiles that the view sees, and those from which circles reach into it: a point of a tile beside the view is in no
+ * other one, while lines come with their tile's buffer. */
+static camber_tile_cover cover_of(const camber_style *style, const camber_view *view) {
     camber_tile_cover cover = {.zoom = view->zoom};
+    double centre[2] = {0.0, 0.0};
     camber_view_corners(view, cover.corners);
+    const double reach_px = fmin(camber_view_circle_reach(style, view), MOST_CIRCLE_PX * view->ratio);
+    const double grown = 2.0 * reach_px / fmin((double)view->width, (double)view->height);
+    for (int i = 0; i < 8; i++)
+        centre[i & 1] += 0.25 * cover.corners[i];
+    for (int i = 0; i < 8; i++)
+        cover.corners[i] += (cover.corners[i] - centre[i & 1]) * grown;
     return cover;
 }
 
@@ -38,7 +51,7 @@ camber_status camber_features_read_sources(camber_features *features, const camb
     if (status == CAMBER_OK) {
         if (view->kind == CAMBER_VIEW_FIT)
             fit_bounds(sources, &seen);
-        const camber_tile_cover cover = cover_of(&seen);
+        const camber_tile_cover cover = cover_of(features->style, &seen);
         status = camber_sources_read(sources, &cover);
     }
     camber_sources_close(sources);

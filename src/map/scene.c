@@ -135,7 +135,7 @@ static camber_status make_geometry(camber_scene *scene, camber_features *spent) 
     camber_zoom_plan *zoom = scene->zoom;
     const bool stays = scene->use == CAMBER_SCENE_ONE_VIEW;
     camber_status status = CAMBER_OK;
-    if (spent && !zoom->plan.has_arc_length)
+    if (spent && !zoom->plan.has_arc_length && !zoom->plan.has_corners)
         status = camber_features_thin(spent, zoom->least_importance);
     if (status == CAMBER_OK)
         status = camber_plan_network_create(zoom, &scene->view, stays ? CAMBER_NETWORK_VIEW : CAMBER_NETWORK_VIEWS,
@@ -198,6 +198,22 @@ static camber_status tell_undrawn(const camber_scene *scene) {
     return status;
 }
 
+/* Says that circles lie on the map, unless their layers ask for that. */
+static void tell_pitch(const camber_scene *scene) {
+    const camber_plan *plan = &scene->zoom->plan;
+    for (size_t i = 0; i < plan->layer_count && scene->view.pitch_deg > 0.0; i++) {
+        const camber_layer_paint *paint = &plan->layers[i].look.paint;
+        if (plan->layers[i].part != CAMBER_PLAN_CIRCLES ||
+            (paint->pitch_alignment == CAMBER_TRANSLATE_MAP && paint->pitch_scale == CAMBER_TRANSLATE_MAP))
+            continue;
+        camber_log(scene->context, CAMBER_LOG_WARNING,
+                   "style: with a pitch circles lie flat on the map, as circle-pitch-alignment and circle-pitch-scale "
+                   "\"map\" have it; give these to layer \"%.64s\" if that is meant",
+                   plan->layers[i].look.layer->id);
+        return;
+    }
+}
+
 static camber_status create(const camber_features *features, const camber_scene_desc *desc, camber_features *spent,
                             camber_scene **scene) {
     camber_context *context = features->context;
@@ -217,6 +233,7 @@ static camber_status create(const camber_features *features, const camber_scene_
         camber_scene_destroy(made);
         return status;
     }
+    tell_pitch(made);
     if (made->zoom->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
                    "style: its patterns are left out, for its sprites are not read; read them with the features");

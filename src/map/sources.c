@@ -44,6 +44,10 @@ static unsigned kinds_of(const camber_style_layer *layer) {
     case CAMBER_LAYER_LINE:
         return (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
                (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
+    case CAMBER_LAYER_CIRCLE:
+        return (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_POINT : 0u) |
+               (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
+               (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
     case CAMBER_LAYER_FILL: break;
     }
     return CAMBER_KIND_AREA | (layer->properties[CAMBER_FILL_OUTLINE_COLOR] ? CAMBER_KIND_POLYGON : 0u);
@@ -119,7 +123,8 @@ static void warn_of_losses(const camber_sources *sources, const char *what, size
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
     if (skipped)
-        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is not a line of %zu features", what, skipped);
+        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", what,
+                   camber_features_left_out(camber_schema_kinds(sources->features->schema, false)), skipped);
 }
 
 static camber_status fail_damaged(const camber_sources *sources, const char *what, const char *damage) {

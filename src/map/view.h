@@ -37,6 +37,8 @@ void camber_view_corners(const camber_view *view, double corners[8]);
 /* How far from what is seen a line may lie that reaches it, in world coordinates, whatever features say (read_for.c).
  */
 double camber_view_margin(const camber_style *style, const camber_view *view, double simplify_px);
+/* How far from its point a circle of the style reaches at most, px (read_for.c). 0: the style draws none here. */
+double camber_view_circle_reach(const camber_style *style, const camber_view *view);
 
 /* The zoom to evaluate styles at: 0 to 24, the range of theirs. */
 double camber_view_style_zoom(const camber_view *view);

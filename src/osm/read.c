@@ -5,7 +5,8 @@
  * ways first, which lie at its end, then the places of those nodes that ways name. So a node takes eight bytes and a
  * bit, whatever else the file has. Where areas are wanted, the relations that name ways are read before them. A file in
  * which a kind of entities comes before another one that it should follow is read anew: each pass looks for its kind in
- * the whole of it, which takes time and no memory. A third pass packs the ways with these places, and frees the nodes;
+ * the whole of it, which takes time and no memory. Where points are wanted, nodes are read once more, for those with
+ * tags: these are GDAL's layer "points". A third pass packs the ways with these places, and frees the nodes;
  * a fourth makes world coordinates. Each pass has several threads. Where areas are wanted, the sea is made of the
  * coast's ways as well (coast.h). */
 #include "osm/osm.h"
@@ -24,7 +25,7 @@
 
 static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* of the progress */
 /* OGR's names of the layers. */
-static const char LAYER[] = "lines", RELATION_LAYER[] = "multipolygons";
+static const char LAYER[] = "lines", RELATION_LAYER[] = "multipolygons", POINT_LAYER[] = "points";
 
 typedef struct reader {
     camber_context *context;
@@ -250,6 +251,36 @@ static camber_status add_run(void *user, size_t part, void *slot) {
     return status;
 }
 
+/* ---- Nodes become points ---- */
+
+/* Makes points of the nodes with tags. They come before the lines and have a layer of their own, as GDAL has it. */
+static camber_status make_points(reader *self) {
+    camber_osm_ways *ways = &self->ways;
+    camber_world_lines world = {.context = self->context};
+    camber_status status = CAMBER_OK;
+    uint32_t index = 0;
+    if (ways->point_count)
+        status = camber_features_find_layer(self->features, POINT_LAYER, &self->layer);
+    if (status == CAMBER_OK && !camber_world_lines_reserve(&world, 1))
+        status = CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < ways->point_count && status == CAMBER_OK; i++) {
+        const camber_osm_point *point = &ways->points[i];
+        camber_world_lines_begin(&world);
+        camber_world_lines_add_degrees(&world, point->longitude, point->latitude);
+        camber_world_lines_end(&world);
+        size_t line = 0;
+        status = find_class(self, point->set, CAMBER_GEOMETRY_POINT, &index);
+        if (status == CAMBER_OK)
+            status = add_lines(self, index, &world, &line, 1);
+    }
+    self->clamped += world.clamped_points;
+    camber_world_lines_free(&world);
+    camber_free(self->context, ways->points);
+    ways->points = NULL;
+    ways->point_count = ways->point_capacity = 0;
+    return status;
+}
+
 /* ---- Relations become areas ---- */
 
 /* Boundaries of all levels name a way some ten times. A file of a megabyte could make relations of 10^10 places. */
@@ -397,6 +428,8 @@ static camber_status make_lines(reader *self) {
     const camber_osm_pack_desc pack = {self->desc->path, self->threads, drops_areas, NODES_SHARE, PACKED_SHARE};
     camber_status status = camber_osm_pack(ways, &pack, &self->skipped);
     if (status == CAMBER_OK)
+        status = make_points(self);
+    if (status == CAMBER_OK)
         status = camber_features_find_layer(features, LAYER, &self->layer);
     size_t points = features->point_count;
     for (size_t i = 0; i < ways->run_count; i++)
@@ -449,6 +482,10 @@ static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_or
     }
     if (status == CAMBER_OK && !*declined)
         status = camber_osm_nodes_read(&self->ways.nodes, &nodes, declined);
+    camber_osm_ways_desc points = {
+        .file = file, .end_blob = nodes.blob_count, .threads = self->threads, .from = NODES_SHARE, .to = NODES_SHARE};
+    if (self->features->schema->wants_points && !self->desc->layer && status == CAMBER_OK && !*declined)
+        status = camber_osm_points_read(&self->ways, &points, declined);
     self->nodes = self->ways.nodes.node_count;
     self->missing = self->nodes - self->ways.nodes.found_count;
     return status;
@@ -551,9 +588,8 @@ static void add_stats(const reader *self) {
     features->stats.clamped_points += self->clamped;
     features->stats.antimeridian_splits += self->splits;
     if (self->skipped)
-        camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: left out what is not a line (points, areas, empty geometry) of %zu features", self->desc->path,
-                   self->skipped);
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
+                   camber_features_left_out(camber_schema_kinds(features->schema, false)), self->skipped);
     if (self->missing)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: ways name %zu nodes that are not in it", self->desc->path,
                    self->missing);

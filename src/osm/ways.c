@@ -1,18 +1,20 @@
-/* Reads the ways of a file, and before them the relations that are areas.
+/* Reads the ways of a file, before them the relations that are areas, and the nodes with tags.
  *
  * Input: blobs, and the keys that a style names. Output: for each way with a tag and at least two nodes its set of tags
- * and the ids of its nodes, and the set of all ids. Ways that relations name are read without tags, too. Threads decode
- * blocks: tags become indices of strings, and ways that agree in them share a set. The caller's thread then gives a
- * block's sets to those of the file. */
+ * and the ids of its nodes, and the set of all ids. Ways that relations name are read without tags, too. For each node
+ * with a tag it is the set of tags and where the node lies. Threads decode blocks: tags become indices of strings, and
+ * entities that agree in them share a set. The caller's thread then gives a block's sets to those of the file. */
 #include "osm/ways.h"
 
 #include "features/osm_keys.h"
 
+#include <math.h>
 #include <strings.h>
 
 /* A run is what one thread makes lines of at a time. */
 enum { RUN_NODES = 16384, FIRST_SLOTS = 1024, FIRST_LEAF_SLOTS = 16384 };
 enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, WAY_LATITUDES = 9, STRING = 1 };
+enum { NODE_LATITUDE = 8, NODE_LONGITUDE = 9, DENSE_LATITUDES = 8, DENSE_LONGITUDES = 9, DENSE_TAGS = 10 };
 enum { RELATION_ROLES = 8, RELATION_MEMBERS = 9, RELATION_TYPES = 10, MEMBER_WAY = 1 };
 static const uint32_t NO_STRING = UINT32_MAX, NO_PROPERTY = UINT32_MAX;
 
@@ -91,6 +93,7 @@ void camber_osm_ways_free(camber_osm_ways *ways) {
     camber_free(context, ways->text);
     camber_free(context, ways->slots);
     camber_free(context, ways->values);
+    camber_free(context, ways->points);
     camber_free(context, ways->runs);
     camber_free(context, ways->packed);
     camber_free(context, ways->leaves);
@@ -113,9 +116,10 @@ typedef struct block {
     camber_osm_block leaf_slots; /* uint32_t: a hash table of leaves; index + 1 */
     camber_osm_block members;    /* of relations: camber_osm_member; of ways: their indices among the relations' ways */
     camber_osm_block relations;  /* camber_osm_relation, with sets and members of the block */
+    camber_osm_block points;     /* camber_osm_point, with sets of the block */
     camber_wire table;
     size_t string_count, set_count, slot_count, way_count, id_count, leaf_count, leaf_slot_count;
-    size_t member_count, relation_count;
+    size_t member_count, relation_count, point_count;
     bool has_ways, has_places;
 } block;
 
@@ -139,6 +143,7 @@ typedef struct decoder {
 static void free_block(camber_context *context, void *slot) {
     block *one = slot;
     camber_osm_unpacked_free(context, &one->unpacked);
+    camber_free(context, one->points.bytes);
     camber_free(context, one->relations.bytes);
     camber_free(context, one->members.bytes);
     camber_free(context, one->leaf_slots.bytes);
@@ -257,9 +262,9 @@ typedef struct tag_facts {
     uint32_t type; /* a string; NO_STRING: it has none */
 } tag_facts;
 
-/* Reads the tags of a way or a relation: the strings of properties go behind the last set. A key that comes twice has
- * its last value. */
-static bool read_tags(decoder *self, camber_wire keys, camber_wire values, tag_facts *facts) {
+/* Reads the tags of an entity: the strings of properties go behind the last set. A key that comes twice has its last
+ * value. values may be keys itself, where each key is followed by its value. */
+static bool read_tags(decoder *self, camber_wire *keys, camber_wire *values, tag_facts *facts) {
     block *to = self->to;
     const size_t start = to->set_count * self->property_count;
     if (!camber_osm_reserve(self->pass, &to->sets, (start + self->property_count + 1) * sizeof(uint32_t),
@@ -270,9 +275,9 @@ static bool read_tags(decoder *self, camber_wire keys, camber_wire values, tag_f
     camber_osm_text compared[CAMBER_OSM_WHERE_KEYS] = {{0}};
     memset(set, 0xff, self->property_count * sizeof *set);
     *facts = (tag_facts){.type = NO_STRING};
-    for (; keys.at < keys.end; facts->count++) {
-        const uint64_t key = camber_wire_varint(&keys), value = camber_wire_varint(&values);
-        if (keys.bad || values.bad || key >= to->string_count || value >= to->string_count)
+    for (; keys->at < keys->end; facts->count++) {
+        const uint64_t key = camber_wire_varint(keys), value = camber_wire_varint(values);
+        if (keys->bad || values->bad || key >= to->string_count || value >= to->string_count)
             return camber_osm_fail(self->failure, "a tag that does not parse");
         const camber_osm_key *known = key_of(self, (uint32_t)key);
         if (!known)
@@ -403,9 +408,10 @@ static bool read_way(decoder *self, camber_wire wire) {
         return true;
     uint32_t set = 0;
     tag_facts facts;
-    if (!read_tags(self, keys, values, &facts))
+    const bool tagged = keys.at < keys.end;
+    if (!read_tags(self, &keys, &values, &facts))
         return false;
-    const bool bare = keys.at == keys.end || !facts.passes;
+    const bool bare = !tagged || !facts.passes;
     if (bare && !bits)
         return true;
     if (!bare && !find_set(self, &set))
@@ -450,6 +456,7 @@ static void begin_block(const reading *all, camber_osm_pass *pass, decoder *self
     self->finger = (camber_osm_finger){.leaf_id = UINT64_MAX, .id = -2};
     self->last_leaf_id = UINT64_MAX;
     to->set_count = to->slot_count = to->way_count = to->id_count = to->member_count = to->relation_count = 0;
+    to->point_count = 0;
     to->leaf_count = to->leaf_slot_count = 0;
     to->has_ways = to->has_places = false;
 }
@@ -554,7 +561,7 @@ static bool read_relation(decoder *self, camber_wire wire) {
     block *to = self->to;
     camber_osm_relation relation = {.first_member = to->member_count};
     tag_facts facts;
-    if (!read_tags(self, keys, values, &facts))
+    if (!read_tags(self, &keys, &values, &facts))
         return false;
     relation.is_tagged = facts.count > 1;
     const bool area = is_string(to, facts.type, "multipolygon") || is_string(to, facts.type, "boundary");
@@ -590,6 +597,125 @@ static bool read_relations(void *user, camber_osm_pass *pass, size_t part, void 
         }
         if (group.bad)
             return camber_osm_fail(failure, "a group that does not parse");
+    }
+    return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
+}
+
+/* ---- Nodes with tags, on any thread ---- */
+
+/* A coordinate of the block in degrees, as GDAL computes it. */
+static double to_degrees(int64_t coordinate, int64_t offset, int32_t granularity) {
+    return .000000001 * ((double)offset + (double)granularity * (double)coordinate);
+}
+
+/* Adds a node if it has a tag and passes the filter. */
+static bool add_point(decoder *self, const camber_osm_entities *from, camber_wire *keys, camber_wire *values,
+                      const int64_t place[2]) {
+    block *to = self->to;
+    tag_facts facts;
+    camber_osm_point point = {.longitude = to_degrees(place[0], from->longitude_offset, from->granularity),
+                              .latitude = to_degrees(place[1], from->latitude_offset, from->granularity)};
+    if (keys->at == keys->end)
+        return true;
+    if (!(fabs(point.longitude) <= 180.0 && fabs(point.latitude) <= 90.0))
+        return camber_osm_fail(self->failure, "a node that is nowhere on Earth");
+    if (!read_tags(self, keys, values, &facts))
+        return false;
+    if (!facts.passes)
+        return true;
+    if (!find_set(self, &point.set) ||
+        !camber_osm_reserve(self->pass, &to->points, (to->point_count + 1) * sizeof point, self->failure))
+        return false;
+    ((camber_osm_point *)(void *)to->points.bytes)[to->point_count++] = point;
+    return true;
+}
+
+static bool read_node(decoder *self, const camber_osm_entities *from, camber_wire wire) {
+    camber_wire keys = {0}, values = {0};
+    uint64_t key;
+    int64_t place[2] = {0, 0};
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(KEYS, CAMBER_WIRE_BYTES))
+            keys = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(VALUES, CAMBER_WIRE_BYTES))
+            values = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(NODE_LATITUDE, CAMBER_WIRE_VARINT))
+            place[1] = camber_wire_signed(&wire);
+        else if (key == CAMBER_WIRE_KEY(NODE_LONGITUDE, CAMBER_WIRE_VARINT))
+            place[0] = camber_wire_signed(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    if (wire.bad)
+        return camber_osm_fail(self->failure, "a node that does not parse");
+    return add_point(self, from, &keys, &values, place);
+}
+
+/* The tags of the next of the dense nodes: keys and values in turn, up to a 0. */
+static camber_wire next_tags(camber_wire *all) {
+    camber_wire tags = *all;
+    while (all->at < all->end) {
+        tags.end = all->at;
+        if (camber_wire_varint(all) == 0)
+            return tags;
+        camber_wire_varint(all);
+    }
+    tags.end = all->at;
+    return tags;
+}
+
+/* Differences are added as unsigned numbers, which may go round. */
+static bool read_dense(decoder *self, const camber_osm_entities *from, camber_wire wire) {
+    camber_wire longitudes = {0}, latitudes = {0}, all = {0};
+    uint64_t key, longitude = 0, latitude = 0;
+    while (camber_wire_next(&wire, &key)) {
+        if (key == CAMBER_WIRE_KEY(DENSE_LATITUDES, CAMBER_WIRE_BYTES))
+            latitudes = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(DENSE_LONGITUDES, CAMBER_WIRE_BYTES))
+            longitudes = camber_wire_bytes(&wire);
+        else if (key == CAMBER_WIRE_KEY(DENSE_TAGS, CAMBER_WIRE_BYTES))
+            all = camber_wire_bytes(&wire);
+        else
+            camber_wire_skip(&wire, key);
+    }
+    /* The last ones may have no tags. */
+    while (all.at < all.end && latitudes.at < latitudes.end) {
+        latitude += (uint64_t)camber_wire_signed(&latitudes);
+        longitude += (uint64_t)camber_wire_signed(&longitudes);
+        camber_wire tags = next_tags(&all);
+        if (all.bad || longitudes.bad || latitudes.bad)
+            break;
+        if (!add_point(self, from, &tags, &tags, (const int64_t[2]){(int64_t)longitude, (int64_t)latitude}))
+            return false;
+    }
+    return !(wire.bad || all.bad || longitudes.bad || latitudes.bad) ||
+           camber_osm_fail(self->failure, "nodes that do not parse");
+}
+
+static bool read_points(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
+    const reading *all = user;
+    decoder self = {.to = slot, .failure = failure};
+    camber_osm_entities entities;
+    camber_wire group;
+    uint64_t key;
+    const unsigned kinds = all->desc->file->blobs[part].kinds;
+    bool read = true;
+    begin_block(all, pass, &self);
+    if (kinds && !(kinds & CAMBER_OSM_HAS_NODES))
+        return true;
+    if (!unpack_block(&self, all, part, &entities))
+        return false;
+    while (camber_osm_entities_next(&entities, &group)) {
+        while (read && camber_wire_next(&group, &key)) {
+            if (key == CAMBER_WIRE_KEY(CAMBER_OSM_DENSE, CAMBER_WIRE_BYTES))
+                read = read_dense(&self, &entities, camber_wire_bytes(&group));
+            else if (key == CAMBER_WIRE_KEY(CAMBER_OSM_NODE, CAMBER_WIRE_BYTES))
+                read = read_node(&self, &entities, camber_wire_bytes(&group));
+            else
+                camber_wire_skip(&group, key);
+        }
+        if (!read || group.bad)
+            return !read ? false : camber_osm_fail(failure, "a group that does not parse");
     }
     return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
@@ -782,7 +908,26 @@ static camber_status add_relations(void *user, size_t part, void *slot) {
     return status;
 }
 
-/* ---- Both passes ---- */
+static camber_status add_points(void *user, size_t part, void *slot) {
+    camber_osm_ways *ways = ((const reading *)user)->ways;
+    const block *from = slot;
+    const camber_osm_point *added = (const camber_osm_point *)(const void *)from->points.bytes;
+    (void)part;
+    if (from->point_count == 0)
+        return CAMBER_OK;
+    if (!camber_grow(ways->context, &ways->points, &ways->point_capacity, ways->point_count + from->point_count,
+                     sizeof *ways->points))
+        return CAMBER_ERROR_MEMORY;
+    const camber_status status = add_sets(ways, from);
+    for (size_t i = 0; i < from->point_count && status == CAMBER_OK; i++) {
+        camber_osm_point point = added[i];
+        point.set = ways->local[point.set];
+        ways->points[ways->point_count++] = point;
+    }
+    return status;
+}
+
+/* ---- All passes ---- */
 
 static camber_osm_pass_desc pass_over(reading *all) {
     return (camber_osm_pass_desc){.context = all->ways->context,
@@ -813,4 +958,13 @@ camber_status camber_osm_ways_read(camber_osm_ways *ways, const camber_osm_ways_
     const camber_status status = camber_osm_pass_run(&pass, declined);
     camber_osm_relations_settle(&ways->relations);
     return status == CAMBER_OK && !*declined ? camber_osm_node_set_complete(&ways->nodes) : status;
+}
+
+camber_status camber_osm_points_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined) {
+    reading all = {ways, desc};
+    camber_osm_pass_desc pass = pass_over(&all);
+    pass.part_count = desc->end_blob;
+    pass.work = read_points;
+    pass.commit = add_points;
+    return camber_osm_pass_run(&pass, declined);
 }

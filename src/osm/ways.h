@@ -1,4 +1,5 @@
-/* The ways of a file, and its relations: what the style reads of their tags, and the ids of their nodes or ways. */
+/* The ways of a file, its relations and its nodes with tags: what the style reads of their tags, and the ids of their
+ * nodes or ways. */
 #ifndef CAMBER_OSM_WAYS_H
 #define CAMBER_OSM_WAYS_H
 
@@ -31,6 +32,12 @@ typedef struct camber_osm_way {
     uint32_t node_count;
 } camber_osm_way;
 
+/* A node with tags. */
+typedef struct camber_osm_point {
+    double longitude, latitude; /* degrees */
+    uint32_t set;               /* of tags */
+} camber_osm_point;
+
 /* Ways in a row, of one block, and where the ids of their nodes begin and the block's leaves; later, where their places
  * begin (packed.h). */
 typedef struct camber_osm_run {
@@ -59,6 +66,9 @@ typedef struct camber_osm_ways {
     uint32_t *packed; /* places, once they are known (packed.h), beginning anew with each run */
     size_t packed_count, packed_capacity;
 
+    camber_osm_point *points; /* none unless the style wants points */
+    size_t point_count, point_capacity;
+
     /* Sets of tags that differ in what the style reads. */
     camber_value *values; /* set_count * schema->property_count */
     size_t set_count, value_capacity;
@@ -79,7 +89,7 @@ void camber_osm_ways_free(camber_osm_ways *ways);
 typedef struct camber_osm_ways_desc {
     const camber_osm_file *file;
     size_t first_blob; /* the first that may have a way, or a relation */
-    size_t end_blob;   /* of ways: where relations begin, if the file is in order */
+    size_t end_blob;   /* of ways: where relations begin, if the file is in order; of nodes: where they end */
     bool any_order;    /* nodes and relations may come wherever they do */
     unsigned threads;
     double from, to; /* of the progress */
@@ -90,5 +100,7 @@ camber_status camber_osm_relations_read(camber_osm_ways *ways, const camber_osm_
 /* Reads the ways of a file. *declined: nodes come behind ways, ids are beyond the bounds, or relations that matter come
  * before ways. */
 camber_status camber_osm_ways_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
+/* Reads the nodes with tags among the first blobs, up to desc->end_blob. */
+camber_status camber_osm_points_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
 
 #endif

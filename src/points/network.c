@@ -75,7 +75,7 @@ static size_t add_polyline(const camber_network_desc *desc, camber_network_entry
             stored += 2;
             continue;
         }
-        const bool stays = matters(desc, i);
+        const bool stays = entry.is_dots || matters(desc, i);
         stored += stays;
         if (!stays && !desc->has_arc_length && i > begin && i + 1 < end && is_place(desc, entry, i - 1) &&
             is_place(desc, entry, i + 1))
@@ -245,23 +245,25 @@ static bool is_valid_ring(camber_network *n, const camber_network_desc *desc, ca
     return invalid == 0;
 }
 
-/* Stores an entry's points, a stretch between each two invalid points. */
+/* Stores an entry's points, a stretch between each two invalid points, or one for each dot. */
 static camber_status store_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
                                  capacities *room) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     n->stats.empty_polylines += begin == end;
     if (entry.is_area && !is_valid_ring(n, desc, entry))
         return CAMBER_OK;
+    const bool may_close = !desc->keep_open && !entry.is_dots;
     size_t first = begin;
     for (size_t i = begin; i <= end; i++) {
-        if (i < end && is_valid(desc->points[2 * i] + entry.shift_x, desc->points[2 * i + 1]))
+        const bool valid = i < end && is_place(desc, entry, i);
+        if (valid && !(entry.is_dots && i > first))
             continue;
         if (!grow_stretches(n, n->stretch_count + 2, room))
             return CAMBER_ERROR_MEMORY;
         if (i > first)
-            store_stretch(n, desc, entry, first, i, !desc->keep_open && first == begin && i == end);
-        n->stats.invalid_points += i < end;
-        first = i + 1;
+            store_stretch(n, desc, entry, first, i, may_close && first == begin && i == end);
+        n->stats.invalid_points += i < end && !valid;
+        first = valid ? i : i + 1;
     }
     return CAMBER_OK;
 }

@@ -88,7 +88,7 @@ double camber_style_layer_bound(const camber_style_layer *layer, camber_property
     const camber_property_row *row = camber_property_rows + property;
     double value;
     memcpy(&value, (const char *)&look.paint + row->offset, sizeof value);
-    if (!(look.by_feature >> property & 1))
+    if (!camber_property_set_has(&look.by_feature, property))
         return fabs(value);
     /* Where an expression fails the default stands, which the look has. */
     return fmax(fabs(value), bound_of(layer->properties[property]->document, 0));

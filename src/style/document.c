@@ -382,12 +382,17 @@ uint32_t camber_style_get_effects(const camber_style *style, double zoom) {
     static const struct {
         camber_property_id property;
         camber_style_effect effect;
-    } named[] = {
-        {CAMBER_LINE_GAP_WIDTH, CAMBER_STYLE_EFFECT_GAP},         {CAMBER_LINE_BLUR, CAMBER_STYLE_EFFECT_BLUR},
-        {CAMBER_LINE_DASHARRAY, CAMBER_STYLE_EFFECT_DASH},        {CAMBER_LINE_TRIM_OFFSET, CAMBER_STYLE_EFFECT_TRIM},
-        {CAMBER_LINE_GRADIENT, CAMBER_STYLE_EFFECT_GRADIENT},     {CAMBER_LINE_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
-        {CAMBER_BACKGROUND_PATTERN, CAMBER_STYLE_EFFECT_PATTERN}, {CAMBER_FILL_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
-        {CAMBER_LINE_BORDER_WIDTH, CAMBER_STYLE_EFFECT_BORDER}};
+    } named[] = {{CAMBER_LINE_GAP_WIDTH, CAMBER_STYLE_EFFECT_GAP},
+                 {CAMBER_LINE_BLUR, CAMBER_STYLE_EFFECT_BLUR},
+                 {CAMBER_LINE_DASHARRAY, CAMBER_STYLE_EFFECT_DASH},
+                 {CAMBER_LINE_TRIM_OFFSET, CAMBER_STYLE_EFFECT_TRIM},
+                 {CAMBER_LINE_GRADIENT, CAMBER_STYLE_EFFECT_GRADIENT},
+                 {CAMBER_LINE_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_BACKGROUND_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_FILL_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_LINE_BORDER_WIDTH, CAMBER_STYLE_EFFECT_BORDER},
+                 {CAMBER_CIRCLE_STROKE_WIDTH, CAMBER_STYLE_EFFECT_GAP},
+                 {CAMBER_CIRCLE_BLUR, CAMBER_STYLE_EFFECT_BLUR}};
     uint32_t effects = 0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;

@@ -137,11 +137,13 @@ static bool read_plain(camber_document *d, const json_t *json, camber_style_laye
            fail_metadata(d, "camber:plain", "expected true or false; write one of them");
 }
 
-static void warn_fill(camber_document *d, const char *key) {
+static void warn_overlap(camber_document *d, const char *key, camber_layer_kind kind) {
     const size_t depth = d->compiler.path_length;
     camber_compiler_enter_key(&d->compiler, "metadata");
     camber_compiler_enter_key(&d->compiler, key);
-    camber_compiler_warn(&d->compiler, "is of line layers; areas of one colour are filled together: leave it out");
+    camber_compiler_warn(&d->compiler, "is of line layers; %s: leave it out",
+                         kind == CAMBER_LAYER_FILL ? "areas of one colour are filled together"
+                                                   : "circles are drawn one over another");
     d->compiler.path_length = depth;
 }
 
@@ -156,9 +158,11 @@ static bool read_overlap(camber_document *d, const json_t *json, camber_style_la
         return true;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (json_is_string(overlap) && strcmp(json_string_value(overlap), names[i]) == 0) {
+            if (layer->kind == CAMBER_LAYER_CIRCLE || (layer->kind == CAMBER_LAYER_FILL && i != CAMBER_OVERLAP_FLATTEN))
+                warn_overlap(d, key, layer->kind);
+            if (layer->kind == CAMBER_LAYER_CIRCLE)
+                return true;
             layer->overlap = (camber_overlap)i;
-            if (layer->kind == CAMBER_LAYER_FILL && i != CAMBER_OVERLAP_FLATTEN)
-                warn_fill(d, key);
             d->compiler.style->accumulates |= layer->overlap == CAMBER_OVERLAP_ACCUMULATE;
             return true;
         }
@@ -279,8 +283,10 @@ void camber_style_layer_free(camber_context *context, camber_style_layer *layer)
 }
 
 bool camber_layer_kind_find(const char *type, camber_layer_kind *kind) {
-    static const char *const types[] = {
-        [CAMBER_LAYER_BACKGROUND] = "background", [CAMBER_LAYER_LINE] = "line", [CAMBER_LAYER_FILL] = "fill"};
+    static const char *const types[] = {[CAMBER_LAYER_BACKGROUND] = "background",
+                                        [CAMBER_LAYER_LINE] = "line",
+                                        [CAMBER_LAYER_FILL] = "fill",
+                                        [CAMBER_LAYER_CIRCLE] = "circle"};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i], type) == 0) {
             *kind = (camber_layer_kind)i;
@@ -291,8 +297,8 @@ bool camber_layer_kind_find(const char *type, camber_layer_kind *kind) {
 
 /* Whether the specification has this type of layer, which is not drawn; others are misspelled. */
 static bool is_known_type(const char *type) {
-    static const char *const types[] = {"symbol", "circle",    "heatmap",      "fill-extrusion",
-                                        "raster", "hillshade", "color-relief", "sky"};
+    static const char *const types[] = {"symbol",       "heatmap", "fill-extrusion", "raster", "hillshade",
+                                        "color-relief", "sky"};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i], type) == 0)
             return true;
@@ -342,6 +348,7 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     }
     camber_style_layer *layer = &style->layers[style->layer_count++];
     layer->kind = kind;
+    layer->overlap = kind == CAMBER_LAYER_CIRCLE ? CAMBER_OVERLAP_ACCUMULATE : CAMBER_OVERLAP_FLATTEN;
     const unsigned kinds = camber_style_layer_kinds(kind);
     c->readers = json_object_get(json, "source-layer") ? (camber_property_readers){.named_kinds = kinds}
                                                        : (camber_property_readers){.kinds = kinds};

@@ -130,8 +130,9 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
         const camber_expression *expression = layer->properties[i];
         if (!expression || camber_property_rows[i].offset == CAMBER_NO_OFFSET)
             continue;
+        look.reads_feature |= expression->reads_feature;
         if (expression->reads_feature)
-            look.by_feature |= UINT64_C(1) << i;
+            camber_property_set_add(&look.by_feature, (camber_property_id)i);
         else
             store_property(layer, i, &evaluation, &look.paint);
     }
@@ -151,11 +152,11 @@ camber_color camber_border_color(camber_color color) {
 
 camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const camber_feature_view *feature) {
     camber_layer_paint paint = look->paint;
-    if (look->by_feature) {
+    if (look->reads_feature) {
         camber_evaluation evaluation;
         camber_evaluation_begin(&evaluation, look->zoom, feature);
-        for (unsigned i = 0; look->by_feature >> i; i++)
-            if (look->by_feature >> i & 1)
+        for (unsigned i = 0; i < CAMBER_PROPERTIES; i++)
+            if (camber_property_set_has(&look->by_feature, (camber_property_id)i))
                 store_property(look->layer, i, &evaluation, &paint);
         camber_evaluation_end(&evaluation);
     }
@@ -165,6 +166,7 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
     }
     paint.border_color.a *= (float)paint.opacity;
     paint.color.a *= (float)paint.opacity;
+    paint.stroke_color.a *= (float)paint.stroke_opacity;
     return paint;
 }
 
@@ -176,10 +178,12 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
 
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image) {
-    static const camber_property_id patterns[] = {[CAMBER_LAYER_BACKGROUND] = CAMBER_BACKGROUND_PATTERN,
-                                                  [CAMBER_LAYER_LINE] = CAMBER_LINE_PATTERN,
-                                                  [CAMBER_LAYER_FILL] = CAMBER_FILL_PATTERN};
-    const camber_expression *pattern = layer->properties[patterns[layer->kind]];
+    static const camber_property_id patterns[CAMBER_LAYER_CIRCLE] = {[CAMBER_LAYER_BACKGROUND] =
+                                                                         CAMBER_BACKGROUND_PATTERN,
+                                                                     [CAMBER_LAYER_LINE] = CAMBER_LINE_PATTERN,
+                                                                     [CAMBER_LAYER_FILL] = CAMBER_FILL_PATTERN};
+    const camber_expression *pattern =
+        layer->kind < CAMBER_LAYER_CIRCLE ? layer->properties[patterns[layer->kind]] : NULL;
     camber_evaluation evaluation;
     camber_value value;
     *image = 0;
@@ -209,15 +213,15 @@ static bool join_ignores(const camber_layer_paint *p, const camber_layer_paint *
 }
 
 bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b) {
-    const uint64_t geometry = (UINT64_C(1) << CAMBER_LAYER_GEOMETRY) - 1;
-    if ((a->by_feature & geometry) != (b->by_feature & geometry))
-        return false;
-    for (unsigned i = 0; i < CAMBER_LAYER_GEOMETRY; i++)
-        if (a->by_feature >> i & 1 && !json_equal(a->layer->properties[i]->document, b->layer->properties[i]->document))
+    for (unsigned i = 0; i < CAMBER_LAYER_GEOMETRY; i++) {
+        const bool driven = camber_property_set_has(&a->by_feature, (camber_property_id)i);
+        if (driven != camber_property_set_has(&b->by_feature, (camber_property_id)i) ||
+            (driven && !json_equal(a->layer->properties[i]->document, b->layer->properties[i]->document)))
             return false;
+    }
     /* Properties that features change have no value yet in either. */
     const camber_layer_paint *p = &a->paint, *q = &b->paint;
-    const bool driven = a->by_feature >> CAMBER_LINE_JOIN & 1;
+    const bool driven = camber_property_set_has(&a->by_feature, CAMBER_LINE_JOIN);
     const bool limits = p->round_limit == q->round_limit && p->miter_limit == q->miter_limit;
     return p->cap == q->cap && p->join == q->join && (limits || (!driven && join_ignores(p, q))) &&
            p->offset == q->offset && p->sort_key == q->sort_key;

@@ -10,7 +10,8 @@
 unsigned camber_style_layer_kinds(camber_layer_kind kind) {
     switch (kind) {
     case CAMBER_LAYER_BACKGROUND: break;
-    case CAMBER_LAYER_LINE: return CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | CAMBER_KIND_POINT;
+    case CAMBER_LAYER_LINE:
+    case CAMBER_LAYER_CIRCLE: return CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | CAMBER_KIND_POINT;
     case CAMBER_LAYER_FILL: return CAMBER_KIND_POLYGON | CAMBER_KIND_AREA | CAMBER_KIND_POINT;
     }
     return 0;
@@ -18,21 +19,23 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind) {
 
 /* Finds what else than lines is drawn of the features. */
 static void find_wants(const camber_style *style, camber_schema *schema) {
-    schema->wants_polygons = schema->wants_areas = false;
+    schema->wants_polygons = schema->wants_areas = schema->wants_points = false;
     schema->wants_plain = schema->wants_plain_areas = schema->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool polygons = layer->kind != CAMBER_LAYER_BACKGROUND && camber_style_layer_may_take(layer, "Polygon");
-        const bool fills = polygons && layer->kind == CAMBER_LAYER_FILL;
+        const bool fills = polygons && layer->kind == CAMBER_LAYER_FILL, circles = layer->kind == CAMBER_LAYER_CIRCLE;
         const bool outlines = polygons && (!fills || layer->properties[CAMBER_FILL_OUTLINE_COLOR]);
         if (!layer->plain) {
             schema->wants_areas |= fills;
             schema->wants_polygons |= outlines;
+            schema->wants_points |= circles && camber_style_layer_may_take(layer, "Point");
             continue;
         }
         schema->wants_plain |= layer->visible;
         schema->wants_plain_areas |= polygons;
-        schema->wants_plain_points |= layer->kind == CAMBER_LAYER_LINE && camber_style_layer_may_take(layer, "Point");
+        schema->wants_plain_points |=
+            (circles || layer->kind == CAMBER_LAYER_LINE) && camber_style_layer_may_take(layer, "Point");
     }
 }
 
@@ -47,12 +50,13 @@ static void list_source_layers(const camber_style *style, camber_schema *schema)
     }
 }
 
-/* Whether a layer that is not plain draws the feature. Dots are drawn by layers that are plain only. */
+/* Whether a layer that is not plain draws the feature. Lines draw points only in layers that are plain. */
 static bool takes(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature) {
-    for (size_t i = 0; i < style->layer_count && kind != CAMBER_GEOMETRY_POINT; i++) {
+    for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        const bool fits = camber_style_layer_kinds(layer->kind) >> kind & 1;
+        const bool fits = kind == CAMBER_GEOMETRY_POINT ? layer->kind == CAMBER_LAYER_CIRCLE
+                                                        : camber_style_layer_kinds(layer->kind) >> kind & 1;
         if (fits && !layer->plain && (!layer->source_layer || strcmp(layer->source_layer, source_layer) == 0) &&
             camber_style_layer_takes(layer, feature))
             return true;

@@ -20,7 +20,10 @@ typedef enum camber_layer_kind {
     CAMBER_LAYER_BACKGROUND,
     CAMBER_LAYER_LINE,
     CAMBER_LAYER_FILL,
+    CAMBER_LAYER_CIRCLE,
 } camber_layer_kind;
+
+enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_CIRCLE + 1 };
 
 /* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
 typedef enum camber_property_id {
@@ -30,6 +33,7 @@ typedef enum camber_property_id {
     CAMBER_LINE_OFFSET,
     CAMBER_LINE_SORT_KEY,
     CAMBER_FILL_SORT_KEY,
+    CAMBER_CIRCLE_SORT_KEY,
     CAMBER_LAYER_GEOMETRY, /* layers that differ in those before share no polylines */
     CAMBER_LINE_WIDTH = CAMBER_LAYER_GEOMETRY,
     CAMBER_LINE_ROUND_LIMIT,
@@ -57,8 +61,32 @@ typedef enum camber_property_id {
     CAMBER_FILL_PATTERN,
     CAMBER_FILL_TRANSLATE,
     CAMBER_FILL_TRANSLATE_ANCHOR,
+    CAMBER_CIRCLE_RADIUS,
+    CAMBER_CIRCLE_COLOR,
+    CAMBER_CIRCLE_BLUR,
+    CAMBER_CIRCLE_OPACITY,
+    CAMBER_CIRCLE_TRANSLATE,
+    CAMBER_CIRCLE_TRANSLATE_ANCHOR,
+    CAMBER_CIRCLE_PITCH_SCALE,
+    CAMBER_CIRCLE_PITCH_ALIGNMENT,
+    CAMBER_CIRCLE_STROKE_WIDTH,
+    CAMBER_CIRCLE_STROKE_COLOR,
+    CAMBER_CIRCLE_STROKE_OPACITY,
     CAMBER_PROPERTIES
 } camber_property_id;
+
+/* A set of properties. */
+typedef struct camber_property_set {
+    uint64_t words[(CAMBER_PROPERTIES + 63) / 64];
+} camber_property_set;
+
+static inline void camber_property_set_add(camber_property_set *set, camber_property_id id) {
+    set->words[id / 64] |= UINT64_C(1) << id % 64;
+}
+
+static inline bool camber_property_set_has(const camber_property_set *set, camber_property_id id) {
+    return set->words[id / 64] >> id % 64 & 1;
+}
 
 /* The colours of a line-gradient. */
 typedef struct camber_layer_ramp {
@@ -148,7 +176,8 @@ typedef struct camber_layer_dashes {
     float lengths[CAMBER_DASH_LENGTHS_MAX];
 } camber_layer_dashes;
 
-/* How a layer draws a feature at a zoom, in CSS px. Numbers are finite and within the specification's ranges. */
+/* How a layer draws a feature at a zoom, in CSS px; the blur of circles is a share of the radius with the stroke.
+ * Numbers are finite and within the specification's ranges. */
 typedef struct camber_layer_paint {
     camber_cap cap;
     camber_join join;
@@ -159,6 +188,9 @@ typedef struct camber_layer_paint {
     double opacity;
     double border_width;       /* of the line's own width, on each side */
     camber_color border_color; /* the alpha includes the opacity; of a fill, its outline's colour */
+    double radius;             /* of a circle, without its stroke, which lies around it */
+    double stroke_width, stroke_opacity;
+    camber_color stroke_color; /* the alpha includes the opacity */
     camber_layer_dashes dashes;
     /* These are the same for all features. */
     bool antialias; /* of a fill: it may have an outline */
@@ -166,6 +198,7 @@ typedef struct camber_layer_paint {
     double translate[2];
     double trim[2]; /* the line is not drawn from one to the other: shares of its length */
     camber_translate_anchor translate_anchor;
+    camber_translate_anchor pitch_scale, pitch_alignment; /* of circles */
 } camber_layer_paint;
 
 /* A layer at a zoom, with all properties evaluated that do not depend on features. */
@@ -173,7 +206,8 @@ typedef struct camber_layer_look {
     const camber_style_layer *layer;
     double zoom;
     camber_layer_paint paint;
-    uint64_t by_feature; /* bits of camber_property_id */
+    bool reads_feature; /* there is a property that depends on features: */
+    camber_property_set by_feature;
 } camber_layer_look;
 
 camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom);

@@ -341,7 +341,7 @@ static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
         append(e, lists[WIDTH], number(is_drawn ? (double)p->width_px : 0.0));
         append(e, lists[OPACITY], number(p->fill && !is_drawn ? 0.0 : (double)color_of(p).a));
         append(e, lists[GAP], number((double)p->gap_px));
-        append(e, lists[BLUR], number((double)p->blur_px));
+        append(e, lists[BLUR], number(p->smooth_blur ? -(double)p->blur_px : (double)p->blur_px));
         append(e, lists[OFFSET], number((double)camber_mesh_plan_offset(e->plan, layer, row, s)));
         append(e, lists[UNIT], number(p->dash ? p->dash_unit_px > 0.0f ? (double)p->dash_unit_px : 1.0 : 0.0));
         append(e, lists[COLOR], color_text(color_of(p)));

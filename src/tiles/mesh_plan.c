@@ -13,11 +13,16 @@ static const camber_plan *plan_at(const camber_mesh_plan *plan, size_t sample) {
     return sample + 1 < CAMBER_MESH_SAMPLES ? plan->samples + sample : &plan->zoom->plan;
 }
 
-/* The row of a class in a set of a plan; CAMBER_NO_ROW: the set does not draw it. */
-static uint32_t row_of(const camber_plan *plan, size_t set, uint32_t class) {
-    for (size_t k = plan->by_class.first[class]; k < plan->by_class.first[class + 1]; k++)
-        if (plan->by_class.pairs[k].set == set)
-            return plan->pair_rows[plan->by_class.pairs[k].pair];
+/* The row that the class and dot of a pair of the zoom's plan have in a set of another; CAMBER_NO_ROW: the set does not
+ * draw them. A style has as many dots at all zooms, but for a layer that comes in between: the last is the fill's. */
+static uint32_t row_of(const camber_mesh_plan *mesh, const camber_plan *plan, size_t set, uint32_t pair) {
+    const uint32_t class = mesh->pair_classes[pair];
+    const size_t above = mesh->zoom->plan.dot_count - mesh->zoom->plan.pair_dots[pair];
+    for (size_t k = plan->by_class.first[class]; k < plan->by_class.first[class + 1]; k++) {
+        const camber_set_pair *own = plan->by_class.pairs + k;
+        if (own->set == set && plan->dot_count - plan->pair_dots[own->pair] == above)
+            return plan->pair_rows[own->pair];
+    }
     return CAMBER_NO_ROW;
 }
 
@@ -30,7 +35,7 @@ static camber_paint pair_paint(const camber_mesh_plan *plan, size_t layer, uint3
     if (at == SIZE_MAX)
         return paint;
     const camber_plan_layer *found = own->layers + at;
-    const uint32_t row = row_of(own, found->set, plan->pair_classes[pair]);
+    const uint32_t row = row_of(plan, own, found->set, pair);
     return row == CAMBER_NO_ROW ? paint : camber_plan_paint(own, own->sets + found->set, row, found->slot);
 }
 
@@ -77,7 +82,7 @@ static float whole_width(const camber_paint *paint) {
 static float offset_of(const camber_mesh_plan *plan, size_t layer, uint32_t pair, size_t sample) {
     const camber_plan *own = plan_at(plan, sample);
     const size_t at = plan->sample_layers[sample * plan->zoom->plan.layer_count + layer];
-    const uint32_t row = at == SIZE_MAX ? CAMBER_NO_ROW : row_of(own, own->layers[at].set, plan->pair_classes[pair]);
+    const uint32_t row = at == SIZE_MAX ? CAMBER_NO_ROW : row_of(plan, own, own->layers[at].set, pair);
     return row == CAMBER_NO_ROW ? 0.0f : own->strokes[row].offset_px;
 }
 
@@ -126,9 +131,8 @@ static size_t list_rows(const camber_mesh_plan *plan, const camber_plan_set *set
     for (size_t n = 0, layer = set->first_layer; n < set->layer_count; n++, layer = plan->zoom->plan.layers[layer].next)
         for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
             const size_t at = plan->sample_layers[s * layers + layer];
-            rows[count++] = at == SIZE_MAX
-                                ? CAMBER_NO_ROW
-                                : row_of(plan_at(plan, s), plan_at(plan, s)->layers[at].set, plan->pair_classes[pair]);
+            rows[count++] =
+                at == SIZE_MAX ? CAMBER_NO_ROW : row_of(plan, plan_at(plan, s), plan_at(plan, s)->layers[at].set, pair);
         }
     return count * sizeof *rows;
 }

@@ -81,7 +81,8 @@ static double share_at(const camber_along_desc *d, foot p, double progress) {
     }
     if (blur > 0) {
         const double rim = outer - p.distance, inner = gap > 0 ? p.distance - 0.5 * gap + blur : rim;
-        return fmin(fmax((fmin(rim, inner) + 0.5) / (blur + 1), 0), 1);
+        const double fade = fmin(fmax((fmin(rim, inner) + 0.5) / (blur + 1), 0), 1);
+        return paint->smooth_blur ? fade * fade * (3 - 2 * fade) : fade;
     }
     return p.distance <= outer && (gap <= 0 || p.distance >= 0.5 * gap) ? 1 : 0;
 }

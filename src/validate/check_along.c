@@ -54,6 +54,10 @@ static const struct {
 } rows[] = {
     {"a gap", CAMBER_CAP_BUTT, {.width_px = 3, .gap_px = 4, WHITE}, {0.6, 0.002, 0.0005}},
     {"a blur", CAMBER_CAP_BUTT, {.width_px = 10, .blur_px = 3, WHITE}, {1.2, 0.001, 0.0005}},
+    {"a smooth blur",
+     CAMBER_CAP_ROUND,
+     {.width_px = 10, .blur_px = 4, .smooth_blur = true, WHITE},
+     {1.2, 0.001, 0.0005}},
     {"dashes", CAMBER_CAP_BUTT, {.width_px = 5, .dash = dashes, WHITE}, {0.7, 0.004, 0.0005}},
     {"round dashes", CAMBER_CAP_ROUND, {.width_px = 5, .dash = dashes + 1, WHITE}, {2.4, 0.004, 0.0005}},
     {"a trim", CAMBER_CAP_ROUND, {.width_px = 7, .trim_start = 0.31f, .trim_end = 0.62f, WHITE}, {0.7, 0.004, 0.0005}},

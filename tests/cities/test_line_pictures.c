@@ -1,7 +1,7 @@
-/* Another engine's pictures of layers: of lines (CAMBER_DATA/line-tests), and of fills and backgrounds (fill-tests,
- * where the argument names that). camber draws each style, and all but the exceptions below come as close as the style
- * asks, by pixelmatch's measure, in GL and in OpenCL. What does not stays in the suite's folder of the build tree, or
- * in cl/ of that. */
+/* Another engine's pictures of layers: of lines (CAMBER_DATA/line-tests), of fills and backgrounds, and of circles
+ * (fill-tests and circle-tests, where the argument names that). camber draws each style, and all but the exceptions
+ * below come as close as the style asks, by pixelmatch's measure, in GL and in OpenCL. What does not stays in the
+ * suite's folder of the build tree, or in cl/ of that. */
 #include "core.h"
 #include "pixelmatch.h"
 #include "png_file.h"
@@ -44,6 +44,8 @@ static const struct {
 } exceptions[] = {
     {"background-pattern/pitch", FLAW, 0.1, RIMS},
     {"background-pattern/zoomed", FLAW, 0.115, RIMS},
+    {"circle-pitch-scale/map", NOT_YET, 0.044, "circles lie flat on the map with a pitch, and do not face the viewer"},
+    {"circle-stroke-width/default", FLAW, 0.0035, TWICE},
     {"fill-color/opacity", FLAW, 0.2, TWICE},
     {"fill-opacity/overlapping", FLAW, 0.04,
      "areas of one opacity darken where they overlap there; camber's layer covers a pixel once"},

@@ -252,6 +252,41 @@ static void test_draws_a_dot(void **state) {
     }
 }
 
+/* Each valid point of an entry of dots is a dot, whatever it matters, and none closes a ring. */
+static void test_dots(void **state) {
+    network_devices *b = *state;
+    static const double points[] = {0, 0, 1, 0, 1, 0, NAN, 0, 2, 1, 3, 1, 0, 0};
+    static const size_t offsets[] = {0, 7};
+    static const float importance[7] = {0};
+    const camber_stroke strokes[] = {{.width_px = 8, .cap = CAMBER_CAP_ROUND}};
+    const camber_tessellation_desc desc = {strokes, 1, CAMBER_METHOD_STRIP, 0, false};
+    const camber_camera camera = {.x = 1.5, .y = 0.5, .scale_px = 10, .width = 64, .height = 32, .simplify_px = 1000};
+    for (int dots = 0; dots < 2; dots++) {
+        const camber_network_entry entry = {.is_dots = dots};
+        const camber_network_desc from = {.points = points,
+                                          .offsets = offsets,
+                                          .polyline_count = 1,
+                                          .importance = importance,
+                                          .entries = &entry,
+                                          .entry_count = 1,
+                                          .least_importance = 5};
+        camber_network *network = network_make(b, &from);
+        const camber_polylines_stats stats = camber_network_get_stats(network);
+        assert_int_equal(stats.dots, dots ? 6 : 0);
+        assert_int_equal(stats.kept_points, dots ? 6 : 4);
+        assert_int_equal(stats.kept_segments, dots ? 0 : 2);
+        assert_int_equal(stats.invalid_points, 1);
+        assert_int_equal(stats.rings, 0);
+        camber_lines lines;
+        assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
+        assert_int_equal(lines.polyline_count, dots ? 6 : 2);
+        assert_int_equal(lines.point_count, dots ? 6 : 4);
+        camber_lines_destroy(&lines);
+        assert_true(compare(b, 0, network, &camera, &desc) > 0);
+        camber_network_destroy(network);
+    }
+}
+
 /* Sections, parts cut in two for their slots and parts split for their output. */
 static void test_parts_equal_twin(void **state) {
     network_devices *b = *state;
@@ -552,10 +587,15 @@ int main(void) {
         return 77;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_device_equals_twin), cmocka_unit_test(test_draws_a_dot),
-        cmocka_unit_test(test_parts_equal_twin),   cmocka_unit_test(test_sees_all_in_the_picture),
-        cmocka_unit_test(test_keeps_everything),   cmocka_unit_test(test_drops_by_importance),
-        cmocka_unit_test(test_allocations_fail),   cmocka_unit_test(test_wrong_input),
+        cmocka_unit_test(test_device_equals_twin),
+        cmocka_unit_test(test_draws_a_dot),
+        cmocka_unit_test(test_dots),
+        cmocka_unit_test(test_parts_equal_twin),
+        cmocka_unit_test(test_sees_all_in_the_picture),
+        cmocka_unit_test(test_keeps_everything),
+        cmocka_unit_test(test_drops_by_importance),
+        cmocka_unit_test(test_allocations_fail),
+        cmocka_unit_test(test_wrong_input),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     return failed;

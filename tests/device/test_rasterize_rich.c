@@ -34,6 +34,7 @@ static camber_paint paint_of(size_t way, float width_px) {
     camber_paint p = {.width_px = gap ? 0.3f * width_px : 0.9f * width_px, .color = {hue[0], hue[1], hue[2], 1}};
     p.gap_px = gap ? 0.4f * width_px : 0;
     p.blur_px = way == 2 ? 0.2f * width_px : way == 3 ? 1.5f : way == 10 ? 6 : 0;
+    p.smooth_blur = way == 3;
     p.dash = way >= 4 && way < 10 ? dashes + way % DASHES : way == 14 ? dashes : NULL;
     p.dash_unit_px = way == 5 ? 2.5f : 0;
     p.trim_start = way == 6 || way == 11 ? 0.35f : 0;
@@ -95,7 +96,7 @@ static picture draw_with(const fixture *e, camber_renderer *renderer, drawing *d
 enum { TAIL_MAX = 32768 };
 static camber_brush_ext more_of(size_t way, float width_px, float tail[4 * TAIL_MAX], size_t *tail_count) {
     const camber_paint p = paint_of(way, width_px);
-    camber_brush_ext m = {.half_gap = 0.5f * p.gap_px, .blur = p.blur_px};
+    camber_brush_ext m = {.half_gap = 0.5f * p.gap_px, .blur = p.smooth_blur ? -p.blur_px : p.blur_px};
     m.features = (p.gap_px > 0 ? CAMBER_FEATURE_GAP : 0) | (p.blur_px > 0 ? CAMBER_FEATURE_BLUR : 0) |
                  (p.dash ? CAMBER_FEATURE_DASH : 0) | (p.trim_end > 0 ? CAMBER_FEATURE_TRIM : 0) |
                  (p.ramp ? CAMBER_FEATURE_RAMP : 0);

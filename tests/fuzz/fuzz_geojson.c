@@ -67,6 +67,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     if (fuzz_done(run, camber_style_parse(run->context, style_text, strlen(style_text), "fuzz", &style)) &&
         fuzz_done(run, camber_features_create(run->context, style, &features))) {
         style->schema.wants_areas = run->hash >> 5 & 1;
+        style->schema.wants_points = run->hash >> 6 & 1;
         const camber_source_desc desc = {.path = path, .where = run->hash % 16 == 1 ? "level > 1" : NULL};
         const bool read = fuzz_done(run, camber_features_read(features, &desc));
         REQUIRE(read || features->point_count == 0);

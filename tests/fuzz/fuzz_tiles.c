@@ -37,6 +37,7 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
                             .layer_count = 3,
                             .wants_polygons = run->hash >> 16 & 1,
                             .wants_areas = run->hash >> 18 & 1,
+                            .wants_points = run->hash >> 19 & 1,
                             .unsorted = run->hash >> 17 & 1};
     camber_mvt *mvt = NULL;
     bool done = fuzz_done(run, camber_tile_stitcher_create(run->context, place.zoom, &desc.stitcher)) &&

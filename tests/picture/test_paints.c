@@ -124,7 +124,9 @@ static void test_blur(void **state) {
     fixture *s = *state;
     static const struct {
         float width, gap, blur;
-    } sizes[] = {{9, 0, 1}, {9, 0, 4}, {6, 0, 11}, {4, 9, 2}, {3, 6, 7.5f}};
+        bool smooth;
+    } sizes[] = {{9, 0, 1, false},    {9, 0, 4, false}, {6, 0, 11, false}, {4, 9, 2, false},
+                 {3, 6, 7.5f, false}, {12, 0, 5, true}, {4, 9, 2, true}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         for (int method = 0; method < 3; method++) {
             const float gap = sizes[i].gap, width = sizes[i].width, blur = sizes[i].blur;
@@ -133,7 +135,11 @@ static void test_blur(void **state) {
                                .count = BENT,
                                .stroke = {whole, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0},
                                .method = (camber_method)method,
-                               .paint = {.width_px = width, .gap_px = gap, .blur_px = blur, .color = {1, 1, 1, 1}}};
+                               .paint = {.width_px = width,
+                                         .gap_px = gap,
+                                         .blur_px = blur,
+                                         .smooth_blur = sizes[i].smooth,
+                                         .color = {1, 1, 1, 1}}};
             picture p = draw(s, &d);
             double sum = 0;
             for (size_t k = 0; k < SIDE * SIDE; k++) {
@@ -142,6 +148,7 @@ static void test_blur(void **state) {
                 if (gap > 0)
                     truth = fmin(truth, r - ((double)gap / 2 + 0.5 - ((double)blur + 1)));
                 truth = fmin(fmax(truth / ((double)blur + 1), 0), 1);
+                truth = sizes[i].smooth ? truth * truth * (3 - 2 * truth) : truth;
                 const double error = fabs(alpha_at(&p, k) - truth);
                 sum += error;
                 /* Where segments meet one is drawn over the other, and their gaps bend. */

@@ -26,7 +26,8 @@ static void map_open(made_map *it, const fixture *s, const char *layers) {
 
 static void map_add(made_map *it, const double *points, size_t count) {
     uint32_t class;
-    assert_int_equal(camber_features_find_class(it->features, 0, CAMBER_GEOMETRY_LINE, NULL, &class), CAMBER_OK);
+    const camber_geometry_kind kind = count == 1 ? CAMBER_GEOMETRY_POINT : CAMBER_GEOMETRY_LINE;
+    assert_int_equal(camber_features_find_class(it->features, 0, kind, NULL, &class), CAMBER_OK);
     assert_int_equal(camber_features_add_feature(it->features, class), CAMBER_OK);
     assert_int_equal(camber_features_add_polyline(it->features, points, count), CAMBER_OK);
 }
@@ -49,6 +50,12 @@ static const char WIDE[] =
     "{\"id\": \"l\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-join\": \"miter\", \"line-cap\": "
     "\"square\"}, \"paint\": {\"line-width\": 22, \"line-offset\": 15, \"line-translate\": [9, -7]}}";
 
+static const char CIRCLES[] =
+    "{\"id\": \"b\", \"type\": \"background\", \"paint\": {\"background-color\": \"#eee\"}},"
+    "{\"id\": \"c\", \"type\": \"circle\", \"source\": \"s\", \"paint\": {\"circle-radius\": 33, \"circle-opacity\": "
+    "0.6, "
+    "\"circle-stroke-width\": 5, \"circle-stroke-color\": \"#f00\", \"circle-translate\": [9, -7]}}";
+
 static uint32_t random_below(uint32_t *state, uint32_t end) {
     *state = *state * 1664525u + 1013904223u;
     return (uint32_t)((uint64_t)(*state >> 8) * end >> 24);
@@ -62,6 +69,7 @@ static void add_random(made_map *it) {
         for (int k = 0; k < 8; k++)
             points[k] = (k % 2 ? 24.0 : 32.0) / 64.0 + ((double)random_below(&state, 2000) - 1000.0) / 64.0 / 250.0;
         map_add(it, points, 4);
+        map_add(it, points + 2, 1); /* a point, which lines do not draw */
     }
 }
 
@@ -76,10 +84,9 @@ static void expect_background(const camber_tiles_picture *block, uint32_t x, uin
 }
 
 /* Tiles that no line is said to touch show the background alone; most others show more. */
-static void test_empty(void **state) {
-    const fixture *s = *state;
+static void check_empty(const fixture *s, const char *layers) {
     made_map map;
-    map_open(&map, s, WIDE);
+    map_open(&map, s, layers);
     add_random(&map);
     map_start(&map, s, 0);
     uint8_t *rgba = malloc(camber_tiles_engine_get_picture_bytes(map.engine));
@@ -111,11 +118,15 @@ static void test_empty(void **state) {
     map_close(&map);
 }
 
+static void test_empty(void **state) {
+    check_empty(*state, WIDE);
+    check_empty(*state, CIRCLES);
+}
+
 /* Tiles are cuts of the picture of a scene of one view, to the byte in a metatile. */
-static void test_cuts(void **state) {
-    const fixture *s = *state;
+static void check_cuts(const fixture *s, const char *layers) {
     made_map map;
-    map_open(&map, s, WIDE);
+    map_open(&map, s, layers);
     add_random(&map);
     map_start(&map, s, 2);
     uint8_t *rgba = malloc(camber_tiles_engine_get_picture_bytes(map.engine));
@@ -144,6 +155,11 @@ static void test_cuts(void **state) {
     camber_scene_destroy(scene);
     free(rgba);
     map_close(&map);
+}
+
+static void test_cuts(void **state) {
+    check_cuts(*state, WIDE);
+    check_cuts(*state, CIRCLES);
 }
 
 /* Lines that bend gently about the middle of tile 6/36/28. */

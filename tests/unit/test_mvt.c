@@ -26,8 +26,12 @@ static void begin(fixture *it) {
     static const char *const layers[] = {"road"};
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
     assert_int_equal(camber_tile_stitcher_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
-    const camber_mvt_desc desc = {
-        .features = it->features, .stitcher = it->tiles, .layers = layers, .layer_count = 1, .wants_polygons = true};
+    const camber_mvt_desc desc = {.features = it->features,
+                                  .stitcher = it->tiles,
+                                  .layers = layers,
+                                  .layer_count = 1,
+                                  .wants_polygons = true,
+                                  .wants_points = it->style.schema.wants_points};
     assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
 }
 
@@ -106,6 +110,40 @@ static void test_lines(void **state) {
         assert_int_equal(it->features->classes[it->features->feature_class[1]].geometry, CAMBER_GEOMETRY_POLYGON);
         assert_string_equal(it->features->layer_names[0], "road");
         start_again(it);
+    }
+}
+
+/* Points are read where they are wanted: those of the tile, and of its buffer where the next tile is not read. */
+static void test_points(void **state) {
+    static const int units[] = {10, 20, -1, 20, 4095, 4095, 4096, 7, 10, -5, 10, 4100, -3, -3, 0, 0};
+    static const struct {
+        unsigned open_sides;
+        size_t count;
+        double points[16];
+    } cases[] = {{0, 3, {10, 20, 4095, 4095, 0, 0}},
+                 {CAMBER_SIDE_WEST, 4, {10, 20, -1, 20, 4095, 4095, 0, 0}},
+                 {CAMBER_SIDE_EAST | CAMBER_SIDE_SOUTH, 5, {10, 20, 4095, 4095, 4096, 7, 10, 4100, 0, 0}},
+                 {CAMBER_SIDE_NORTH | CAMBER_SIDE_WEST, 6, {10, 20, -1, 20, 4095, 4095, 10, -5, -3, -3, 0, 0}}};
+    fixture *it = *state;
+    for (size_t i = 0; i < 2 * sizeof cases / sizeof *cases; i++) {
+        const size_t count = i % 2 ? cases[i / 2].count : 0;
+        it->style.schema.wants_points = i % 2;
+        start_again(it);
+        blob tile = {0}, layer = begin_layer("road", 4096);
+        put_points(&layer, units, 8);
+        put_feature(&layer, 7, -1, 0, false, (int[]){10, 20, 30, 5}, 2);
+        put_layer(&tile, &layer);
+        const camber_tile_address place = {.zoom = ZOOM, .column = 2, .row = 1, .open_sides = cases[i / 2].open_sides};
+        assert_int_equal(camber_mvt_read(it->mvt, &place, tile.bytes, tile.size), CAMBER_OK);
+        assert_int_equal(camber_tile_stitcher_finish(it->tiles, it->features), CAMBER_OK);
+        blob_free(&tile);
+        assert_int_equal(camber_mvt_get_stats(it->mvt)->skipped_features, i % 2 == 0);
+        assert_int_equal(it->features->polyline_count, count + 1);
+        assert_int_equal(it->features->feature_count, count ? 2 : 1);
+        for (size_t p = 0; p < count; p++) {
+            expect(it, p, 4096, 1, cases[i / 2].points + 2 * p);
+            assert_int_equal(camber_features_kind(it->features, p), CAMBER_GEOMETRY_POINT);
+        }
     }
 }
 
@@ -288,9 +326,9 @@ static void test_no_tiles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_lines),          TEST(test_values),           TEST(test_ids_and_all),
-        TEST(test_clips),          TEST(test_damaged_geometry), TEST(test_damaged_tags),
-        TEST(test_damaged_layers), TEST(test_no_tiles),
+        TEST(test_lines),        TEST(test_points),         TEST(test_values),
+        TEST(test_ids_and_all),  TEST(test_clips),          TEST(test_damaged_geometry),
+        TEST(test_damaged_tags), TEST(test_damaged_layers), TEST(test_no_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

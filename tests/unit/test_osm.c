@@ -109,7 +109,12 @@ static void test_real_files(void **state) {
         const size_t apart = expect_as_gdal(it, path, true, true);
         print_message("%s: %zu features\n", names[i], apart);
         it->on.style.schema.wants_polygons = !it->on.style.schema.wants_polygons;
-        assert_true(expect_as_gdal(it, path, false, true) > 500);
+        const size_t lines = expect_as_gdal(it, path, false, true);
+        assert_true(lines > 500);
+        it->on.style.schema.wants_points = i % 4 == 1;
+        if (it->on.style.schema.wants_points)
+            print_message("%s: %zu of them points\n", names[i], expect_as_gdal(it, path, false, true) - lines);
+        it->on.style.schema.wants_points = false;
     }
 }
 
@@ -245,8 +250,8 @@ static void test_nodes(void **state) {
     fixture *it = *state;
     /* Nodes by themselves, and nodes and ways in one block. */
     begin(it);
-    pbf_single(&it->block, (pbf_node){30, 123456789, -98765432});
-    pbf_single(&it->block, (pbf_node){31, 123456780, -98765439});
+    pbf_single(&it->block, (pbf_node){30, 123456789, -98765432}, NULL);
+    pbf_single(&it->block, (pbf_node){31, 123456780, -98765439}, NULL);
     WAY(it, wall, 30, 31, 10);
     assert_int_equal(finish(it, true), 1);
     /* In other units, which are rounded to 10^-7 degrees. */
@@ -264,6 +269,67 @@ static void test_nodes(void **state) {
     pbf_end_block(&it->file, &it->block);
     WAY(it, wall, 5, 70000);
     assert_int_equal(finish(it, true), 1);
+}
+
+/* Nodes with tags are points where the style wants them: dense ones and single ones, some on a way, some alone. */
+static void test_points(void **state) {
+    static const char *const elm[] = {"name", "Elm", NULL};
+    static const char *const tree[] = {"name", "Oak", "bridge", "no", "name", "Elm", NULL};
+    static const char *const other[] = {"created_by", "hand", NULL};
+    static const char *const *const tags[NODES] = {tree, NULL, other, tree, NULL, NULL, tree, other, NULL, tree};
+    fixture *it = *state;
+    for (int round = 0; round < 8; round++) {
+        it->on.style.schema.wants_points = round % 2;
+        it->on.style.schema.wants_areas = round % 4 >= 2;
+        it->where = round >= 4 ? "name = 'Elm'" : NULL;
+        pbf_header(&it->file, "DenseNodes");
+        pbf_tagged(&it->block, nodes, tags, NODES);
+        pbf_dense(&it->block, (const pbf_node[]){{40, 5, 5}, {41, 6, 6}}, 2);
+        pbf_single(&it->block, (pbf_node){50, -1234567891, 123456789}, tree);
+        pbf_single(&it->block, (pbf_node){51, 77777777, 88888888}, NULL);
+        pbf_end_block(&it->file, &it->block);
+        /* In other units, which are not rounded to 10^-7 degrees. */
+        pbf_tagged(&it->block, (const pbf_node[]){{61, 10000001, 20000003}, {62, -7777777, 8888888}},
+                   (const char *const *const[]){tree, other}, 2);
+        pbf_number(&it->block.groups, 17, 137);
+        pbf_number(&it->block.groups, 19, 1234567);
+        pbf_end_block(&it->file, &it->block);
+        WAY(it, street, 10, 11, 12);
+        WAY(it, elm, 61, 62);
+        const size_t ways = round >= 4 ? 1 : 2, points = round >= 4 ? 6 : 9;
+        assert_int_equal(finish(it, true), ways + (round % 2 ? points : 0));
+    }
+}
+
+/* Nodes with tags that are cut off, or name strings that are not there. */
+static void test_bad_points(void **state) {
+    static const char *const tree[] = {"name", "Oak", NULL};
+    static const uint8_t tags[][4] = {{1, 200, 1, 0}, {1, 2, 1, 200}, {1, 255, 255, 255}, {9, 9, 0, 0}};
+    fixture *it = *state;
+    it->on.style.schema.wants_points = true;
+    for (size_t i = 0; i < sizeof tags / sizeof *tags; i++) {
+        camber_status status;
+        pbf_header(&it->file, "DenseNodes");
+        pbf_dense(&it->block, nodes, 3);
+        (void)pbf_string(&it->block, "name");
+        (void)pbf_string(&it->block, "Oak");
+        pbf_bytes dense = {.size = 0}, group = {.size = 0};
+        pbf_field(&dense, 1, (const uint8_t[]){2, 2}, 2);
+        pbf_field(&dense, 8, (const uint8_t[]){2, 2}, 2);
+        pbf_field(&dense, 9, (const uint8_t[]){2, 2}, 2);
+        pbf_field(&dense, 10, tags[i], sizeof tags[i]);
+        pbf_message(&group, 2, &dense);
+        pbf_message(&it->block.groups, 2, &group);
+        pbf_end_block(&it->file, &it->block);
+        WAY(it, tree, 10, 11);
+        pbf_end_block(&it->file, &it->block);
+        write_file(&it->on, "file", it->file.bytes, it->file.size);
+        camber_features *set = read_file(it, (camber_source_desc){.path = it->on.path}, &status);
+        assert_int_equal(status, CAMBER_ERROR_INPUT);
+        assert_int_equal(it->on.errors, 1);
+        assert_int_equal(set->feature_count, 0);
+        camber_features_destroy(set);
+    }
 }
 
 /* Steps of 16 bits and about them, forth and back, and ids so far apart that each has a leaf of its own. */
@@ -743,6 +809,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_real_areas, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_ways, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_nodes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_points, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_bad_points, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_packing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_ends, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_declined, set_up, tear_down),

@@ -209,7 +209,7 @@ static void city_nodes(fixture *it, const city_form *form, int first, int end) {
     for (int i = first; i < end; i++) {
         const int64_t id = city_id(i % SIDE, i / SIDE);
         if (has_own_place(form, id) && form->singly)
-            pbf_single(&it->block, city_node(id));
+            pbf_single(&it->block, city_node(id), NULL);
         else if (has_own_place(form, id))
             nodes[count++] = city_node(id);
     }

@@ -535,6 +535,58 @@ static void test_fill(void **state) {
     teardown(&f);
 }
 
+/* ---- Circle layers ---- */
+
+static void test_circle(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+#define CIRCLE_LAYER(more) "{\"version\": 8, \"layers\": [{\"id\": \"c\", \"type\": \"circle\", " more "}]}"
+    assert_int_equal(parse(&f, CIRCLE_LAYER("\"paint\": {}")), CAMBER_OK);
+    const camber_feature_view bare = {.geometry_type = "Point"};
+    const camber_layer_paint plain = camber_style_layer_paint(f.style->layers, 10.0, &bare);
+    assert_int_equal(f.style->layers[0].kind, CAMBER_LAYER_CIRCLE);
+    assert_true(f.style->schema.wants_points && f.style->schema.wants_polygons && !f.style->schema.wants_areas);
+    assert_true(fabs(plain.radius - 5.0) <= 0.0 && plain.stroke_width <= 0.0 && plain.color.a >= 1.0f);
+    assert_true(plain.stroke_color.a >= 1.0f && plain.stroke_color.r <= 0.0f);
+    assert_int_equal(plain.pitch_scale, CAMBER_TRANSLATE_MAP);
+    assert_int_equal(plain.pitch_alignment, CAMBER_TRANSLATE_VIEWPORT);
+    camber_style_destroy(f.style);
+
+    assert_int_equal(
+        parse(&f, CIRCLE_LAYER(
+                      "\"filter\": [\"==\", \"$type\", \"Point\"], \"layout\": {\"circle-sort-key\": [\"get\", "
+                      "\"r\"]}, \"paint\": {\"circle-radius\": [\"interpolate\", [\"linear\"], [\"zoom\"], 0, 1, 10, "
+                      "[\"get\", \"r\"]], \"circle-opacity\": 0.5, \"circle-stroke-opacity\": 0.25, "
+                      "\"circle-stroke-width\": {\"stops\": [[0, 0], [10, 2]]}, \"circle-stroke-color\": \"#f00\", "
+                      "\"circle-pitch-alignment\": \"map\"}")),
+        CAMBER_OK);
+    assert_int_equal(f.error_count + f.warning_count, 0);
+    assert_true(f.style->schema.wants_points && !f.style->schema.wants_polygons && f.style->schema.property_count == 1);
+    const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = 7.0};
+    const camber_feature_view view = {.values = &value, .geometry_type = "Point"};
+    const camber_layer_paint paint = camber_style_layer_paint(f.style->layers, 10.0, &view);
+    assert_true(fabs(paint.radius - 7.0) <= 0.0 && fabs(paint.sort_key - 7.0) <= 0.0);
+    assert_true(fabs(paint.stroke_width - 2.0) <= 0.0 && fabsf(paint.color.a - 0.5f) < 1e-6f);
+    assert_true(paint.stroke_color.r >= 1.0f && fabsf(paint.stroke_color.a - 0.25f) < 1e-6f);
+    assert_int_equal(paint.pitch_alignment, CAMBER_TRANSLATE_MAP);
+    camber_style_destroy(f.style);
+
+    /* How overlaps come together is not the style's choice, and a layer that nobody sees wants nothing. */
+    assert_int_equal(parse(&f, CIRCLE_LAYER("\"metadata\": {\"camber:overlap\": \"unite\"}")), CAMBER_OK);
+    assert_int_equal(f.warning_count, 1);
+    assert_non_null(strstr(f.warning, "circles are drawn one over another"));
+    assert_int_equal(f.style->layers[0].overlap, CAMBER_OVERLAP_ACCUMULATE);
+    assert_false(f.style->accumulates);
+    camber_style_destroy(f.style);
+    assert_int_equal(parse(&f, CIRCLE_LAYER("\"layout\": {\"visibility\": \"none\"}")), CAMBER_OK);
+    assert_false(f.style->schema.wants_points || f.style->schema.wants_polygons);
+    camber_style_destroy(f.style);
+    assert_int_equal(parse(&f, CIRCLE_LAYER("\"paint\": {\"circle-radius\": -1}")), CAMBER_ERROR_INPUT);
+    f.style = NULL;
+    teardown(&f);
+}
+
 static void test_wrong_fills(void **state) {
     (void)state;
     static const struct {
@@ -709,7 +761,7 @@ static void test_warnings(void **state) {
     fixture f;
     setup(&f);
     assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": ["
-                               "{\"id\": \"a\", \"type\": \"circle\"}, {\"id\": \"b\", \"type\": \"circle\"},"
+                               "{\"id\": \"a\", \"type\": \"heatmap\"}, {\"id\": \"b\", \"type\": \"heatmap\"},"
                                "{\"id\": \"c\", \"type\": \"line\", \"layout\": {\"line-shadow\": 3},"
                                "  \"paint\": {\"line-color-transition\": {\"duration\": 1}}},"
                                "{\"id\": \"d\", \"type\": \"line\", \"layout\": {\"line-shadow\": 4}}]}"),
@@ -1062,6 +1114,18 @@ static void test_reference(void **state) {
         {"fill-translate", false, CAMBER_TYPE_ARRAY, "[0, 0]", 2, RANGE_ANY, "zi"},
         {"fill-translate-anchor", false, CAMBER_TYPE_STRING, "\"map\"", 0, RANGE_ANY, "z"},
         {"fill-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "zf"},
+        {"circle-sort-key", true, CAMBER_TYPE_NUMBER, NULL, 0, RANGE_ANY, "zf"},
+        {"circle-radius", false, CAMBER_TYPE_NUMBER, "5", 0, RANGE_FROM_0, "zfi"},
+        {"circle-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zfi"},
+        {"circle-blur", false, CAMBER_TYPE_NUMBER, "0", 0, RANGE_ANY, "zfi"},
+        {"circle-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zfi"},
+        {"circle-translate", false, CAMBER_TYPE_ARRAY, "[0, 0]", 2, RANGE_ANY, "zi"},
+        {"circle-translate-anchor", false, CAMBER_TYPE_STRING, "\"map\"", 0, RANGE_ANY, "z"},
+        {"circle-pitch-scale", false, CAMBER_TYPE_STRING, "\"map\"", 0, RANGE_ANY, "z"},
+        {"circle-pitch-alignment", false, CAMBER_TYPE_STRING, "\"viewport\"", 0, RANGE_ANY, "z"},
+        {"circle-stroke-width", false, CAMBER_TYPE_NUMBER, "0", 0, RANGE_FROM_0, "zfi"},
+        {"circle-stroke-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zfi"},
+        {"circle-stroke-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zfi"},
         {"background-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zi"},
         {"background-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "z"},
         {"background-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zi"},
@@ -1070,6 +1134,7 @@ static void test_reference(void **state) {
         const char *name = reference[i].name, *depends = reference[i].depends;
         const camber_layer_kind kind = name[0] == 'l'   ? CAMBER_LAYER_LINE
                                        : name[0] == 'f' ? CAMBER_LAYER_FILL
+                                       : name[0] == 'c' ? CAMBER_LAYER_CIRCLE
                                                         : CAMBER_LAYER_BACKGROUND;
         const camber_property_row *row = camber_property_find(kind, reference[i].layout, name);
         if (!row) {
@@ -1093,14 +1158,26 @@ static void test_reference(void **state) {
     }
 }
 
+/* Each property is one element of a set of properties. */
+static void test_sets(void **state) {
+    (void)state;
+    for (unsigned one = 0; one < CAMBER_PROPERTIES; one++) {
+        camber_property_set set = {{0}};
+        camber_property_set_add(&set, (camber_property_id)one);
+        for (unsigned other = 0; other < CAMBER_PROPERTIES; other++)
+            assert_int_equal(camber_property_set_has(&set, (camber_property_id)other), one == other);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),       cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_layer),         cmocka_unit_test(test_plain),
-        cmocka_unit_test(test_odd_dashes),  cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),
-        cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting),
-        cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),    cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),     cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes), cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_states),      cmocka_unit_test(test_reference),  cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_nesting),     cmocka_unit_test(test_many),       cmocka_unit_test(test_many_names),
+        cmocka_unit_test(test_damage),      cmocka_unit_test(test_memory),     cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

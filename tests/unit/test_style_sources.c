@@ -323,6 +323,35 @@ static void test_seen_tiles(void **state) {
     assert_non_null(strstr(it->warning, "source \"s\""));
 }
 
+/* Points of a tile beside the view are read if circles reach into it from there, or may do so by what features say. */
+static void test_circles_beside(void **state) {
+    fixture *it = *state;
+    static const char source[] = "\"s\": {\"type\": \"vector\", \"maxzoom\": 2, \"tiles\": [\"{z}-{x}-{y}.mvt\"]}";
+    static const struct {
+        const char *radius;
+        size_t points;
+    } cases[] = {{"5", 1}, {"20", 3}, {"[\"get\", \"r\"]", 3}, {"{\"stops\": [[2, 0], [8, 900]]}", 1}};
+    for (uint32_t column = 0; column < 3; column++) {
+        char name[32];
+        blob tile = {0}, layer = begin_layer("road", 4096);
+        put_points(&layer, (const int[]){2048, 2048}, 1);
+        put_layer(&tile, &layer);
+        snprintf(name, sizeof name, "2-%u-1.mvt", column);
+        write_blob(it, name, &tile);
+    }
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char layer[256];
+        snprintf(layer, sizeof layer,
+                 "{\"id\": \"c\", \"type\": \"circle\", \"source\": \"s\", \"source-layer\": \"road\", \"paint\": "
+                 "{\"circle-radius\": %s}}",
+                 cases[i].radius);
+        camber_view_desc view = view_at(2.0, 1.5, 1.5, 2, 490, 490);
+        expect_ok(it, read_view(it, source, layer, &view));
+        assert_int_equal(it->features->point_count, cases[i].points);
+        assert_int_equal(it->features->feature_count, cases[i].points);
+    }
+}
+
 /* Over the antimeridian, a line in two tiles at the ends of the world is one. */
 static void test_antimeridian(void **state) {
     fixture *it = *state;
@@ -803,7 +832,7 @@ int main(void) {
         TEST(test_errors),     TEST(test_endless_database), TEST(test_geojson),
         TEST(test_winding),    TEST(test_geojson_options),  TEST(test_seams),
         TEST(test_fit),        TEST(test_straight_on),      TEST(test_all_tiles_damaged),
-        TEST(test_no_numbers),
+        TEST(test_no_numbers), TEST(test_circles_beside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

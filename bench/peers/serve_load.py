@@ -230,7 +230,7 @@ def measure_mod_tile(paths, by_camber):
 def measure_memory(paths):
     """Resident bytes after few requests and after many. Most are of some tiles; the others, of all, fill the cache soon,
     and from then on each takes the room of another."""
-    port, server = start_camber("--style", STYLE, "--cache-memory", "8M")
+    port, server = start_camber("--style", STYLE, "--cache", "8M")
     source, made, asked = random.Random(2), {}, 0
     file = write_paths("all.txt", [source.choice(paths if source.random() < NEW_SHARE else paths[:KEPT_TILES])
                                    for _ in range(10**5)])

@@ -148,7 +148,7 @@ static int check_run(const camber_option_reader *p) {
             : options->force  ? "force"
                               : "dry-run");
     if (options->shards && (!options->shard || strcmp(options->shard, "auto") != 0))
-        return camber_options_refuse(p, "--shard-count %u: is for --shard auto; give --shard auto, or --shard K/%u",
+        return camber_options_refuse(p, "--shards %u: is for --shard auto; give --shard auto, or --shard K/%u",
                                      options->shards, options->shards);
     return CAMBER_EXIT_DONE;
 }

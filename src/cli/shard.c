@@ -67,17 +67,17 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
                  "--shard auto: %s counts %u tasks%s, which are not all parts%s; give an array of all of them, or name "
                  "this task's part: --shard K/N",
                  found->number, count, gaps ? " with gaps between them" : "",
-                 options->shards ? " of --shard-count" : "");
+                 options->shards ? " of --shards" : "");
         return CAMBER_EXIT_USAGE;
     }
     number = (number - first) / step;
     count = options->shards ? options->shards : count;
     if (count == 0)
-        snprintf(message, message_size, "--shard auto: %s says which part, and nothing how many; give --shard-count N",
+        snprintf(message, message_size, "--shard auto: %s says which part, and nothing how many; give --shards N",
                  found->number);
     else if (number >= count || count > MOST_SHARDS)
         snprintf(message, message_size,
-                 "--shard auto: %s is \"%s\", which is part %u of %u; give the --shard-count of all parts",
+                 "--shard auto: %s is \"%s\", which is part %u of %u; give the --shards of all parts",
                  found->number, getenv(found->number), number + 1, count);
     else {
         *shard = (camber_shard){number + 1, count};

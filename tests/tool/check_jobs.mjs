@@ -80,9 +80,9 @@ expectRefused(tiles, job => { job.spec.completions = 'all'; }, 'a count that is 
 const command = tiles.spec.template.spec.containers[0].command;
 expect(tiles.spec.completionMode === 'Indexed', 'the Job of tiles is not indexed');
 expect(command.includes('--shard=auto') && command.includes('--resume'), 'a pod draws no shard, or cannot be tried again');
-expect(command.includes(`--shard-count=${tiles.spec.completions}`), '--shard-count is not the number of completions');
+expect(command.includes(`--shards=${tiles.spec.completions}`), '--shards is not the number of completions');
 expect(tiles.spec.suspend === true, 'the shards do not wait for the schedule');
-const first = schedule.spec.template.spec.containers[0].command, own = /^--(shard|shard-count|threads|memory|resume)\b/;
+const first = schedule.spec.template.spec.containers[0].command, own = /^--(shard|shards|threads|memory|resume)\b/;
 expect(first.includes('--dry-run') && first.includes('--force'), 'the first Job is no dry run, or cannot be tried again');
 expect(first.filter(word => word !== '--dry-run' && word !== '--force').join() === command.filter(word => !own.test(word)).join(),
        'the schedule is of another run than the shards');

@@ -108,7 +108,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         write_map("map.json", count=300)
-        server = Server("map.json", "--cache-memory", "4M")
+        server = Server("map.json", "--cache", "4M")
         soak = Soak(server)
         # With the questions whether the server was there, and the request that asked how many they were.
         start, before = time.monotonic(), count_requests(server, server.asked) + 1

@@ -84,7 +84,7 @@ def main():
     wanted = {word.removeprefix("Ref::") for word in command if word.startswith("Ref::")}
     expect(wanted == set(definition["parameters"]) == set(array["parameters"]), f"parameters: {wanted}")
     expect(len(definition["retryStrategy"]["evaluateOnExit"]) <= 5, "Batch takes five conditions")
-    expect(array["arrayProperties"]["size"] == int(array["parameters"]["shards"]), "--shard-count is not the array's size")
+    expect(array["arrayProperties"]["size"] == int(array["parameters"]["shards"]), "--shards is not the array's size")
     look = schedule["containerOverrides"]["command"][2].split()
     expect(look[-4:] == ["--dry-run", "--schedule", "/tiles/city.pmtiles.schedule", "--force"] and
            array["parameters"]["schedule"] in look, f"the schedule is another one: {look}")

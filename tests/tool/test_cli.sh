@@ -203,8 +203,8 @@ lacks "$tmp/stdout" 'glb'
 expect 0 "help of tessellate, for its format" tessellate --help
 has "$tmp/stdout" '^      --format glb  '
 expect 0 "help of all verbs, for former names" --help
-has "$tmp/stdout" '--renew FILE' '--shard-count N' '--cache-memory SIZE' '--format png|png8|webp|glb'
-lacks "$tmp/stdout" '--tiles \|--shards \|--cache '
+has "$tmp/stdout" '--renew FILE' '--format png|png8|webp|glb'
+lacks "$tmp/stdout" '--tiles '
 expect 0 "version" --version
 has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "version of a verb" render --version

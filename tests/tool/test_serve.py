@@ -365,7 +365,7 @@ def test_idle():
 
 def test_overload():
     write_map("map.json", count=400)
-    server = Server("map.json", "--cache-memory", "256K")
+    server = Server("map.json", "--cache", "256K")
     results, lock = {}, threading.Lock()
 
     def ask(first):

@@ -341,7 +341,7 @@ def test_auto():
                ({"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3", "SLURM_PROCID": "0"}, (), "2-of-3"),
                ({"PMI_RANK": "0", "PMI_SIZE": "2"}, (), "1-of-2"),
                ({"SLURM_PROCID": "1", "SLURM_NTASKS": "2"}, (), "2-of-2"),
-               ({"JOB_COMPLETION_INDEX": "2"}, ("--shard-count", "5"), "3-of-5"),
+               ({"JOB_COMPLETION_INDEX": "2"}, ("--shards", "5"), "3-of-5"),
                ({"AWS_BATCH_JOB_ARRAY_INDEX": "0"}, ("--shards", "2"), "1-of-2")]
     for variables, more, part in engines:
         tiles(*common, *more, env={**ENVIRONMENT, **variables})
@@ -349,16 +349,16 @@ def test_auto():
         os.unlink(f"auto.{part}.pmtiles")
     tiles(*common, status=2)
     tiles(*common, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
-    tiles(*common, "--shard-count", 2, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
+    tiles(*common, "--shards", 2, status=2, env={**ENVIRONMENT, "JOB_COMPLETION_INDEX": "2"})
     tiles(*common, status=2, env={**ENVIRONMENT, "PMI_RANK": "x", "PMI_SIZE": "2"})
     # Some of the parts: whether 3 is the third or the fourth nobody can tell.
     array = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_ARRAY_TASK_MIN": "3", "SLURM_ARRAY_TASK_MAX": "7",
              "SLURM_ARRAY_TASK_COUNT": "2", "SLURM_ARRAY_TASK_STEP": "1"}
-    for more in (("--shard-count", 8), ("--shard-count", 2), ()):
+    for more in (("--shards", 8), ("--shards", 2), ()):
         done = tiles(*common, *more, status=2, env={**ENVIRONMENT, **array})
         expect("--shard K/N" in done.stderr and not glob.glob("auto.*"), f"{more}: {done.stderr}")
-    tiles(*common, "--shard-count", 8, status=2, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_MAX": "4"})
-    tiles(*common, "--shard-count", 8, status=2, env={**ENVIRONMENT, "OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"})
+    tiles(*common, "--shards", 8, status=2, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_MAX": "4"})
+    tiles(*common, "--shards", 8, status=2, env={**ENVIRONMENT, "OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"})
     tiles(*common, env={**ENVIRONMENT, **array, "SLURM_ARRAY_TASK_STEP": "4"})
     expect(glob.glob("auto.*") == ["auto.1-of-2.pmtiles"], glob.glob("auto.*"))
 
@@ -751,7 +751,7 @@ def test_usage():
            ([*good, "--quality", "50"], "--quality"), ([*good, "--tile", "3/8/0"], "--tile"),
            ([*good, "--tile", "3/1"], "--tile"), ([*good, "--tile", "3/1/1", "--max-zoom", "4"], "--tile"),
            ([*good, "--shard", "0/3"], "--shard"), ([*good, "--shard", "4/3"], "--shard"),
-           ([*good, "--shard", "a"], "--shard"), ([*good, "--shard-count", "3"], "--shard-count"),
+           ([*good, "--shard", "a"], "--shard"), ([*good, "--shards", "3"], "--shards"),
            ([*good, "--bbox", "1,2,3"], "--bbox"), ([*good, "--renew", "list", "--resume"], "--renew"),
            ([*good, "--center", "1,1"], "--center"), (["shwo", "x.pmtiles"], "show, verify, merge"),
            (["show", "x.pmtiles", "--max-zoom", "3"], "--max-zoom")]

@@ -1,8 +1,8 @@
 /* Points, as readers of files and of a style's own sources give them: each is a line of one point. */
 #include "file_reading.h"
 
-#include "source/geojson.h"
-#include "source/mercator.h"
+#include "features/mercator.h"
+#include "formats/geojson.h"
 
 #include <math.h>
 
@@ -37,8 +37,7 @@ static camber_geojson_stats read_source(file_reading *it, const char *geometry) 
     camber_geojson_stats stats;
     json_t *root = json_loads(geometry, 0, NULL);
     assert_non_null(root);
-    const camber_style_source source = {.json = root};
-    const camber_geojson_desc desc = {.what = "source", .root = root, .source = &source};
+    const camber_geojson_desc desc = {.what = "source", .root = root};
     start_again(it);
     expect_ok(it, camber_geojson_read(it->features, &desc, &stats));
     json_decref(root);

@@ -3,6 +3,7 @@
 #define _FILE_OFFSET_BITS 64
 
 #include "archive/pmtiles.h"
+#include "archive/archive.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -490,4 +491,15 @@ camber_status camber_pmtiles_open(camber_tile_set *set, const char *path) {
     if (status == CAMBER_OK)
         status = read_metadata(set);
     return status;
+}
+
+uint64_t camber_archive_first(int zoom) {
+    return camber_pmtiles_number(zoom, 0, 0);
+}
+
+int camber_archive_zoom(uint64_t number) {
+    int zoom = 0;
+    while (zoom < 31 && camber_archive_first(zoom + 1) <= number)
+        zoom++;
+    return zoom;
 }

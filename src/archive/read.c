@@ -18,19 +18,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* ---- Numbers ---- */
-
-uint64_t camber_archive_first(int zoom) {
-    return camber_pmtiles_number(zoom, 0, 0);
-}
-
-int camber_archive_zoom(uint64_t number) {
-    int zoom = 0;
-    while (zoom < 31 && camber_archive_first(zoom + 1) <= number)
-        zoom++;
-    return zoom;
-}
-
 /* ---- Metadata ---- */
 
 static bool read_numbers(const char *text, size_t count, double *numbers) {

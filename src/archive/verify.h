@@ -42,6 +42,8 @@ void camber_verify_tell(camber_verify *v, camber_verify_kind kind, bool error, c
 /* Names a tile for a message: "12/654/1583". */
 void camber_verify_name(uint64_t number, char text[40]);
 
+/* Finds the tiles of each zoom that the bounds touch. */
+void camber_verify_find_boxes(camber_verify *v);
 /* Checks that a tile, or run of tiles, lies within the zooms and bounds. */
 void camber_verify_bounds(camber_verify *v, const camber_archive_tile *tile);
 /* Checks a tile's bytes as they are stored. */

@@ -166,5 +166,7 @@ bool camber_compile_tokens(camber_compiler *c, const json_t *json, const camber_
 camber_typing camber_property_typing(const camber_property *property);
 /* Whether the property may have the value: its names and ranges. */
 bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value);
+/* The same of a constant that an expression may result in. An array that is out of range has no meaning. */
+bool camber_property_check_output(camber_compiler *c, const camber_property *property, const json_t *json);
 
 #endif

@@ -423,10 +423,6 @@ static bool index_layers(camber_document *d, const json_t *layers) {
     return done || camber_compiler_fail_memory(&d->compiler);
 }
 
-bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type) {
-    return layer->visible && (!layer->filter || camber_filter_may_take(layer->filter->document, type));
-}
-
 bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     camber_compiler *c = &d->compiler;
     camber_compiler_enter_key(c, "layers");

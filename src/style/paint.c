@@ -226,3 +226,7 @@ bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_loo
     return p->cap == q->cap && p->join == q->join && (limits || (!driven && join_ignores(p, q))) &&
            p->offset == q->offset && p->sort_key == q->sort_key;
 }
+
+bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type) {
+    return layer->visible && (!layer->filter || camber_filter_may_take(layer->filter->document, type));
+}

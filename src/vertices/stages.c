@@ -95,11 +95,3 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
     *stages = made;
     return CAMBER_OK;
 }
-
-void camber_stages_destroy(camber_stages *stages) {
-    if (!stages->context)
-        return;
-    camber_free(stages->context, stages->arc_lengths);
-    camber_free(stages->context, stages->points);
-    *stages = (camber_stages){0};
-}

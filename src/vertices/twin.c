@@ -351,15 +351,3 @@ camber_status camber_stages_tessellate(camber_context *context, const camber_pol
         *stages = made;
     return status;
 }
-
-void camber_mesh_data_destroy(camber_mesh_data *data) {
-    camber_context *context = data->context;
-    if (!context)
-        return;
-    camber_free(context, data->indices);
-    camber_free(context, data->vertices);
-    camber_free(context, data->corners);
-    camber_free(context, data->arc_lengths);
-    camber_free(context, data->records);
-    *data = (camber_mesh_data){0};
-}

@@ -40,7 +40,8 @@ class Tiers(unittest.TestCase):
         self.assertRegex("lint/kernel_raster_gpu", choice.lint)
 
     def test_a_kernel_header_that_one_layer_includes(self):
-        self.assertEqual(choose("kernels/offset.h").areas - {"gl"}, {"kernels", "cl", "tess"})
+        self.assertEqual(choose("kernels/offset.h").areas - {"gl"},
+                         {"kernels", "gpu", "points", "residency", "stroke"})
 
     def test_a_reader(self):
         choice = choose("src/osm/read.c")

@@ -1,0 +1,56 @@
+/* Logging: a message becomes one line, and goes to the callback. */
+#include "base/base.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void log_list(camber_context *context, camber_log_level level, const char *format, va_list list) {
+    if (!context->desc.log)
+        return;
+    /* Long enough for any path and cause. A build log is cut, but its beginning names the error. */
+    char message[4096];
+    vsnprintf(message, sizeof message, format, list);
+    /* The message may quote a file, so it is made one line without control characters for a terminal. */
+    for (char *c = message; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 0x7f)
+            *c = ' ';
+    context->desc.log(context->desc.log_user, level, message);
+}
+
+void camber_log(camber_context *context, camber_log_level level, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    log_list(context, level, format, list);
+    va_end(list);
+}
+
+camber_status camber_fail(camber_context *context, camber_status status, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    log_list(context, CAMBER_LOG_ERROR, format, list);
+    va_end(list);
+    return status;
+}
+
+static void log_softly(void *user, camber_log_level level, const char *message) {
+    const camber_soft_log *kept = user;
+    kept->log(kept->user, level == CAMBER_LOG_ERROR ? CAMBER_LOG_INFO : level, message);
+}
+
+void camber_log_soften(camber_context *context, camber_soft_log *kept) {
+    *kept = (camber_soft_log){context->desc.log, context->desc.log_user};
+    if (!kept->log)
+        return;
+    context->desc.log = log_softly;
+    context->desc.log_user = kept;
+}
+
+void camber_log_restore(camber_context *context, const camber_soft_log *kept) {
+    context->desc.log = kept->log;
+    context->desc.log_user = kept->user;
+}
+
+void camber_progress(camber_context *context, const char *stage, double fraction) {
+    if (context->desc.progress)
+        context->desc.progress(context->desc.progress_user, stage, fraction);
+}

@@ -1,8 +1,9 @@
-/* Frames, in one call or in two steps that overlap. Each is resolved into the renderer's list, which GL or OpenCL
- * draws.
+/* Draws frames, in one call or in two steps that overlap. Each frame is resolved into the renderer's list, which GL or
+ * OpenCL draws.
  *
- * A frame in flight that is not drawn whole when it begins is resolved again when it ends: its meshes may have changed,
- * and another frame may have taken the list. Its passes and paints are copied, as the caller's may be gone by then. */
+ * A frame in flight that is not completely drawn when it begins is resolved again when it ends: its meshes may have
+ * changed, and another frame may have taken the list. Its passes and paints are copied, because the caller's may be
+ * gone by then. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
@@ -40,7 +41,7 @@ static camber_status render_in_gl(camber_renderer *renderer, const camber_frame 
     return status;
 }
 
-/* place: where all rows go. NULL: wherever rows takes them. */
+/* Draws a frame. place: memory that all rows go to. NULL: they are passed to rows. */
 static camber_status render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                             camber_place *place, camber_frame_stats *stats) {
     assert(renderer->flight_count == 0);
@@ -93,7 +94,7 @@ static camber_status copy_passes(camber_renderer *renderer, camber_flight *fligh
     return CAMBER_OK;
 }
 
-/* is_current: the GL context is, so that the fence can go. */
+/* Drops a flight. is_current: the GL context is current, so that the fence can be deleted. */
 static void drop_flight(camber_renderer *renderer, camber_flight *flight, bool is_current) {
     camber_context *context = renderer->share.device->context;
     if (is_current)
@@ -136,7 +137,7 @@ camber_status camber_renderer_end(camber_renderer *renderer, camber_rows_fn *row
                                             : camber_renderer_resolve(renderer, &flight->frame);
     if (status == CAMBER_OK)
         status = end(renderer, flight, rows, user);
-    /* Only where it was not resolved there is a fence left. */
+    /* A fence is left only if the frame was not resolved. */
     drop_flight(renderer, flight, flight->drawn && camber_surface_try_current(renderer->share.surface));
     renderer->first_flight = (renderer->first_flight + 1) % CAMBER_FRAMES_IN_FLIGHT;
     renderer->flight_count--;

@@ -1,5 +1,5 @@
-/* Frames that GL draws: areas of the picture, drawn one after the other, waited for, and read back as rows. The first
- * area of a frame is drawn when it begins; the others are drawn when it ends. */
+/* Draws frames in GL: rectangles (areas) of the picture, drawn one after another, waited for, and read back as rows.
+ * The first area of a frame is drawn when it begins; the others are drawn when it ends. */
 #include "draw/renderer.h"
 
 enum { AREA_PX = 16 * 1024 * 1024 };
@@ -22,8 +22,8 @@ void camber_gl_release(camber_renderer *renderer, bool is_current) {
     camber_free(context, drawing->rows.texels);
 }
 
-/* Sets the size of a flight's areas to the largest: whole rows where the target reaches, and no more memory than
- * needed. */
+/* Sets the size of a flight's areas to the largest possible: whole rows if the target is wide enough, and no more
+ * memory than needed. */
 static void set_area_size(const camber_renderer *renderer, camber_flight *flight) {
     const camber_frame *frame = &flight->frame;
     uint32_t side = renderer->share.surface->info.largest_target_px;
@@ -36,7 +36,7 @@ static void set_area_size(const camber_renderer *renderer, camber_flight *flight
     flight->area_height = frame->height < rows ? frame->height : rows;
 }
 
-/* The area of this size in the top left corner of the picture. */
+/* Returns the area of this size in the top left corner of the picture. */
 static camber_gl_area first_area(const camber_renderer *renderer, camber_flight *flight, uint32_t width,
                                  uint32_t height) {
     return (camber_gl_area){.width = width,
@@ -50,7 +50,7 @@ static camber_gl_area first_area(const camber_renderer *renderer, camber_flight 
 
 /* ---- An area ---- */
 
-/* Draws an area, and leaves a fence behind its commands. */
+/* Draws an area, and puts a fence after its commands. */
 static camber_status draw_area(camber_renderer *renderer, camber_flight *flight, const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_frame *frame = &flight->frame;
@@ -59,11 +59,11 @@ static camber_status draw_area(camber_renderer *renderer, camber_flight *flight,
     if (status != CAMBER_OK)
         return status;
     gl->Enable(GL_BLEND);
-    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); /* but where layers are gathered */
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); /* except while drawing into layers */
     gl->Disable(GL_DITHER);
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);
-    camber_batch_clear(renderer); /* of a frame that failed */
+    camber_batch_clear(renderer); /* left over from a frame that failed */
     status = camber_atlas_begin(renderer);
     if (status == CAMBER_OK)
         status = camber_gl_draw_commands(renderer, area);
@@ -86,7 +86,7 @@ static camber_status wait_for_area(camber_renderer *renderer, camber_flight *fli
     const camber_gl *gl = &renderer->share.surface->gl;
     const GLuint64 second_ns = 1000000000;
     GLenum seen = GL_TIMEOUT_EXPIRED;
-    while (flight->drawn && seen == GL_TIMEOUT_EXPIRED) /* a context that is lost answers, too */
+    while (flight->drawn && seen == GL_TIMEOUT_EXPIRED) /* a lost context answers too */
         seen = gl->ClientWaitSync(flight->drawn, GL_SYNC_FLUSH_COMMANDS_BIT, second_ns);
     camber_gl_drop_fence(renderer, flight);
     if (seen == GL_WAIT_FAILED)
@@ -94,7 +94,7 @@ static camber_status wait_for_area(camber_renderer *renderer, camber_flight *fli
     return camber_gl_check(renderer, "drawing");
 }
 
-/* Reads an area into rows of the picture, which is so wide. */
+/* Reads an area into rows of the picture, which is width px wide. */
 static camber_status read_area(camber_renderer *renderer, const camber_gl_area *area, uint8_t *rgba, uint32_t width) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_status status =
@@ -132,12 +132,12 @@ camber_status camber_gl_begin_frame(camber_renderer *renderer, int target, cambe
     flight->stats.draw_ms = camber_now_ms() - start;
     if (status != CAMBER_OK) {
         camber_gl_drop_fence(renderer, flight);
-        camber_surface_forget_errors(renderer->share.surface); /* the next frame's are its own */
+        camber_surface_forget_errors(renderer->share.surface); /* the next frame must only see its own */
     }
     return status;
 }
 
-/* Draws areas from left to right, of which area is the first, and reads them into rgba, which may be NULL. */
+/* Draws areas from left to right, starting with area, and reads them into rgba, which may be NULL. */
 static camber_status draw_across(camber_renderer *renderer, camber_flight *flight, camber_gl_area area, uint8_t *rgba) {
     const uint32_t widest = area.width, width = flight->frame.width;
     camber_frame_stats *stats = &flight->stats;

@@ -9,10 +9,11 @@
 #include "pitch.h"
 
 /* An image's layout in the side table, four float4s:
- *     0-3    the first word of its texels, texels a row, rows (all three are bits of unsigned integers); px along a
- * line 4-7    of a fill: where a corner of an image lies, px; images a px to the right, along their x and their y 8-11
- * of a fill: images a px down, along their x and their y; 0, 0 12-15  the mean colour, 0 to 255 Texels are
- * premultiplied RGBA8, a word each, from the top down, with a border of one texel around them. */
+ *     0-3    the first word of its texels, texels per row, rows (the bits of unsigned integers); px along a line
+ *     4-7    for a fill: the position of a corner of an image, px; images per px to the right, along their x and y
+ *     8-11   for a fill: images per px down, along their x and y; 0, 0
+ *     12-15  the mean colour, 0 to 255
+ * Texels are premultiplied RGBA8, one word each, from the top down, with a border of one texel around them. */
 #define CAMBER_IMAGE_WORDS 16u
 #define CAMBER_SAMPLES_MAX 8.0f /* the most along each side of a pixel that shows many texels */
 

@@ -128,7 +128,7 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  *
  *     cut: each segment's quad ends on the bisector M-C       tight: the inner side has no room, each quad goes on
  *     and holds its own part of the join                      past P there, by the pad: the fragment shader cuts
- *                                                             at P and the bisector what lies past them
+ *                                                             at P and the bisector what is past them
  *
  *        ______________ C                                        ______________ C
  *        in            /|                                        in            /|
@@ -203,12 +203,12 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     return is_butt || is_inner ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX;
 }
 
-/* How many records a point of a strip has:
- *   break, start        a polyline's first
+/* Returns how many records a point of a strip has:
+ *   break, start        a polyline's first point
  *   break, start, end   a dot
- *   end                 the last, and where the strip goes on: a plain cut
+ *   end                 the last point, and a plain cut, at which the strip continues
  *   end, start          at a tight join inside a polyline: of the triangles between, one is Ma, C, Mb, which winds
- *                       the other way, as Mb lies before the line through Ma and C, and is culled; one has no area
+ *                       the other way, as Mb is before the line through Ma and C, and is culled; one has no area
  *   end, break, start   at a split join there */
 CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     const camber_u32 first = CAMBER_HAS(info, CAMBER_POINT_FIRST) ? 1u : 0u;
@@ -291,10 +291,10 @@ CAMBER_FN void camber_join_corner_at(camber_u32 corner, float q, float step, CAM
 #endif
 
 /* Returns how many vertices and indices a point emits, vertices | indices << 16. Only distinct vertices count:
- *   strip       L, R of each start and end, but for the outer one that they have in common at a tight join
- *   kite, fan   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends, and but for those
- *               that camber_start_corner has in common
- * Indices of a strip are two a record, kept or not. */
+ *   strip       L, R of each start and end, except the outer one that they share at a tight join
+ *   kite, fan   in L, R | join's own | P if there is a join | out L, R, unless the polyline ends, and except those
+ *               that camber_start_corner shares
+ * A strip has two indices per record, stored or not. */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
     if (method == CAMBER_STRIP) {

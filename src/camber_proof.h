@@ -32,7 +32,7 @@ typedef struct camber_arc_length {
 } camber_arc_length;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
- * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
+ * The vertex is at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
  * that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. Each vertex that is the last (provoking) one of a
  * triangle carries the segment that the triangle draws. */
 typedef struct camber_vertex {

@@ -20,7 +20,7 @@ enum {
     CAMBER_VARIANT_TRIM = 1024,     /* some strokes are drawn in part */
     CAMBER_VARIANT_RAMP = 2048,     /* some strokes change their colour along them */
     CAMBER_VARIANT_PATTERN = 4096,  /* some strokes are drawn with images */
-    CAMBER_VARIANT_MASK = 8192,     /* writes colours that may be translucent, and their alphas beside them */
+    CAMBER_VARIANT_MASK = 8192,     /* writes colours that may be translucent, and their alphas to a second target */
     CAMBER_VARIANT_PITCHED = 16384, /* the plane of the lines is seen at an angle */
     CAMBER_VARIANT_METHOD = 32768,  /* times camber_method */
     CAMBER_METHODS = 3,

@@ -7,7 +7,7 @@
  *
  *     1  check the entries, count their points, find their box
  *     2  store the points of each entry, stretch by stretch: an invalid point ends one; repeated points are dropped,
- * and those of too little importance. With arc lengths, sum up how far along its line each point lies */
+ * and those of too little importance. With arc lengths, sum up how far along its line each point is */
 #include "points/network.h"
 
 #include <assert.h>

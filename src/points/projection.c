@@ -24,7 +24,7 @@
 /* An absurd miter limit must not widen the window so far that nothing is cut. */
 static const double LARGEST_REACH_PX = 65536.0;
 /* How far from a point of an offset line the source line can still affect it, in multiples of the offset. The end of an
- * offset segment may be this far from what it hides, and the neighbours are searched again from there:
+ * offset segment may be this far from the points that it hides, and the neighbours are searched again from there:
  * kernels/offset.h. */
 static const double LOOKS = 2.0 * (double)CAMBER_OFFSET_REACH + 1.0;
 

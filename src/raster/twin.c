@@ -55,7 +55,7 @@ static three_points points_of(const camber_part_points *part, const camber_setup
     return p;
 }
 
-/* Writes how far along its line a segment lies, by the arc lengths of its two points. */
+/* Writes how far along its line a segment is, from the arc lengths of its two points. */
 static void put_arc_length(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_segment *s,
                            float arc_length[CAMBER_SEGMENT_ARC_LENGTHS]) {
     memset(arc_length, 0, CAMBER_SEGMENT_ARC_LENGTHS * sizeof *arc_length);

@@ -1,4 +1,4 @@
-/* Arc lengths: how far along its polyline each point lies, for dashes and other things drawn along lines.
+/* Computes arc lengths: how far along its polyline each point is, for dashes and other things drawn along lines.
  *
  * On a device, arc_length_sum adds up each chunk of points, the host carries the sums from chunk to chunk, and
  * arc_length_scan writes every point's length. The CPU twin goes along each polyline from its first point to its last.

@@ -1,4 +1,4 @@
-/* Arc lengths: how far along its polyline each point lies. */
+/* Computes arc lengths: how far along its polyline each point is. */
 #ifndef CAMBER_STROKE_ARC_LENGTH_H
 #define CAMBER_STROKE_ARC_LENGTH_H
 

@@ -1,7 +1,7 @@
-/* arc_length_scan: how far along its line each slot lies, and how long the line is.
- * Reads x, y, info[n + 2] and carries[2 * chunks]: what the chunk's first line has before the chunk, and what its last
- * line has behind it. Writes arc_lengths[2 * n]: how far along, and the whole line, px. A work-item takes a chunk of
- * CAMBER_ARC_LENGTH_CHUNK slots; the host turns arc_length_sum's sums into the carries. */
+/* arc_length_scan: computes how far along its line each slot is, and how long the line is.
+ * Reads x, y, info[n + 2] and carries[2 * chunks]: the length of the chunk's first line before the chunk, and of its
+ * last line after it. Writes arc_lengths[2 * n]: the distance along the line, and the length of the whole line, in px.
+ * A work-item takes a chunk of CAMBER_ARC_LENGTH_CHUNK slots; the host turns arc_length_sum's sums into the carries. */
 #include "arc_length.h"
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, 1, 1))) void arc_length_scan(

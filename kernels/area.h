@@ -1,33 +1,35 @@
-/* Areas: how the edges of rings cover the pixels of a tile.
+/* Polygons ("areas" of rings): how the edges of rings cover the pixels of a tile.
  *
  * Input: a brush's edges in a tile, and how often its rings wind around the tile's top left corner. Output: the area of
- * each pixel that lies inside the rings. Main idea: an edge changes the winding of all that lies to its right in the
- * rows that it passes. So each edge adds to a pixel only what it changes there, exactly, as an area. A sum from the
- * left to the right then gives how much each pixel is wound around. Edges that run to and fro add up to nothing: areas
- * that meet have no seam.
+ * each pixel that is inside the rings. Main idea: an edge changes the winding number of everything to its right in the
+ * rows that it passes. So each edge adds to a pixel only what it changes there, exactly, as an area. A running sum from
+ * left to right then gives the winding number of each pixel. Edges in opposite directions cancel, so that polygons that
+ * share an edge have no seam.
  *
  *      corner                      e1 crosses the top left of the corner: wind counts it for the whole tile.
  *     e1 \ +-----------+           e2 enters through the left side: below that, the winding changes in whole rows.
- *         \|           |           e3 only changes what is right of it.
+ *         \|           |           e3 only changes what is to its right.
  *          \  e3 /     |
  *          |\   /      |           Whether an edge passes left of a corner is decided once, by camber_edges_crossing,
  *     e2 ---|\-/       |           so that what wind counts and what a tile counts always fit together.
  *          +-----------+
  *
- * Lanes are edges while they are cut, and the pixels of a cell while edges change them. All sums are whole numbers. */
+ * While edges are cut, a lane is an edge; while edges change a cell, a lane is one of its pixels. All sums are
+ * integers. */
 #ifndef CAMBER_KERNELS_AREA_H
 #define CAMBER_KERNELS_AREA_H
 
 #include "tile_state.h"
 
-/* Edges that are less high cover nothing. Those that go less to the side, px a px down, are upright. */
+/* Edges of less height cover nothing. Edges that go less to the side than this, in px per px down, count as vertical.
+ */
 #define CAMBER_AREA_FLAT_PX 1e-12f
 #define CAMBER_AREA_UPRIGHT 1e-12f
 
-/* Edges, one a lane, from their upper ends to their lower ones. */
+/* Edges, one per lane, from their upper ends to their lower ones. */
 typedef struct camber_ring_edges {
     camber_real x0, y0, x1, y1;
-    camber_real down; /* 1 where the ring goes down along the edge, else -1 */
+    camber_real down; /* 1 if the ring goes down along the edge, else -1 */
 } camber_ring_edges;
 
 CAMBER_FN void camber_ring_edges_of(camber_real ax, camber_real ay, camber_real bx, camber_real by,
@@ -40,12 +42,12 @@ CAMBER_FN void camber_ring_edges_of(camber_real ax, camber_real ay, camber_real 
     e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f);
 }
 
-/* Whether edges cross the line at height y. One that ends on it does, and one that begins on it does not. */
+/* Whether edges cross the horizontal line at y. An edge that ends on it does; one that begins on it does not. */
 CAMBER_FN camber_mask camber_edges_cross(const camber_ring_edges *e, float y) {
     return (e->y0 < y) & (e->y1 >= y);
 }
 
-/* Where they do. */
+/* Where they cross it. */
 CAMBER_FN camber_real camber_edges_crossing(const camber_ring_edges *e, float y) {
     const camber_real x = e->x0 + (y - e->y0) * ((e->x1 - e->x0) / (e->y1 - e->y0));
     const camber_real least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
@@ -54,8 +56,8 @@ CAMBER_FN camber_real camber_edges_crossing(const camber_ring_edges *e, float y)
 
 /* ---- wind: what lies left of a row's tiles ---- */
 
-/* A crossing of the top of a row of tiles: words. From its column on, the rings of its brush wind so many times more
- * around the corners of tiles. Those of a row are in drawing order. */
+/* The words of a crossing of the top of a row of tiles. From its column on, the winding number at the corners of tiles
+ * is higher by `times` for the rings of its brush. The crossings of a row are in drawing order. */
 #define CAMBER_CROSSING_BRUSH 0u
 #define CAMBER_CROSSING_PLACE 1u /* column | times << 16 */
 #define CAMBER_CROSSING_WORDS 2u
@@ -69,13 +71,13 @@ CAMBER_FN int camber_crossing_times(camber_u32 place) {
     return (int)(place >> 16 ^ 0x8000u) - 0x8000;
 }
 
-/* The first column of tiles whose corners lie right of x. */
+/* Returns the first column of tiles whose corners are right of x. */
 CAMBER_FN int camber_column_after(float x, float left, int columns) {
     const float at = (x - left) * (1.0f / CAMBER_TILE_PX);
-    return at >= 0.0f ? (at < (float)columns ? (int)at + 1 : columns) : 0; /* also of NaN */
+    return at >= 0.0f ? (at < (float)columns ? (int)at + 1 : columns) : 0; /* also for NaN */
 }
 
-/* Writes the crossings of one brush, and forgets its turns. Returns how many there are now. */
+/* Writes the crossings of one brush, and clears its turns. Returns how many crossings there are now. */
 CAMBER_FN camber_u32 camber_put_crossings(int *turns, int first, int last, camber_u32 brush,
                                           CAMBER_GLOBAL camber_u32 *crossings, camber_u32 count) {
     for (int column = first; column <= last; column++) {
@@ -95,14 +97,14 @@ CAMBER_FN camber_u32 camber_put_crossings(int *turns, int first, int last, cambe
     return count;
 }
 
-/* Segments of a list that may be edges, one a lane. */
+/* Segments of a list that may be edges, one per lane. */
 typedef struct camber_listed_edges {
     camber_ring_edges edges;
     camber_mask are_edges;
     camber_u32 brushes[CAMBER_LANES];
 } camber_listed_edges;
 
-/* Takes them from number `first` of a list on. Lanes behind its end are no edges. */
+/* Takes them from entry `first` of a list on. Lanes past its end are not edges. */
 CAMBER_FN void camber_take_listed(CAMBER_GLOBAL const float *edges, CAMBER_GLOBAL const camber_u32 *list,
                                   camber_u32 first, camber_u32 count, camber_listed_edges *l) {
     float words[4][CAMBER_LANES];
@@ -118,9 +120,9 @@ CAMBER_FN void camber_take_listed(CAMBER_GLOBAL const float *edges, CAMBER_GLOBA
     l->are_edges = CAMBER_LOAD(0, l->brushes) != CAMBER_NO_EDGE;
 }
 
-/* Makes the crossings of a row of tiles of the list of segments that may be edges and cross its top. Of edges that
- * cross it in one column, only the sum is left: mostly nothing. Returns how many crossings there are, at most one a
- * segment. */
+/* Makes the crossings of a row of tiles from the list of segments that may be edges and cross its top. For edges that
+ * cross it in the same column only the sum is kept, which is usually zero. Returns how many crossings there are, at
+ * most one per segment. */
 CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GLOBAL const camber_u32 *list,
                                      camber_u32 edge_count, camber_tile_grid of, float top,
                                      CAMBER_GLOBAL camber_u32 *crossings) {
@@ -154,20 +156,20 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GL
     return camber_put_crossings(turns, first, last, brush, crossings, count);
 }
 
-/* The crossings of a tile's row that no brush has taken yet: those of the brushes to come, the nearest last. */
+/* The crossings of a tile's row that no brush has taken yet: those of the brushes still to come, the next one last. */
 typedef struct camber_crossings_left {
     CAMBER_GLOBAL const camber_u32 *words;
-    camber_u32 first, end, column; /* column: of the tile */
+    camber_u32 first, end, column; /* column: that of the tile */
 } camber_crossings_left;
 
-/* The brush of the next crossing; 0, which has no area: there is none. */
+/* Returns the brush of the next crossing; 0, a brush without polygons: there is none. */
 CAMBER_FN camber_u32 camber_next_area(const camber_crossings_left *left) {
     return left->end > left->first
                ? left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_BRUSH]
                : 0u;
 }
 
-/* Takes the crossings of a brush. Returns how often its rings wind around the tile's corner. */
+/* Takes the crossings of a brush. Returns the winding number of its rings at the tile's corner. */
 CAMBER_FN int camber_take_winding(camber_crossings_left *left, camber_u32 brush) {
     int winding = 0;
     for (; camber_next_area(left) == brush && brush != 0u; left->end--) {
@@ -183,24 +185,26 @@ CAMBER_FN int camber_brush_is_area(const camber_brush *brush) {
     return brush->mode >= CAMBER_BRUSH_AREA;
 }
 
-/* How edges lie in a tile, one a lane, positions px from its corner. */
+/* Edges relative to a tile, one per lane. Positions are in px from its corner. */
 typedef struct camber_tile_edges {
-    camber_ring_edges in;      /* from where they enter it at the top or through its left side */
-    camber_real slope, aside;  /* px to the side a px down, and without its sign */
-    camber_real down;          /* a px down, in parts of a pixel, with the edge's sign */
-    camber_real rise;          /* half of how far down an edge goes a px to the side; 0 where it is upright */
-    camber_real turn, turn_at; /* the left side is wound around so many times more from there on */
-    camber_mask matters;     /* they change anything in the tile, or in any row of its cells; or they are flat and cross
-                                sides of cells, below which other windings begin */
-    camber_mask flat;        /* they lie level in the tile, and change nothing */
-    camber_mask first, last; /* rows of cells; the last lies before the first where an edge covers nothing */
-    camber_mask above, below; /* the first and the last row of cells along whose tops, just below, they are;
-                                 CAMBER_TILE_CELLS: the end of the tile */
-    camber_mask columns[CAMBER_TILE_CELLS + 1]; /* of cells, where they are at those tops; CAMBER_TILE_CELLS: right of
-                                                   the tile */
+    camber_ring_edges in;      /* from where they enter the tile at the top or through its left side */
+    camber_real slope, aside;  /* px to the side per px down, and its absolute value */
+    camber_real down;          /* one px of height in fixed point (CAMBER_AREA_ONE), with the edge's sign */
+    camber_real rise;          /* half of how far down an edge goes per px to the side; 0 if it is vertical */
+    camber_real turn, turn_at; /* from turn_at on, the winding number along the left side is higher by turn */
+    /* edges that change anything in the tile or in any row of its cells; or flat ones that cross sides of cells, below
+     * which the winding differs */
+    camber_mask matters;
+    camber_mask flat;        /* edges that are horizontal in the tile, and change nothing */
+    camber_mask first, last; /* rows of cells; the last is before the first if an edge covers nothing */
+    /* the first and the last row of cells whose tops they cross (just below them); CAMBER_TILE_CELLS: the end of the
+     * tile */
+    camber_mask above, below;
+    /* column of cells where they cross each of those tops; CAMBER_TILE_CELLS: right of the tile */
+    camber_mask columns[CAMBER_TILE_CELLS + 1];
 } camber_tile_edges;
 
-/* A position as a row or column of cells, of which there are `most`. */
+/* Returns a position as a row or column of cells, of which there are `most`. */
 CAMBER_FN camber_mask camber_cell_at(camber_real at, camber_mask counts, float most) {
     const camber_real none = CAMBER_REAL(0.0f), cell = (1.0f / CAMBER_CELL_PX) * at;
     return CAMBER_TO_INTEGERS((counts & (cell > none)) ? (cell < most ? cell : CAMBER_REAL(most)) : none);
@@ -221,7 +225,7 @@ CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camb
     e->y1 = leaves ? y : e->y1;
 }
 
-/* Finds how the wanted ones of edges lie in a tile, or in those rows of its cells that are drawn. */
+/* Computes the wanted edges relative to a tile, or to those rows of its cells that are drawn. */
 CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask wanted, camber_tile_rows where,
                                     camber_tile_edges *t) {
     const float side = (float)CAMBER_TILE_PX, cells = (float)CAMBER_TILE_CELLS;
@@ -259,7 +263,7 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     }
 }
 
-/* One of them. Where it is flat, y1 is y0, and slope is where it ends. */
+/* A single one of them. If it is flat, y1 is y0, and slope is the x at which it ends. */
 typedef struct camber_tile_edge {
     float x0, y0, y1, slope;
     int down;
@@ -269,7 +273,7 @@ CAMBER_FN int camber_tile_edge_is_flat(const camber_tile_edge *e) {
     return e->y0 == e->y1;
 }
 
-/* Where an edge is at y, px from the tile's left side, and as a column of cells. */
+/* Returns where an edge is at y, in px from the tile's left side, or as a column of cells. */
 CAMBER_FN float camber_edge_at(const camber_tile_edge *e, float y) {
     const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y;
     return e->x0 + (at - e->y0) * e->slope;
@@ -279,12 +283,12 @@ CAMBER_FN int camber_edge_column(float x) {
     return x > 0.0f ? (x < (float)CAMBER_TILE_PX ? (int)(x * (1.0f / CAMBER_CELL_PX)) : CAMBER_TILE_CELLS) : 0;
 }
 
-/* Columns of cells; the last lies before the first where there are none. */
+/* Columns of cells; the last is before the first if there are none. */
 typedef struct camber_cell_columns {
     int first, last;
 } camber_cell_columns;
 
-/* Those that an edge passes in a row of cells. */
+/* Computes the columns that an edge passes in a row of cells. */
 CAMBER_FN void camber_edge_columns(const camber_tile_edge *e, int row, camber_cell_columns *columns) {
     const float top = (float)(CAMBER_CELL_PX * row), bottom = top + CAMBER_CELL_PX;
     columns->first = 0;
@@ -297,7 +301,7 @@ CAMBER_FN void camber_edge_columns(const camber_tile_edge *e, int row, camber_ce
     columns->last = CAMBER_LESS(CAMBER_MORE(upper, lower), CAMBER_TILE_CELLS - 1);
 }
 
-/* A row of cells is about to be changed: without edges so far, it has no changes. */
+/* Prepares a row of cells for changes: if it has no edges so far, clears its changes. */
 CAMBER_FN void camber_area_take_row(camber_area_state *s, int row) {
     if (s->edged >> (CAMBER_TILE_CELLS * row) & 255u)
         return;
@@ -307,7 +311,7 @@ CAMBER_FN void camber_area_take_row(camber_area_state *s, int row) {
                 s->changes[CAMBER_OWN_ROW(row)][x][k][v] = CAMBER_WORD(0u);
 }
 
-/* A brush has no edges yet. */
+/* Begins a brush, which has no edges yet. */
 CAMBER_FN void camber_area_begin(camber_area_state *s) {
     for (int row = 0; row <= CAMBER_TILE_CELLS; row++)
         for (int x = 0; x <= CAMBER_TILE_CELLS; x++)
@@ -317,7 +321,7 @@ CAMBER_FN void camber_area_begin(camber_area_state *s) {
     s->placed_count = s->kept_count = 0;
 }
 
-/* The tops of the pixels of a vector of a cell, px from the tile's top. */
+/* Returns the tops of the pixels in a vector of a cell, in px from the tile's top. */
 CAMBER_FN camber_real camber_area_tops(int row, int v) {
     return (float)(CAMBER_CELL_PX * row) + camber_rows_of_cell(v);
 }
@@ -327,7 +331,7 @@ CAMBER_FN camber_real camber_between(camber_real x, float least, float most) {
     return above < most ? above : CAMBER_REAL(most);
 }
 
-/* From y on, px from the tile's top, the left side of the tile is wound around so many times more. */
+/* From y on, in px from the tile's top, raises the winding number along the tile's left side. */
 CAMBER_FN void camber_area_turn(camber_area_state *s, float y, float times, camber_tile_rows where) {
     int row = (int)y / CAMBER_CELL_PX;
     if (y > (float)(CAMBER_CELL_PX * row)) {
@@ -346,7 +350,7 @@ CAMBER_FN void camber_area_turn(camber_area_state *s, float y, float times, camb
         s->turns[row][0] += (int)times;
 }
 
-/* The piece of an edge in each row of pixels of a vector. height: in parts of a pixel, with the edge's sign. */
+/* The piece of an edge in each row of pixels of a vector. height is in fixed point, with the edge's sign. */
 typedef struct camber_edge_pieces {
     camber_real left, right, wide, height;
 } camber_edge_pieces;
@@ -360,7 +364,7 @@ CAMBER_FN void camber_edge_pieces_of(const camber_tile_edges *t, int k, camber_r
     p->height = height * camber_lane_of(&t->down, k);
 }
 
-/* How much of the pieces' rows lies right of them and left of x, in parts of a pixel. */
+/* Returns the area in the pieces' rows that is right of them and left of x, in fixed point. */
 CAMBER_FN camber_real camber_edge_pieces_left_of(const camber_edge_pieces *p, float rise, camber_real x) {
     const camber_real none = CAMBER_REAL(0.0f);
     camber_real inner = x - p->left, past = x - p->right;
@@ -370,8 +374,8 @@ CAMBER_FN camber_real camber_edge_pieces_left_of(const camber_edge_pieces *p, fl
     return rise * inner * inner + p->height * past;
 }
 
-/* Each pixel has what lies left of its right side, less what lies left of the pixel before. before: the same of the
- * cell before. */
+/* Returns for each pixel what is left of its right side, minus what is left of the previous pixel's. before: the same
+ * value of the previous cell. */
 CAMBER_FN camber_real camber_of_pixels(const camber_real *all, const camber_real *before, int v) {
 #if CAMBER_LANES == 1
     return all[v] - (v % CAMBER_CELL_PX ? all[v - 1] : before[v + CAMBER_CELL_PX - 1]);
@@ -387,13 +391,13 @@ CAMBER_FN camber_real camber_of_pixels(const camber_real *all, const camber_real
 #endif
 }
 
-/* How much of the pieces' rows lies left of the right sides of the pixels in a column of cells. */
+/* Returns how much of the pieces' rows is left of the right sides of the pixels in a column of cells. */
 CAMBER_FN camber_real camber_edge_pieces_until(const camber_edge_pieces *p, float rise, int column, int v) {
     return camber_edge_pieces_left_of(p + v, rise, (float)(CAMBER_CELL_PX * column + 1) + camber_columns_of_cell(v));
 }
 
-/* Adds edge k of a vector to the columns of a row of cells, and to all that is right of them. What lies left of the
- * columns that are drawn changes the first of those. */
+/* Adds edge k of a vector to the columns of a row of cells, and to everything right of them. What is left of the drawn
+ * columns changes the first of those. */
 CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row,
                                    const camber_cell_columns *at, camber_tile_rows where) {
     const int past = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS,
@@ -422,7 +426,7 @@ CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges
     }
 }
 
-/* Marks the cells that edge k of a vector passes, which is flat: above and below it they are wound around otherwise. */
+/* Marks the cells that a flat edge k of a vector passes: the winding number above it differs from that below it. */
 CAMBER_FN void camber_area_mark_flat(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
     const float x0 = camber_lane_of(&t->in.x0, k), x1 = camber_lane_of(&t->in.x1, k), y = camber_lane_of(&t->in.y0, k);
     const float least = CAMBER_LESS(x0, x1), most = CAMBER_MORE(x0, x1), side = (float)CAMBER_TILE_PX - 1.0f;
@@ -434,8 +438,8 @@ CAMBER_FN void camber_area_mark_flat(camber_area_state *s, const camber_tile_edg
     s->edged |= (((camber_u64)2 << to) - ((camber_u64)1 << from)) << (CAMBER_TILE_CELLS * row);
 }
 
-/* Adds edge k of a vector to the cells that it passes, and turns the corners right of where it crosses tops of cells.
- */
+/* Adds edge k of a vector to the cells that it passes, and changes the winding at corners right of where it crosses
+ * tops of cells. */
 CAMBER_FN void camber_area_add_edge(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
     const int first = camber_integer_of(&t->first, k), last = camber_integer_of(&t->last, k);
     const int above = camber_integer_of(&t->above, k), below = camber_integer_of(&t->below, k);
@@ -465,7 +469,7 @@ CAMBER_FN void camber_placed_edge_of(const camber_area_state *s, int k, camber_t
     e->down = s->placed[4][k] > 0.0f ? 1 : -1;
 }
 
-/* Whether the edge behind those that are kept is kept, too. A work-item that draws a cell keeps those that pass it. */
+/* Whether the next edge is kept too. A work-item that draws a cell keeps the edges that pass it. */
 CAMBER_FN int camber_area_keeps(const camber_area_state *s, camber_tile_rows where) {
 #if CAMBER_OWN_SIDE == 1
     camber_tile_edge e;
@@ -480,7 +484,7 @@ CAMBER_FN int camber_area_keeps(const camber_area_state *s, camber_tile_rows whe
 #endif
 }
 
-/* Keeps the first `count` edges of a vector, in case that areas overlap. */
+/* Keeps the first `count` edges of a vector, in case polygons overlap. */
 CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *t, int count, camber_tile_rows where) {
     const camber_real one = CAMBER_REAL(1.0f), way = t->turn == 0.0f         ? one
                                                      : t->turn == t->in.down ? CAMBER_REAL(CAMBER_PLACED_LEAVES)
@@ -515,7 +519,7 @@ CAMBER_FN void camber_area_add(camber_area_state *s, const camber_tile_edges *t,
         const float turn = camber_lane_of(&t->turn, k);
         if (turn != 0.0f)
             camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
-        /* An edge that begins where the last row of cells ends turns the corners of that end. */
+        /* An edge that begins where the last row of cells ends changes the winding at the corners of that end. */
         if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k) ||
             camber_integer_of(&t->above, k) <= camber_integer_of(&t->below, k))
             camber_area_add_edge(s, t, k, where);

@@ -1,26 +1,26 @@
-/* Areas: what is inside of a brush's rings, from what their edges change in a tile (area.h).
+/* Polygons: computes what is inside a brush's rings from what their edges change in a tile (area.h).
  *
- * Main idea: where a pixel is wound around once or not at all, the sum of its windings is its area, exactly. Where
- * areas of one fill overlap or cross, windings of 2 count as 1, and a sum hides that. Cells that have such pixels are
- * found by their sums and by the windings around their corners; there are few. The edges that reach into such a cell
- * cut rows of samples at exact places. What windings are too much between them is taken from the sum:
+ * Main idea: if the winding numbers in a pixel are only 0 and 1, their sum is exactly the area inside. If polygons of
+ * one fill overlap or cross, a winding number of 2 must count as 1, which a sum hides. Cells with such pixels are found
+ * by their sums and by the winding numbers at their corners; there are few. The edges that reach into such a cell cut
+ * rows of samples at exact positions. The excess winding between them is subtracted from the sum:
  *
  *      once  twice  once
  *     ----+-------+-------    a row of samples: the sum has 2 between the edges, and 1 too much
  *         e1      e2
  *
- * So a pixel without such windings keeps its sum. Lanes are rows of samples here. */
+ * So a pixel without such winding numbers keeps its sum. Here a lane is a row of samples. */
 #ifndef CAMBER_KERNELS_AREA_INSIDE_H
 #define CAMBER_KERNELS_AREA_INSIDE_H
 
 #include "area.h"
 
-/* Sums that are off by less are those of areas that do not overlap. */
+/* Sums that are off by less than this belong to polygons that do not overlap. */
 #define CAMBER_AREA_SLACK (CAMBER_AREA_ONE / 1024)
-/* An area that is less than this is nothing, and one that is less than this short of a pixel is all of it. */
+/* An area less than this counts as 0, and one less than this short of a pixel as the whole pixel. */
 #define CAMBER_AREA_LEAST 1e-5f
 
-/* How much of pixels is inside, by the sums of their windings. */
+/* Returns how much of each pixel is inside, given the sum of its winding numbers. */
 CAMBER_FN camber_mask camber_area_inside(camber_mask sum, camber_u32 mode) {
     const camber_mask one = (camber_mask)(CAMBER_AREA_ONE);
     const camber_mask inside = sum < 0 ? -sum : sum, rest = inside & (2 * CAMBER_AREA_ONE - 1);
@@ -29,32 +29,32 @@ CAMBER_FN camber_mask camber_area_inside(camber_mask sum, camber_u32 mode) {
     return CAMBER_LESS(inside, one);
 }
 
-/* Whether all is inside where the rings wind so many times. */
+/* Whether a point with this winding number is inside. */
 CAMBER_FN int camber_winding_is_inside(int winding, camber_u32 mode) {
     return mode == CAMBER_BRUSH_AREA_EVENODD ? winding & 1 : winding != 0;
 }
 
 /* ---- Overlaps ---- */
 
-/* An edge in a cell: the line on which it lies, and the heights between which it turns rows of samples. */
+/* An edge in a cell: its line, and the heights between which it changes the winding of rows of samples. */
 typedef struct camber_cell_edge {
     float x, y, slope, from, to, down;
 } camber_cell_edge;
 
-/* A cell in which rings may overlap: how often they wind around where its rows of samples begin, and its edges. */
+/* A cell in which rings may overlap: the winding numbers at which its rows of samples begin, and its edges. */
 typedef struct camber_piled_cell {
     int row, column, edge_count;
-    camber_real begin[CAMBER_CELL_PX][CAMBER_VECTORS]; /* of each row of pixels */
+    camber_real begin[CAMBER_CELL_PX][CAMBER_VECTORS]; /* for each row of pixels */
     camber_cell_edge edges[CAMBER_OVERLAP_EDGES];
 } camber_piled_cell;
 
-/* The edges that pass the cells of a row of them. counts: more than CAMBER_OVERLAP_EDGES where not all are here. */
+/* The edges that pass the cells of one row. counts: more than CAMBER_OVERLAP_EDGES if not all edges are listed here. */
 typedef struct camber_row_lists {
     int counts[CAMBER_TILE_CELLS];
     camber_u16 edges[CAMBER_TILE_CELLS][CAMBER_OVERLAP_EDGES];
 } camber_row_lists;
 
-/* Lists the edges of those cells of a row, a bit each. */
+/* Lists the edges of the given cells of a row, which are one bit each. */
 CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 cells, camber_row_lists *lists) {
     for (int x = 0; x < CAMBER_TILE_CELLS; x++)
         lists->counts[x] = 0;
@@ -73,20 +73,20 @@ CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 c
     }
 }
 
-/* Where the sixteen rows of samples of a row of pixels lie, px from the tile's top. */
+/* Returns the positions of the sixteen rows of samples of a row of pixels, in px from the tile's top. */
 CAMBER_FN camber_real camber_piled_cell_rows(const camber_piled_cell *o, int row, int v) {
     return (float)(CAMBER_CELL_PX * o->row) + (camber_numbers(v) + ((float)(16 * row) + 0.5f)) * (1.0f / 16);
 }
 
-/* From y on, rows of samples are wound around so many times more where they begin. */
+/* From y on, raises the winding number at which rows of samples begin. */
 CAMBER_FN void camber_piled_cell_turn(camber_piled_cell *o, float y, float times) {
     for (int row = 0; row < CAMBER_CELL_PX; row++)
         for (int v = 0; v < CAMBER_VECTORS; v++)
             o->begin[row][v] += camber_piled_cell_rows(o, row, v) > y ? CAMBER_REAL(times) : CAMBER_REAL(0.0f);
 }
 
-/* Adds an edge to a cell. What of it lies left of the cell is cut off, as at the tile's own left side. A flat one turns
- * no row of samples, but below it rows may begin with another winding. */
+/* Adds an edge to a cell. The part of it that is left of the cell is cut off, as at the tile's own left side. A flat
+ * edge changes no row of samples, but below it rows may begin with another winding number. */
 CAMBER_FN void camber_piled_cell_add(camber_piled_cell *o, const camber_tile_edge *e) {
     const float top = (float)(CAMBER_CELL_PX * o->row), left = (float)(CAMBER_CELL_PX * o->column);
     if (camber_tile_edge_is_flat(e)) {
@@ -108,7 +108,7 @@ CAMBER_FN void camber_piled_cell_add(camber_piled_cell *o, const camber_tile_edg
     to->to = x0 < left ? to->to : y;
 }
 
-/* Finds the edges of a cell. winding: of its upper left corner. */
+/* Finds the edges of a cell. winding: the winding number at its upper left corner. */
 CAMBER_FN void camber_piled_cell_of(const camber_area_state *s, const camber_row_lists *lists, int winding,
                                     camber_piled_cell *o) {
     const camber_u16 *edges = lists->edges[o->column];
@@ -128,7 +128,7 @@ CAMBER_FN void camber_piled_cell_of(const camber_area_state *s, const camber_row
     }
 }
 
-/* How much less is inside than a winding says, by its sign in this cell. */
+/* Returns the excess of a winding number over what is inside, given its sign in this cell. */
 CAMBER_FN camber_real camber_too_much(camber_real winding, float sign, camber_u32 mode) {
     const camber_real one = CAMBER_REAL(1.0f);
     camber_real inside = CAMBER_FABS(winding);
@@ -137,13 +137,14 @@ CAMBER_FN camber_real camber_too_much(camber_real winding, float sign, camber_u3
     return sign * winding - CAMBER_LESS(inside, one);
 }
 
-/* The edges that turn the rows of samples of a row of pixels: where, px from the cell's left side, and how often. */
+/* The edges that change the winding in the rows of samples of a row of pixels: where, in px from the cell's left side,
+ * and by how much. */
 typedef struct camber_row_edges {
     camber_real at[CAMBER_OVERLAP_EDGES], turns[CAMBER_OVERLAP_EDGES];
     int count;
 } camber_row_edges;
 
-/* The same in vector v of a row. */
+/* Computes these for vector v of a row. */
 CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, camber_row_edges *s) {
     const camber_real y = camber_piled_cell_rows(o, row, v), none = CAMBER_REAL(0.0f);
     const float top = (float)(CAMBER_CELL_PX * o->row + row);
@@ -157,7 +158,7 @@ CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, c
     }
 }
 
-/* Adds to each pixel what its sum has too much in a vector of rows of samples. much: of the rows, for each column. */
+/* Adds to each pixel the excess of its sum in a vector of rows of samples. much: that of the rows, for each column. */
 CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin, float sign, camber_u32 mode,
                                    camber_real much[CAMBER_CELL_PX]) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), from = camber_too_much(begin, sign, mode);
@@ -177,7 +178,7 @@ CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin,
     }
 }
 
-/* Takes what is too much from the sums of a row of pixels of cell i, which become what is inside. */
+/* Subtracts the excess from the sums of a row of pixels of cell i, which then become what is inside. */
 CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_cell *o, int i, int row, float sign) {
     const int first = CAMBER_CELL_PX * row;
     const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
@@ -196,7 +197,8 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
     }
 }
 
-/* Finds what is inside of the pixels of cells of a row in which rings may overlap. Their sums have been found. */
+/* Computes what is inside for the pixels of those cells of a row in which rings may overlap. Their sums must have been
+ * computed. */
 CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells, camber_tile_rows where) {
     const camber_area_state *s = &c->area;
     camber_row_lists lists;
@@ -223,18 +225,18 @@ CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u
 
 /* ---- The inside ---- */
 
-/* The cells of a tile, a bit each: those that lie inside as a whole, and those of which a part may. */
+/* Cells of a tile, one bit each: those that are completely inside, and those that may be partly inside. */
 typedef struct camber_area_cells {
     camber_u64 whole, partial;
 } camber_area_cells;
 
-/* How the rings wind around the corners of a cell: the least and the most times. */
+/* The least and the greatest winding number at the corners of a cell. */
 typedef struct camber_corners {
     int least, most;
 } camber_corners;
 
-/* Whether rings may overlap in a cell, by its sums and its corners. Where all of it lies inside by the rule that is not
- * even-odd, that changes nothing. */
+/* Whether rings may overlap in a cell, given its sums and its corners. If all of it is inside by the nonzero rule,
+ * overlaps do not matter. */
 CAMBER_FN int camber_cell_overlaps(const camber_mask *sums, camber_corners of, camber_u32 mode, int is_whole) {
     const int one = CAMBER_AREA_ONE, slack = CAMBER_AREA_SLACK;
     if (is_whole && mode != CAMBER_BRUSH_AREA_EVENODD && (of.most <= -1 || of.least >= 1))
@@ -248,8 +250,8 @@ CAMBER_FN int camber_cell_overlaps(const camber_mask *sums, camber_corners of, c
     return of.least < -1 || of.most > 1 || of.most - of.least > 1;
 }
 
-/* Finds what is inside of a cell that edges pass. sums: of the windings of its pixels. Returns whether rings may
- * overlap there. */
+/* Computes what is inside in a cell that edges pass. sums: the sums of its pixels' winding numbers. Returns whether
+ * rings may overlap there. */
 CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_mask *sums, camber_corners of,
                                     camber_area_cells *found) {
     const float part = 1.0f / CAMBER_AREA_ONE;
@@ -271,8 +273,8 @@ CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_ma
     return 0;
 }
 
-/* Adds up what the edges of a row of cells change, from left to right, and finds what is inside. A cell that no edge
- * passes is all inside or all outside, as one of its pixels is. */
+/* Adds up what the edges of a row of cells change, from left to right, and computes what is inside. A cell that no edge
+ * passes is completely inside or outside, like any of its pixels. */
 CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_tile_rows where,
                                     camber_area_cells *found) {
     const int *turns_above = c->area.turns[row], *turns_below = c->area.turns[row + 1];
@@ -308,8 +310,8 @@ CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hi
         camber_area_find_overlaps(c, row, overlaps, where);
 }
 
-/* Finds the cells that have something inside of the brush's rings, and ends the rings. What is inside of those of which
- * a part may be is in c->sums then. A row of cells that no edge passes is all inside or all outside. */
+/* Finds the cells that have something inside the brush's rings, and ends the rings. For those that may be partly
+ * inside, c->sums then has what is inside. A row of cells that no edge passes is completely inside or outside. */
 CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_area_cells *found) {
     const camber_u64 hidden = c->done | c->filled, edged = c->area.has_edges ? c->area.edged : 0;
     found->whole = found->partial = 0;
@@ -324,7 +326,7 @@ CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, ca
     c->winding = 0;
 }
 
-/* Draws what the brush's rings have inside, before the brush is closed. */
+/* Draws what is inside the brush's rings, before the brush is closed. */
 CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
     camber_area_cells found;
     camber_area_find(c, where, &found);

@@ -1,5 +1,5 @@
-/* bin_count: counts for each chunk of segments how many of them each tile has, and, behind the tiles, how many of
- * those among which the edges of rings are may cross the top of each row of tiles. A work-item takes a chunk.
+/* bin_count: counts for each chunk of segments how many of them touch each tile, and, after the tiles, how many edges
+ * of rings may cross the top of each row of tiles. A work-item takes a chunk.
  * Reads segments, edges, boxes[segment_count], as setup writes them. Writes counts[chunks * lists]. */
 #include "bins.cl"
 

@@ -1,6 +1,6 @@
 /* bin_scatter: writes the list of each tile, its segments in drawing order. A work-item takes a chunk of segments. It
  * puts them where bin_count and bin_scan have made room, so that the order does not depend on the number of chunks.
- * Behind the tiles' lists come those of rows of tiles, whose tops edges of rings may cross.
+ * After the tiles' lists come those of rows of tiles, with the edges of rings that may cross their tops.
  * Reads segments, edges, boxes[segment_count], as setup writes them, and starts[lists]. Advances counts[chunks * lists]
  * to each chunk's end. Writes lists[starts[lists]]. */
 #include "bins.cl"

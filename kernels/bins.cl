@@ -1,16 +1,16 @@
-/* The lists that segments go to: those of tiles, and, behind them, those of rows of tiles whose tops edges of rings may
- * cross. bin_count and bin_scatter take a chunk of segments each, in the same steps.
+/* The lists that segments go to: those of tiles, and, after them, those of rows of tiles, for the edges of rings that
+ * may cross their tops. bin_count and bin_scatter take a chunk of segments each, in the same steps.
  *
- * Most boxes are one tile or two, away from the area's sides, and all segments that have such a box touch each of its
- * tiles. Sixteen of those are looked at together. What they go to is written down first, without a branch: no processor
- * foresees which box is one tile. The others are taken one by one. */
+ * Most boxes are one tile or two, away from the area's sides, and a segment with such a box touches all of its tiles.
+ * These are handled sixteen at a time. First the entries are written to a queue without a branch, since no processor
+ * can predict which box is a single tile. The other boxes are handled one by one. */
 #ifndef CAMBER_BINS_CL
 #define CAMBER_BINS_CL
 
 #include "segment.h"
 
-/* Entries of lists that wait to be put: a list's number above LISTED_BITS, below it which segment, from `base` on. A
- * row of tiles and its top have at most LISTED_ROOM, sixteen boxes 3 each. */
+/* Queued entries of lists: the list's number above LISTED_BITS, below it the segment's number relative to `base`. A row
+ * of tiles and its top have at most LISTED_ROOM entries, and sixteen boxes have 3 each. */
 #define LISTED_MOST 512
 #define LISTED_ROOM (CAMBER_TILES_MAX + 1)
 #define LISTED_BITS 12
@@ -22,10 +22,10 @@ typedef struct listed {
 /* Where listed segments go. */
 typedef struct bins {
     global const camber_u32 *starts;
-    global camber_u32 *own, *lists; /* own: the chunk's counts. lists: NULL where segments are only counted */
+    global camber_u32 *own, *lists; /* own: the chunk's counts. lists: NULL if segments are only counted */
 } bins;
 
-/* Puts all that waits. base: the segment from which on entries count next. */
+/* Puts all queued entries. base: the segment that further entries are relative to. */
 static __attribute__((noinline)) void put_listed(const bins *to, listed *l, camber_u32 base) {
     const camber_u32 count = l->count, from = l->base;
     for (camber_u32 i = 0; i < count && !to->lists; i++)
@@ -56,17 +56,18 @@ static __attribute__((noinline)) void list_any(global const float *segments, glo
     }
 }
 
-/* Sixteen boxes: the entries of the first and the last tile, and of the row whose top lies between them; whether there
- * are these: 1 or 0. A box that is another has none. */
+/* Sixteen boxes: the entries of the first and the last tile, and of the row whose top is between them; and for each
+ * whether it exists, 1 or 0. A box of another kind has none of them. */
 typedef struct sixteen_boxes {
     camber_u32 first[16], last[16], top[16], has_first[16], has_last[16], has_top[16], is_other[16];
 } sixteen_boxes;
 
-/* 1 where a number is below 0, and where it is not 0. No comparisons: oclgrind 21.10 gets their negation wrong. */
+/* 1 if a number is below 0, and 1 if it is not 0. These are not comparisons, because oclgrind 21.10 gets their negation
+ * wrong. */
 #define BELOW_0(x) ((camber_u32)(x) >> 31)
 #define NOT_0(x) min(x, 1u)
 
-/* from: the first segment; base: the one from which on entries count. A loop, which the compiler makes vectors of. */
+/* from: the first segment; base: the one that entries are relative to. The compiler vectorises this loop. */
 static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from, camber_u32 base,
                                  const camber_bin_args *c, sixteen_boxes *b) {
     const camber_u32 columns = c->of.columns, rows = c->of.rows, edges = c->edge_count;
@@ -76,7 +77,8 @@ static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from
         const camber_u32 x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
         const camber_u32 wide = x1 - x0, high = y1 - y0, undrawn = BELOW_0(wide), at_top = BELOW_0(y0 - 1u);
         const camber_u32 among_edges = 1u - NOT_0(BELOW_0(edge) + BELOW_0(edges - 1u - edge));
-        /* camber_tile_span: away from two sides of the area, a column of tiles or a row is all that is in the box. */
+        /* camber_tile_span: away from two sides of the area, a box of one column or row of tiles has all of its tiles.
+         */
         const camber_u32 at_sides = BELOW_0(x0 - 1u) | BELOW_0(columns - 2u - x0);
         const camber_u32 at_ends = at_top | BELOW_0(rows - 2u - y0);
         const camber_u32 other =

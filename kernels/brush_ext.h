@@ -1,36 +1,37 @@
-/* The extension of a brush with features, as kernels and their twin read it, and how features cut the cells of a tile.
+/* The extension of a brush with features, as the kernels and the twin read it, and how features cut the cells of a
+ * tile.
  *
  * Input: a brush's extension, the side table that it points into, and the segment's arc length. Output: camber_extras,
- * and whether a cell needs a look at all. */
+ * and whether a cell needs to be considered at all. */
 #ifndef CAMBER_KERNELS_BRUSH_EXT_H
 #define CAMBER_KERNELS_BRUSH_EXT_H
 
 #include "features.h"
 #include "segment.h"
 
-/* Words of a segment's arc length: how far along its line A lies, px; how much of the line a px of the segment is; the
- * line's length, px; 0. */
+/* Words of a segment's arc length: how far along its line A is, in px; the arc length of the line per px of the
+ * segment; the line's length, in px; 0. */
 #define CAMBER_SEGMENT_ARC_LENGTHS 4
 
 /* One for each brush. It points into the side table, which is counted in float4s. A dash takes one: where it begins and
- * ends, px; the list repeats the period's last dash before the first, and its first behind the last. A stop of a ramp
+ * ends, in px; the list repeats the period's last dash before the first, and its first after the last. A stop of a ramp
  * takes two: its position, and its premultiplied colour. */
 typedef struct camber_brush_ext {
     camber_u32 features;
     float half_gap, blur, period; /* px; a blur below 0 fades by a smooth step */
     camber_u32 first_dash, dash_count, round_dashes, image;
     camber_u32 first_stop, stop_count;
-    float trim_from, trim_to; /* as shares of the line's length */
+    float trim_from, trim_to; /* as fractions of the line's length */
 } camber_brush_ext;
 
-/* How much of the line's arc length a px of the segment is. */
+/* Returns the arc length of the line per px of the segment. */
 CAMBER_FN camber_real camber_segment_rate(const camber_segment *s, camber_real from, camber_real to) {
     const camber_real dx = s->bx - s->ax, dy = s->by - s->ay, length = CAMBER_SQRT(dx * dx + dy * dy);
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
     return length > 0.0f ? (to - from) / (length > 0.0f ? length : one) : none;
 }
 
-/* Works out the coefficients of a segment's features. */
+/* Computes the coefficients of a segment's features. */
 CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, CAMBER_GLOBAL const float *arc_length,
                                 CAMBER_GLOBAL const float *side_table, camber_extras *e) {
     e->features = brush_ext->features;
@@ -55,14 +56,15 @@ CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, CAMBER_GLOBAL
 
 /* ---- Cells ---- */
 
-/* How a cell lies to a segment: outside it, near an end of it, across one of its sides, or all inside it. */
+/* The position of a cell relative to a segment: outside it, near an end of it, across one of its sides, or completely
+ * inside it. */
 #define CAMBER_CELL_OUTSIDE 0u
 #define CAMBER_CELL_NEAR_END 1u
 #define CAMBER_CELL_PARTIAL 2u
 #define CAMBER_CELL_FULL 3u
 
 #if !CAMBER_STROKE_PITCHED
-/* The arc lengths between which the pixels of a cell lie, px, by the position of its middle. */
+/* Computes the range of arc lengths of a cell's pixels, in px, from the position of its middle. */
 CAMBER_FN void camber_extras_range(const camber_edge *p, const camber_extras *e, float x, float *low, float *high) {
     const float reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy)), from = x - reach, to = x + reach;
     const float first = from > 0.0f ? from : 0.0f, last = to > 0.0f ? to : 0.0f;
@@ -72,7 +74,7 @@ CAMBER_FN void camber_extras_range(const camber_edge *p, const camber_extras *e,
     *high = (at_first < at_last ? at_last : at_first) + p->side.extent + 0.01f;
 }
 
-/* Whether dashes leave a cell empty, cut it, or leave all of it. */
+/* Returns whether dashes leave a cell empty, cut it, or leave all of it. */
 CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extras *e, float low, float high) {
     const float spread = e->round_dashes ? p->half_width + p->side.extent : 0.0f;
     const float periods = low / e->period;
@@ -92,8 +94,8 @@ CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extra
     return whole ? CAMBER_CELL_FULL : some ? CAMBER_CELL_NEAR_END : CAMBER_CELL_OUTSIDE;
 }
 
-/* How a cell lies to a segment with features, if `meets` is how it lies to a plain one. x and y: the cell's middle,
- * along and across the segment. */
+/* Returns the position of a cell relative to a segment with features, given `meets`, its position relative to a plain
+ * one. x and y: the cell's middle, along and across the segment. */
 CAMBER_FN camber_u32 camber_extras_cell(const camber_edge *p, const camber_extras *e, camber_u32 meets, float x,
                                         float y) {
     const float aside = CAMBER_FABS(y), blur = CAMBER_FABS(e->blur),

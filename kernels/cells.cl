@@ -1,11 +1,11 @@
-/* The cells of a tile in kernels: positions that are worked out once a tile, and sets of cells, a bit each. */
+/* The cells of a tile in kernels: positions that are computed once per tile, and sets of cells, one bit each. */
 #ifndef CAMBER_CELLS_CL
 #define CAMBER_CELLS_CL
 
 #include "cells.h"
 
-/* Positions in the picture, px: of the pixels of a cell, by its column or row, and of the middles of as many cells as a
- * vector has lanes, row by row, from the tile's first cell on. */
+/* Positions in the picture, in px: of the pixels of a cell, by its column or row, and of the middles of as many cells
+ * as a vector has lanes, row by row, from the tile's first cell on. */
 typedef struct positions {
     camber_real x[CAMBER_TILE_CELLS], y[CAMBER_TILE_CELLS][CAMBER_VECTORS];
     camber_real middle_x, middle_y;
@@ -28,7 +28,7 @@ static inline void begin_positions(positions *at, float left, float top) {
     at->middle_y = top + middle + CAMBER_CELL_PX * CAMBER_LOAD(0, CELL_ROWS);
 }
 
-/* The lanes of a mask as bits, the first one the lowest. */
+/* Returns the lanes of a mask as bits, the first one the lowest. */
 static inline uint bits_of(camber_mask lanes) {
     uint words[CAMBER_LANES], bits = 0;
     CAMBER_STORE(CAMBER_AS_WORDS(lanes) & CAMBER_LOAD(0, LANE_BITS), 0, words);
@@ -37,7 +37,7 @@ static inline uint bits_of(camber_mask lanes) {
     return bits;
 }
 
-/* Cells, a bit each: those that a segment touches, those that an end is near to, and those that it fills. */
+/* Cells, one bit each: those that a segment touches, those that an end is near, and those that it fills. */
 typedef struct cell_sets {
     ulong partial, near_end, full;
 } cell_sets;

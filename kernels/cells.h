@@ -1,8 +1,8 @@
-/* The cells of a tile: the box of cells around a segment, and how each cell lies to it.
+/* The cells of a tile: the box of cells around a segment, and the position of each cell relative to it.
  *
- * Input: what a segment takes of the picture, its coefficients, and the rows of cells of a tile that are drawn. Output:
- * boxes and masks of cells. A lane is a segment or a cell, as the caller fills it, so that sixteen segments and the
- * cells of one are sorted by the same text. */
+ * Input: the footprint of a segment in the picture, its coefficients, and the rows of cells of a tile that are drawn.
+ * Output: boxes and masks of cells. A lane is a segment or a cell, as the caller fills it, so that sixteen segments and
+ * the cells of one segment are sorted by the same code. */
 #ifndef CAMBER_KERNELS_CELLS_H
 #define CAMBER_KERNELS_CELLS_H
 
@@ -12,8 +12,8 @@
 /* A vector has CAMBER_LANES of the sixteen pixels of a cell, row by row, or of sixteen segments. */
 #define CAMBER_VECTORS (16 / CAMBER_LANES)
 
-/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. What is kept of rows and columns of
- * cells lies at CAMBER_OWN_ROW and CAMBER_OWN_COLUMN, and what is kept of a cell at CAMBER_OWN_CELL. */
+/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. What is stored per row or column of
+ * cells is at CAMBER_OWN_ROW or CAMBER_OWN_COLUMN, and what is stored per cell at CAMBER_OWN_CELL. */
 #if defined(CAMBER_DEVICE) && CAMBER_LANES == 1
 #define CAMBER_OWN_SIDE 1
 #define CAMBER_OWN_ROW(row) 0
@@ -29,10 +29,10 @@
 #endif
 #define CAMBER_OWN_CELLS (CAMBER_OWN_SIDE * CAMBER_OWN_SIDE)
 #define CAMBER_OWN_CELL(row, x, where) (CAMBER_OWN_SIDE * CAMBER_OWN_ROW(row) + CAMBER_OWN_COLUMN(x, where))
-/* The cells of a row, a bit each. */
+/* The cells of a row, one bit each. */
 #define CAMBER_OWN_CELLS_OF(row) ((camber_u64)((1 << CAMBER_OWN_SIDE) - 1) << (CAMBER_OWN_SIDE * CAMBER_OWN_ROW(row)))
 
-/* Rows of cells [first, last] of a tile, and where the tile lies in the picture, px. */
+/* Rows of cells [first, last] of a tile, and the position of the tile in the picture, in px. */
 typedef struct camber_tile_rows {
     float left, top;
     int first, last;
@@ -75,12 +75,12 @@ CAMBER_FN camber_real camber_numbers(int v) {
 
 /* ---- Boxes ---- */
 
-/* Where a segment lies in the picture: A, B, and how far around them it reaches, px. */
+/* The position of a segment in the picture: A, B, and how far around them it reaches, in px. */
 typedef struct camber_footprint {
     camber_real ax, ay, bx, by, reach;
 } camber_footprint;
 
-/* That of one segment, in all lanes the same. */
+/* Computes that of one segment, the same in all lanes. */
 CAMBER_FN void camber_footprint_of(CAMBER_GLOBAL const float *segment, camber_footprint *f) {
     f->ax = CAMBER_REAL(segment[CAMBER_SEGMENT_AX]);
     f->ay = CAMBER_REAL(segment[CAMBER_SEGMENT_AY]);
@@ -89,7 +89,7 @@ CAMBER_FN void camber_footprint_of(CAMBER_GLOBAL const float *segment, camber_fo
     f->reach = CAMBER_REAL(segment[CAMBER_SEGMENT_REACH]);
 }
 
-/* Boxes of cells: the first cell, and how many cells along each side; 0 where a segment meets none. */
+/* Boxes of cells: the first cell, and how many cells along each side; 0 if a segment touches none. */
 typedef struct camber_cell_boxes {
     camber_mask x, y, columns, rows; /* as integers */
 } camber_cell_boxes;
@@ -116,10 +116,11 @@ CAMBER_FN void camber_cell_boxes_of(const camber_footprint *f, camber_tile_rows 
 
 /* ---- How cells lie to segments from above; edge.h has it for a pitch ---- */
 
-/* The bounds by which the position of a cell's middle tells how the cell lies to a segment, px. */
+/* Bounds, in px, that the position of a cell's middle is compared with to find the cell's position relative to a
+ * segment. */
 typedef struct camber_cell_bounds {
-    camber_real wide, full;       /* to the side of the line: of cells that it touches, and that it fills */
-    camber_real near_a, near_b;   /* along the line: an end matters before the one and behind the other */
+    camber_real wide, full;       /* to the side of the line: for cells that it touches, and for cells that it fills */
+    camber_real near_a, near_b;   /* along the line: an end matters before the first and after the second */
     camber_real near_fa, near_fb; /* the same, past the bisectors */
     camber_real far_a, far_b;     /* past the bisectors, where the neighbour has all pixels */
 } camber_cell_bounds;
@@ -132,7 +133,7 @@ CAMBER_FN void camber_cell_bounds_of(const camber_edges *p, camber_cell_bounds *
     /* A join bends the edge outwards by at most this: camber_join_bend. */
     const camber_real bend_a = CAMBER_FABS(p->sa), bend_b = CAMBER_FABS(p->sb);
     const camber_real bend = 0.25f * CAMBER_MORE(bend_a, bend_b);
-    /* A sharp join may cut pixels that lie far from it. */
+    /* A sharp join may cut pixels that are far from it. */
     const camber_real near = p->sharp ? CAMBER_REAL(CAMBER_NEVER_PX) : reach + CAMBER_PAD_PX;
     b->wide = h + p->side.extent + reach + bend;
     b->full = h > 2.0f ? h - p->side.extent - reach : always;
@@ -144,8 +145,8 @@ CAMBER_FN void camber_cell_bounds_of(const camber_edges *p, camber_cell_bounds *
     b->far_b = p->owner_b == always ? reach_b : -always;
 }
 
-/* How far cells lie along a segment, aside of it, and past the bisectors, px: the share of one coordinate of their
- * middles. All cells of a column have one share, and all of a row the other. */
+/* How far cells are along a segment, beside it, and past the bisectors, in px: the part that comes from one coordinate
+ * of their middles. All cells of a column have one part in common, and all cells of a row the other. */
 typedef struct camber_cell_lines {
     camber_real x, aside, fa, fb;
 } camber_cell_lines;

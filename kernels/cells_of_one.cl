@@ -5,7 +5,7 @@
 #include "cells.cl"
 #include "tile_state.h"
 
-/* All that a single segment is drawn from. */
+/* Everything that a single segment is drawn from. */
 typedef struct drawn_segment {
     global const float *segment, *arc_length, *side_table;
 #if CAMBER_RASTER_PITCHED
@@ -31,7 +31,7 @@ static inline void begin_edge(drawn_segment from, camber_edge *p) {
 #endif
 }
 
-/* The cells in the box of a segment, a bit each: row by row from the lowest bit. */
+/* Returns the cells in the box of a segment, one bit each, row by row from the lowest bit. */
 static inline ulong box_of(global const float *segment, camber_tile_rows where) {
     camber_footprint f;
     camber_cell_boxes boxes;
@@ -45,7 +45,7 @@ static inline ulong box_of(global const float *segment, camber_tile_rows where) 
 }
 
 #if !CAMBER_RASTER_PITCHED
-/* The coefficients of one segment in all lanes. */
+/* Spreads the coefficients of one segment over all lanes. */
 static inline void spread_edge(global const float *segment, camber_edges *p) {
     p->ax = CAMBER_REAL(segment[CAMBER_SEGMENT_AX]);
     p->ay = CAMBER_REAL(segment[CAMBER_SEGMENT_AY]);
@@ -93,7 +93,7 @@ static inline void sort_cells(drawn_segment from, const camber_edge *p, const po
     sets->full &= sets->partial & ~sets->near_end;
 }
 
-/* Where the pixels of vector v of a cell lie in the picture; with a pitch from the picture's middle. */
+/* Returns the positions of the pixels of vector v of a cell in the picture; with a pitch relative to its middle. */
 static inline camber_real pixels_x(const positions *at, drawn_segment from, int i) {
     return FROM_EYE_X(at->x[i % CAMBER_TILE_CELLS], from);
 }
@@ -125,7 +125,7 @@ static inline void draw_cell(camber_tile_state *c, const positions *at, const ca
             camber_tile_put_over(c, i, v, camber_edge_side(p, x, y));
             continue;
         }
-        /* The normal of a union's edge needs all that the area is made from. */
+        /* The normal of a union's edge needs all values that the area is computed from. */
         camber_look(p, x, y, &pixels);
         const camber_real area = camber_edge_area(p, &pixels);
         put_area(c, p, i, v, area, &pixels);

@@ -1,19 +1,19 @@
-/* classify: per point, which join it is.
+/* classify: computes the join word of each point.
  * Reads x, y, info[n + 2] (one sentinel before and after the n points), rows; writes joins[n + 2], of which the first
- * and the last stay 0. Points of areas get 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are set by the build. A
- * work-group's items take its points by turns; where one takes them all, its loops are vectorised.
+ * and the last stay 0. Points of areas get 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are
+ * set by the build. A work-group's items take its points in turn; if one takes them all, its loops are vectorised.
  *
- *     rows    mostly all points have one, which is read once: gathers are slow, and AVX2's are taken apart
- *     turns   roots and divisions that wait for each other: the shorter the loop, the more points are in flight
+ *     rows    usually all points have the same, which is read once: gathers are slow, and AVX2's are split up
+ *     turns   roots and divisions that depend on each other: the shorter the loop, the more points are in flight
  *     words   from both
  *
- * x_before, x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie
- * together, it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
+ * x_before, x_after and the like are x and y again: if the compiler can see that a point's two neighbours are adjacent
+ * in memory, it packs them into a float2, and PoCL no longer vectorises over the points (5 times slower). */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
-/* The rows of a work-item's points: an array a field, so that they are loaded as vectors. */
+/* The rows of a work-item's points: one array per field, so that they are loaded as vectors. */
 typedef struct point_rows {
     float reach_px[CAMBER_POINT_CHUNK], miter_limit[CAMBER_POINT_CHUNK], round_cos[CAMBER_POINT_CHUNK];
     float fan_cos[CAMBER_POINT_CHUNK], fan_sin[CAMBER_POINT_CHUNK];
@@ -45,7 +45,7 @@ static inline camber_row row_of(const point_rows *from, size_t n) {
     return row;
 }
 
-/* The bits that any point has, and those that all have. Sentinels have neither row nor flags. */
+/* The bits that at least one point has, and those that all have. Sentinels have neither row nor flags. */
 typedef struct point_bits {
     camber_u32 any, all;
 } point_bits;
@@ -84,7 +84,7 @@ CAMBER_KERNEL(LANES, classify,
     const size_t first = CAMBER_WORK_ITEM / LANES * CAMBER_BLOCK + CAMBER_WORK_ITEM % LANES + 1;
     const point_bits bits = read_bits(info, first);
     point_rows r;
-    if (bits.all & CAMBER_POINT_AREA) { /* so it is if there are only sentinels */
+    if (bits.all & CAMBER_POINT_AREA) { /* this also holds if there are only sentinels */
         for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++)
             joins[first + n * LANES] = 0u;
         return;

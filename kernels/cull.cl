@@ -1,4 +1,4 @@
-/* The program that takes from a network what a camera sees. */
+/* The program that extracts from a network what a camera sees. */
 #include "cull_count.cl"
 
 #include "cull_emit.cl"

@@ -1,11 +1,12 @@
-/* Culls a network for a frame: decides which of its points become slots, and where these lie in the picture.
+/* Culls a network for a frame: decides which of its points become slots, and where these are in the picture.
  *
- *     network   x[], y[], importance[]: every point, rings with their first point again at the end
+ *     network   x[], y[], importance[]: every point; rings repeat their first point at the end
  *     stretches its polylines without invalid points, with their boxes
  *     slots     what classify reads: the points that the camera sees at its tolerance, in px
  *
- * A chunk of points is walked by itself: each point puts its own slot, and the ends of the segment behind it where the
- * window cuts that. Points behind the chunk's end are looked at, and slots do not depend on how chunks are cut.
+ * Each chunk of points is walked separately: each point puts its own slot, and, if the window cuts the segment after
+ * it, the ends of that segment. The walk also reads points past the chunk's end, so that slots do not depend on how
+ * points are divided into chunks.
  *
  *     window  +-----------------------------+
  *             |   A1.....A2                 |      A1, A2, then an end that A2 puts
@@ -13,8 +14,7 @@
  *             +-------------e---------------+
  *                            A3        A5          A3 puts nothing, A4 a beginning
  *             +--------------------b---/----+
- *                               A4-'               (pictured: two sides of one window)
- */
+ *                               A4-'               (pictured: two sides of one window) */
 #ifndef CAMBER_KERNELS_CULL_H
 #define CAMBER_KERNELS_CULL_H
 
@@ -32,7 +32,7 @@
 #else
 #define CAMBER_WALK_ARC_LENGTHS 1
 #endif
-/* Whether the camera may have a pitch. On the host it may. */
+/* Whether the camera may have a pitch. On the host it always may. */
 #ifndef CAMBER_PITCHED
 #define CAMBER_PITCHED 0
 #endif
@@ -45,7 +45,7 @@
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
 #define CAMBER_STRETCH_AREA CAMBER_POINT_AREA
 
-/* Points of a polyline without invalid ones between them. A last stretch begins at the number of all points. */
+/* Points of a polyline without invalid ones between them. A final stretch begins at the total number of points. */
 typedef struct camber_stretch {
     camber_u32 first; /* its first point; it ends where the next stretch begins */
     camber_u32 word;
@@ -58,14 +58,13 @@ typedef struct camber_projection {
     float across_x, down_x, at_x;
     float across_y, down_y, at_y;
     float tolerance;                                  /* points of less importance are left out */
-    float window_x0, window_y0, window_x1, window_y1; /* px: nothing lies outside it */
-    camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* stretches whose boxes miss it are not seen */
+    float window_x0, window_y0, window_x1, window_y1; /* px: all slots are inside it */
+    camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* stretches whose boxes do not touch it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from there */
     float step_px;
-    /* For a camera with a pitch, the window is a trapezoid. Its sides come `slope` px closer for each px down, to
-     * window_x0 and window_x1 at its bottom. Depth is 1 at middle_y, where `tolerance` holds, and falls by `fall` for
-     * each px down. */
+    /* For a camera with a pitch, the window is a trapezoid. Its sides come `slope` px closer per px down, to window_x0
+     * and window_x1 at its bottom. Depth is 1 at middle_y, where `tolerance` holds, and falls by `fall` per px down. */
     float slope; /* 0: no pitch */
     float middle_y, fall, nearest, inverse_cosine;
 } camber_projection;
@@ -76,25 +75,25 @@ typedef struct camber_walk {
     CAMBER_GLOBAL const float *importance;
     CAMBER_GLOBAL float *slot_x, *slot_y;
     CAMBER_GLOBAL camber_u32 *slot_info;
-    camber_u32 puts;             /* 0: slots are counted, 1: and put */
+    camber_u32 puts;             /* 0: slots are only counted, 1: they are also put */
     camber_u32 at;               /* the next slot */
     camber_u32 first, end, word; /* of the stretch */
 #if CAMBER_WALK_ARC_LENGTHS
-    CAMBER_GLOBAL const float *lengths;    /* how far along its stretch each point lies, steps. NULL: no arc lengths */
+    CAMBER_GLOBAL const float *lengths;    /* how far along its stretch each point is, in steps. NULL: no arc lengths */
     CAMBER_GLOBAL float *slot_arc_lengths; /* camber_arc_length of each slot */
-    CAMBER_GLOBAL const float *totals;     /* for each stretch the length of its whole line, steps */
+    CAMBER_GLOBAL const float *totals;     /* for each stretch the length of its whole line, in steps */
     CAMBER_GLOBAL const camber_stretch *stretches;
     float total; /* of the stretch */
 #endif
 } camber_walk;
 
-/* A point that is kept: its pixel, and which sides of the window that lies beyond. */
+/* A point that is kept: its pixel, and which sides of the window it is beyond. */
 typedef struct camber_kept_point {
     camber_u32 point; /* CAMBER_NO_POINT: there is none */
     camber_u32 beyond;
     float x, y;
 #if CAMBER_WALK_ARC_LENGTHS
-    float along; /* how far along its stretch, steps */
+    float along; /* how far along its stretch it is, in steps */
 #endif
 } camber_kept_point;
 
@@ -106,8 +105,8 @@ CAMBER_FN float camber_project_y(const camber_projection *p, camber_i32 x, cambe
     return (float)(x - p->origin_x) * p->across_y + (float)(y - p->origin_y) * p->down_y + p->at_y;
 }
 
-/* The sides of the window, grown by some px, that a pixel lies beyond. A segment whose ends have one in common misses
- * it. */
+/* Returns the sides of the window, grown by some px, that a pixel is beyond. A segment whose ends have a side in common
+ * does not touch the window. */
 CAMBER_FN camber_u32 camber_beyond(const camber_projection *p, float x, float y, float grown) {
 #if CAMBER_WALK_PITCHED
     const float wider = p->slope * (p->window_y1 - y);
@@ -138,7 +137,7 @@ CAMBER_FN camber_kept_point camber_kept_point_of(const camber_walk *w, const cam
 }
 
 #if CAMBER_WALK_ARC_LENGTHS
-/* How far along its stretch a point of the segment from a to b lies, steps. */
+/* Returns how far along its stretch a point of the segment from a to b is, in steps. */
 CAMBER_FN float camber_along_at(const camber_walk *w, camber_kept_point a, camber_kept_point b, camber_i32 x,
                                 camber_i32 y) {
     const float dx = (float)(w->x[b.point] - w->x[a.point]), dy = (float)(w->y[b.point] - w->y[a.point]);
@@ -152,7 +151,7 @@ CAMBER_FN camber_u32 camber_same_pixel(camber_kept_point a, camber_kept_point b)
     return a.x == b.x && a.y == b.y ? 1u : 0u;
 }
 
-/* Returns the end a of a segment to b. If a lies so far out that its pixel is coarse, it returns a nearer point of the
+/* Returns the end a of a segment to b. If a is so far out that its pixel is coarse, it returns a nearer point of the
  * segment, outside the window. It is found by halving, and exact to a step of the network. If the segment stays far
  * from the window, so does that point. */
 CAMBER_FN camber_kept_point camber_pull(const camber_walk *w, const camber_projection *p, camber_kept_point a,
@@ -185,7 +184,8 @@ CAMBER_FN camber_kept_point camber_pull(const camber_walk *w, const camber_proje
 }
 
 #if CAMBER_WALK_PITCHED
-/* Where between a and b, 0 to 1, a side of the window is crossed. Both are px inside the side; b's is below 0. */
+/* Returns where between a and b, 0 to 1, the segment crosses a side of the window. Both arguments are px inside the
+ * side; b's is below 0. */
 CAMBER_FN float camber_share_to(float a_inside, float b_inside) {
     return a_inside / (a_inside - b_inside);
 }
@@ -210,8 +210,8 @@ CAMBER_FN float camber_share_within_pitched(const camber_projection *p, camber_k
     return t > 0.0f ? t : 0.0f;
 }
 
-/* The tolerance where a point lies: a px there is depth px of the plane from side to side, and more from front to
- * back, but near the camera less. */
+/* Returns the tolerance at a point: a px there is depth px of the plane from side to side, and more from front to back,
+ * but less near the camera. */
 CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, camber_i32 y) {
     const float depth = 1.0f - p->fall * (camber_project_y(p, x, y) - p->middle_y);
     const float seen = depth > p->nearest ? depth : p->nearest;
@@ -220,7 +220,7 @@ CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, ca
 }
 #endif
 
-/* Whether a point matters to the camera. A point that lines share has the same importance and position in each. */
+/* Whether the camera keeps a point. A point that lines share has the same importance and position in each. */
 CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projection *p, camber_u32 i) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f)
@@ -229,8 +229,8 @@ CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projectio
     return w->importance[i] >= p->tolerance ? 1u : 0u;
 }
 
-/* How far from a to b, 0 to 1, the first side of the window lies that b is beyond; 1 where it is beyond none. a is not
- * beyond any of these sides: no division by 0. */
+/* Returns how far from a to b, 0 to 1, the first side of the window is that b is beyond; 1 if it is beyond none. a is
+ * not beyond any of these sides, so there is no division by 0. */
 CAMBER_FN float camber_share_within(const camber_projection *p, camber_kept_point a, camber_kept_point b) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f)
@@ -253,7 +253,7 @@ CAMBER_FN void camber_put_slot(camber_walk *w, float x, float y, camber_u32 info
 }
 
 #if CAMBER_WALK_ARC_LENGTHS
-/* Writes the arc length of the slot that was put last. */
+/* Writes the arc length of the last slot. */
 CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_projection *p, float along) {
     if (w->puts && w->lengths) {
         w->slot_arc_lengths[2 * (w->at - 2u)] = along * p->step_px;
@@ -262,7 +262,7 @@ CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_pro
 }
 #endif
 
-/* Puts b, or the point where the way from a to b leaves the window. */
+/* Puts b, or the point where the segment from a to b leaves the window. */
 CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b,
                               camber_u32 info) {
     const float t = camber_share_within(p, a, b);
@@ -272,7 +272,7 @@ CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber
 #endif
 }
 
-/* The last kept point before `from`. A stretch's first point always is kept. */
+/* Returns the last kept point before `from`. A stretch's first point is always kept. */
 CAMBER_FN camber_kept_point camber_find_before(const camber_walk *w, const camber_projection *p, camber_u32 from) {
     camber_u32 i = from - 1;
     while (i > w->first && !camber_matters(w, p, i))
@@ -280,7 +280,7 @@ CAMBER_FN camber_kept_point camber_find_before(const camber_walk *w, const cambe
     return camber_kept_point_of(w, p, i);
 }
 
-/* The first kept point from `from` on that lies on another pixel; `other` itself if there is none. */
+/* Returns the first kept point from `from` on that is on another pixel; `other` itself if there is none. */
 CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_projection *p, camber_u32 from,
                                              camber_kept_point other) {
     camber_kept_point next = other;
@@ -295,8 +295,8 @@ CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_
     return next;
 }
 
-/* The sentinel of a ring: its last other point before the first, its second behind the last. Cut like the segment that
- * it stands for, so that both ends of the ring see the same turn. */
+/* Puts the sentinel of a ring: before the first point the last different one, after the last point the second one. It
+ * is cut like the segment that it stands for, so that both ends of the ring have the same turn. */
 CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection *p, camber_u32 before,
                                         camber_kept_point seam) {
     camber_kept_point other = seam;
@@ -312,8 +312,8 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
 
 /* ---- Areas ---- */
 
-/* Where the way from `in` to `out`, which alone lies beyond the window's left side, crosses that side. It has the bits
- * that camber_put_cut finds where it cuts there. */
+/* Returns where the segment from `in` to `out` crosses the window's left side, which only `out` is beyond. It has the
+ * bits that camber_put_cut computes if it cuts there. */
 CAMBER_FN float camber_left_crossing(const camber_projection *p, camber_kept_point in, camber_kept_point out) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f) {
@@ -333,13 +333,12 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
 #endif
 }
 
-/* Left of the window an area's segment still changes how often its ring winds around what is in the window. That part
- * is put as a line along the window's left side, from where the segment crosses that to the height of its end:
+/* Left of the window a polygon's segment still changes the winding number of what is in the window. That part is put as
+ * a line along the window's left side, from where the segment crosses it to the height of the segment's end:
  *
  *     A1----------+---A2           A1'---+
- *      \          | window          |    |     A1' lies on the left side, as high as A1. Points of the ring left of
- *       A0        |                 A0'  |     the window change nothing there but this.
- */
+ *      \          | window          |    |     A1' is on the left side, as high as A1. Points of the ring left of
+ *       A0        |                 A0'  |     the window change nothing else there. */
 CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     float from = a.y, to = b.y;
@@ -360,7 +359,7 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 
 /* ---- Points ---- */
 
-/* The slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
+/* Puts the slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
 CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
@@ -396,7 +395,7 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
 }
 
 /* Walks the points [begin, end) of the stretch, at most CAMBER_CULL_CHUNK. Of neighbours on the same pixel only the
- * first counts. Which points are kept is found without a branch, as no processor could predict it. */
+ * first counts. It decides without a branch which points are kept, because no processor could predict it. */
 CAMBER_FN void camber_walk_points(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
     camber_u32 kept[CAMBER_CULL_CHUNK];
     camber_u32 count = 0;
@@ -447,7 +446,7 @@ CAMBER_FN void camber_walk_chunk(camber_walk *w, const camber_projection *p,
     }
 }
 
-/* The points of a chunk that are to be walked, counted from the start of the arrays; none if end is not above begin. */
+/* Computes the points of a chunk to walk, counted from the start of the arrays; none if end is not above begin. */
 CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk, camber_u32 *begin, camber_u32 *end) {
     const camber_u32 first = chunk * CAMBER_CULL_CHUNK;
     *begin = first > p->begin ? first : p->begin;

@@ -1,8 +1,9 @@
-/* cull_emit: the slots of a network that the camera sees, in px, as classify reads them.
- * Reads what cull_count reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s +
- * 2] with s these rounded up to CAMBER_BLOCK, a sentinel before them and sentinels behind, and the joins of the first
- * sentinel and the last, which classify leaves. With CAMBER_HAS_ARC_LENGTH it reads lengths[n] and totals[stretches] as
- * well and writes slot_arc_lengths[2 * s]; else these are NULL. A work-item a chunk. */
+/* cull_emit: writes the slots of a network that the camera sees, in px, as classify reads them.
+ * Reads what cull_count reads and bases[chunks + 1], the slots before each chunk and their total; writes x, y, info[s +
+ * 2], s being the total rounded up to CAMBER_BLOCK, with a sentinel before the slots and sentinels after them, and the
+ * joins of the first and the last sentinel, which classify does not write. With CAMBER_HAS_ARC_LENGTH it reads
+ * lengths[n] and totals[stretches] as well and writes slot_arc_lengths[2 * s]; else these are NULL. One work-item per
+ * chunk. */
 #include "cull.h"
 
 CAMBER_KERNEL(CAMBER_WALKERS, cull_emit,

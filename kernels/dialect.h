@@ -1,14 +1,14 @@
-/* The words in which C, OpenCL C and GLSL ES differ, for text that all three compile.
+/* The words in which C, OpenCL C and GLSL ES differ, for code that all three compile.
  *
  * The build declares the dialect: CAMBER_DEVICE is defined for OpenCL C, CAMBER_GLSL for shaders, neither for C. GLSL
- * has no pointers, so structs go into functions as CAMBER_IN, results come out by CAMBER_OUT, and src/embed.cmake
- * writes `->` as `.` there. Its masks are bools, which know no & and |, so those are CAMBER_BOTH and CAMBER_EITHER.
- * Shared text keeps away from GLSL's reserved words (flat, half, class, input, output, sample, common). */
+ * has no pointers, so structs are passed to functions as CAMBER_IN, results are returned by CAMBER_OUT, and
+ * src/embed.cmake replaces `->` by `.` there. Its masks are bools, which have no & and |, so those are CAMBER_BOTH and
+ * CAMBER_EITHER. Shared code avoids GLSL's reserved words (flat, half, class, input, output, sample, common). */
 #ifndef CAMBER_KERNELS_DIALECT_H
 #define CAMBER_KERNELS_DIALECT_H
 
 #ifdef CAMBER_GLSL
-#define const /* there a constant is what the compiler can work out */
+#define const /* in GLSL a const must be computable by the compiler */
 #define camber_u32 uint
 #define camber_i32 int
 #define camber_flag bool
@@ -43,7 +43,7 @@ typedef ulong camber_u64;
 #define CAMBER_GLOBAL global
 #define CAMBER_SQRT(x) sqrt(x)
 #define CAMBER_FABS(x) fabs(x)
-#define CAMBER_SAME_NAME __attribute__((overloadable)) /* a function for one float has one for a vector beside it */
+#define CAMBER_SAME_NAME __attribute__((overloadable)) /* a function for one float has an overload for a vector */
 #else
 #include <math.h>
 #include <stdint.h>
@@ -76,7 +76,7 @@ typedef int camber_flag; /* 0: no */
 #define CAMBER_UNUSED(parameter) (void)(parameter);
 #endif
 
-/* Whether one of some bits is set. */
+/* Whether at least one of some bits is set. */
 #define CAMBER_HAS(bits, some) (((bits) & (some)) != 0u)
 
 #endif

@@ -1,39 +1,39 @@
-/* Draws a tile, or one cell of it, a segment and a pixel at a time: rasterize on GPUs, and the CPU twin.
+/* Draws a tile, or one cell of it, one segment and one pixel at a time: for rasterize on GPUs, and for the CPU twin.
  *
- * Input: the tile's list of segments, from its end, and all that these are drawn from. Output: a tile's state. On a
- * CPU's device rasterize draws sixteen segments and pixels side by side (rasterize.cl). What becomes of a pixel is in
- * tile_state.h for all of them. */
+ * Input: the tile's list of segments, from its end, and everything that these are drawn from. Output: a tile's state.
+ * On a CPU device, rasterize draws sixteen segments and pixels side by side (rasterize.cl). For all of them,
+ * tile_state.h does what happens to a pixel. */
 #ifndef CAMBER_KERNELS_DRAW_CELLS_H
 #define CAMBER_KERNELS_DRAW_CELLS_H
 
 #include "area_inside.h"
 
-/* Where everything is that a tile is drawn from. */
+/* Everything that a tile is drawn from. */
 typedef struct camber_draw_source {
     CAMBER_GLOBAL const float *segments, *edges, *arc_lengths, *planes, *side_table;
     CAMBER_GLOBAL const camber_brush *brushes;
     CAMBER_GLOBAL const camber_brush_ext *brush_ext; /* NULL: no brush has features */
     CAMBER_GLOBAL const camber_u32 *lists;
-    camber_u32 first_edge, edge_count; /* no edge of a ring lies outside these segments */
-    camber_eye eye;                    /* 0 in a picture from above */
+    camber_u32 first_edge, edge_count; /* all edges of rings are among these segments */
+    camber_eye eye;                    /* 0 in a picture without a pitch */
 } camber_draw_source;
 
-/* Functions that GPUs' compilers shall not put into each place that calls them, which takes them a minute. */
+/* Functions that GPU compilers must not inline everywhere, which takes them a minute. */
 #ifdef CAMBER_DEVICE
 #define CAMBER_APART static __attribute__((noinline))
 #else
 #define CAMBER_APART CAMBER_FN
 #endif
 
-/* A tile that is drawn. */
+/* The tile being drawn. */
 typedef struct camber_drawn_tile {
     camber_draw_source from;
-    camber_crossings_left left; /* of its row, those that no brush has taken */
+    camber_crossings_left left; /* crossings of its row that no brush has taken yet */
     camber_tile_rows where;
-    camber_u32 brush; /* that is drawn now; ~0: none yet */
+    camber_u32 brush; /* the current brush; ~0: none yet */
 } camber_drawn_tile;
 
-/* A segment with all that it is drawn from. */
+/* A segment with everything that it is drawn from. */
 typedef struct camber_drawn_segment {
     camber_edge edge;
 #if !CAMBER_STROKE_PITCHED
@@ -53,8 +53,8 @@ typedef struct camber_drawn_segment {
 #define CAMBER_FEATURES_OF(t) 0u
 #endif
 
-/* A cell of a tile: its number among those that are drawn, and where its first pixel lies in the picture, with a pitch
- * from the picture's middle. */
+/* A cell of a tile: its number among the drawn cells, and the position of its first pixel in the picture, with a pitch
+ * relative to the picture's middle. */
 typedef struct camber_cell_place {
     int number;
     float x, y;
@@ -77,7 +77,8 @@ CAMBER_FN float camber_pixel_y(camber_cell_place one, int i) {
 
 /* ---- Cells ---- */
 
-/* How a cell lies to a segment, CAMBER_CELL_*, by its middle. range: where along the line it lies, px. */
+/* Returns the position of a cell relative to a segment, CAMBER_CELL_*, given its middle. range: where along the line it
+ * is, in px. */
 CAMBER_FN camber_u32 camber_segment_meets(const camber_drawn_segment *t, float x, float y, float range[2]) {
     const camber_edge *p = &t->edge;
     camber_cell_masks m;
@@ -106,7 +107,8 @@ CAMBER_FN camber_u32 camber_segment_meets(const camber_drawn_segment *t, float x
 #endif
 }
 
-/* The area of a pixel at x, y. at: with a pitch a union's normal needs what the area is made from. */
+/* Returns the area of a pixel at x, y. at is an output, because with a pitch a union's normal needs the values that the
+ * area is computed from. */
 CAMBER_FN float camber_drawn_area(const camber_drawn_segment *t, camber_u32 meets, int is_union, float x, float y,
                                   camber_pixel *at) {
     const int with_all = CAMBER_STROKE_PITCHED & is_union;
@@ -151,7 +153,7 @@ CAMBER_FN void camber_put_pixels(camber_tile_state *c, const camber_drawn_segmen
 }
 
 #if CAMBER_HAS_MASKS
-/* The colour of a pixel: of a ramp, and of an image along the line. range: where along the line the cell lies. */
+/* Returns the colour of a pixel: of a ramp, or of an image along the line. range: where along the line the cell is. */
 CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pixel *at, const float range[2],
                                   float color[4]) {
     color[0] = color[1] = color[2] = color[3] = 1.0f;
@@ -167,7 +169,7 @@ CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pi
     }
 }
 
-/* Puts colours that change from pixel to pixel under what a cell has. */
+/* Composites colours that change from pixel to pixel under what a cell has. */
 CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segment *t, int number,
                                  const camber_cell_pixels *pixels, float range[2]) {
 #if CAMBER_STROKE_PITCHED
@@ -186,7 +188,7 @@ CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segmen
     }
 }
 
-/* Fills a cell with images: all of it, or the areas of its pixels. */
+/* Fills a cell with images: all of it, or only the areas of its pixels. */
 CAMBER_FN void camber_put_images(camber_tile_state *c, const camber_drawn_segment *t, camber_cell_place one,
                                  const float *areas) {
     camber_tile_take_level(c, camber_tile_level(c), one.number);
@@ -298,7 +300,7 @@ CAMBER_APART void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_
     camber_area_add(&c->area, &t, 1, d->where);
 }
 
-/* Draws the area whose edges have been added. */
+/* Draws the polygon whose edges have been added. */
 CAMBER_APART void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
     if (!camber_brush_is_area(&c->now))
         return;
@@ -334,7 +336,7 @@ CAMBER_APART void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, c
     d->brush = brush;
 }
 
-/* Draws the areas above a brush of which the tile has no edges. */
+/* Draws the polygons above a brush that have no edges in the tile. */
 CAMBER_FN void camber_draw_areas_above(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
     for (camber_u32 next = camber_next_area(&d->left); next > brush; next = camber_next_area(&d->left)) {
         const int winding = camber_take_winding(&d->left, next);

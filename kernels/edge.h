@@ -1,8 +1,9 @@
-/* A segment's coefficients from its words, how its pixels lie to it, and which cells of a tile it touches.
+/* Computes a segment's coefficients from its words, the positions of pixels relative to it, and which cells of a tile
+ * it touches.
  *
  * Input: a segment's 16 words as setup writes them, with CAMBER_STROKE_PITCHED also those of its plane, and positions
- * of pixels and cells in the picture. Output: what stroke.h and features.h work with, and masks of cells. Kernels and
- * their twin compile it; shaders have their own few lines for where a fragment lies. */
+ * of pixels and cells in the picture. Output: the input of stroke.h and features.h, and masks of cells. The kernels and
+ * the twin compile it; shaders have a few lines of their own for the position of a fragment. */
 #ifndef CAMBER_KERNELS_EDGE_H
 #define CAMBER_KERNELS_EDGE_H
 
@@ -10,8 +11,8 @@
 #include "images.h"
 #include "pitch_segment.h"
 
-/* Lanes are partial where a segment may touch a cell, near_end where an end is close enough to matter, and full where
- * all of the cell lies inside the stroke. */
+/* A lane is partial if a segment may touch a cell, near_end if an end is close enough to matter, and full if the whole
+ * cell is inside the stroke. */
 typedef struct camber_cell_masks {
     camber_mask partial, near_end, full;
 } camber_cell_masks;
@@ -20,7 +21,7 @@ typedef struct camber_cell_masks {
 
 /* ---- With a pitch ---- */
 
-/* The form of a line of the plane: its unit normal, and its position along that. */
+/* Returns the form of a line of the plane, given its unit normal and its position along that. */
 CAMBER_FN camber_form camber_form_of(camber_eye e, float nx, float ny, float at) {
     camber_form f;
     f.at = at;
@@ -40,7 +41,7 @@ CAMBER_FN void camber_seen_edge_of(float at, float x, float y, camber_flag linea
     camber_profile_of(x, y, linear, &edge->cuts);
 }
 
-/* Works out the coefficients from the words of the footprint (segment) and those of the plane. */
+/* Computes the coefficients from the words of the footprint (segment) and those of the plane. */
 CAMBER_FN void camber_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, CAMBER_GLOBAL const float *plane,
                               camber_u32 flags, camber_edge *p) {
     const float ax = plane[CAMBER_SEGMENT_AX], ay = plane[CAMBER_SEGMENT_AY], bx = plane[CAMBER_SEGMENT_BX];
@@ -104,7 +105,7 @@ CAMBER_FN void camber_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, 
     p->wide = segment[CAMBER_SEGMENT_HALF_WIDTH] + CAMBER_PAD_PX - CAMBER_PITCH_SLACK_PX;
 }
 
-/* How far the middles of a cell's pixels lie from the cell's middle, along a normal. */
+/* Returns how far the middles of a cell's pixels are from the cell's middle, along a normal. */
 CAMBER_FN float camber_cell_reach(float nx, float ny) {
     return 1.5f * (CAMBER_FABS(nx) + CAMBER_FABS(ny));
 }
@@ -115,12 +116,12 @@ CAMBER_FN camber_mask camber_cut_is_near(const camber_seen_edge *cut, float wide
            (wide < 1.0f ? camber_cell_reach(cut->x, cut->y) + CAMBER_PAD_PX : CAMBER_ALWAYS_PX);
 }
 
-/* How cells lie to a segment, by the positions of their middles. */
+/* Computes the positions of cells relative to a segment, given the positions of their middles. */
 CAMBER_FN void camber_cell_masks_of(const camber_edge *p, camber_real x, camber_real y, camber_cell_masks *cells) {
     const float reach_a = camber_cell_reach(p->fa.x, p->fa.y), reach_b = camber_cell_reach(p->fb.x, p->fb.y);
     const float left = camber_cell_reach(p->left.x, p->left.y), right = camber_cell_reach(p->right.x, p->right.y);
     const float axis = camber_cell_reach(p->axis_x, p->axis_y);
-    /* A bend at a join moves the line to the side by at most this. */
+    /* A bend at a join moves the line sideways by at most this. */
     const float past_left = p->bends ? CAMBER_PAD_PX : p->left.cuts.extent;
     const float past_right = p->bends ? CAMBER_PAD_PX : p->right.cuts.extent;
     const float far_a = !p->narrow && p->owner_a == CAMBER_ALWAYS_PX ? -reach_a : CAMBER_ALWAYS_PX;
@@ -160,7 +161,7 @@ CAMBER_FN void camber_look(const camber_edge *p, camber_real x, camber_real y, c
     at->fb = camber_form_at(&p->fb, x, y) * depth;
 }
 
-/* The same for a pixel that no end is near to: only the sides count. */
+/* Returns the area of a pixel that no end is near: only the sides count. */
 CAMBER_FN camber_real camber_edge_side(const camber_edge *p, camber_real x, camber_real y) {
     const camber_seen_edge *l = &p->left, *r = &p->right;
     const camber_real in_left = camber_seen_inside(l, x, y), in_right = camber_seen_inside(r, x, y);
@@ -172,7 +173,7 @@ CAMBER_FN camber_real camber_edge_side(const camber_edge *p, camber_real x, camb
 
 /* ---- From above ---- */
 
-/* Works out the coefficients of a segment from its words. */
+/* Computes the coefficients of a segment from its words. */
 CAMBER_FN CAMBER_INLINE void camber_edge_of(CAMBER_GLOBAL const float *segment, camber_u32 flags, camber_edge *p) {
     p->ax = segment[CAMBER_SEGMENT_AX];
     p->ay = segment[CAMBER_SEGMENT_AY];
@@ -201,7 +202,7 @@ CAMBER_FN void camber_look(const camber_edge *p, camber_real x, camber_real y, c
     at->fb = (x - p->bx) * p->nbx + (y - p->by) * p->nby;
 }
 
-/* The area of a pixel that no end is near to: only the sides count. */
+/* Returns the area of a pixel that no end is near: only the sides count. */
 CAMBER_FN camber_real camber_edge_side(const camber_edge *p, camber_real x, camber_real y) {
     const camber_real qx = x - p->ax, qy = y - p->ay, aside = qy * p->ux - qx * p->uy;
     camber_pixel at;
@@ -211,13 +212,13 @@ CAMBER_FN camber_real camber_edge_side(const camber_edge *p, camber_real x, camb
 
 #endif
 
-/* camber_edge_normal where no end is near: into the stroke from the nearer side. */
+/* Computes camber_edge_normal if no end is near: into the stroke from the nearer side. */
 CAMBER_FN void camber_side_normal(const camber_edge *p, camber_real y, camber_real *nx, camber_real *ny) {
     *nx = y > 0.0f ? CAMBER_REAL(p->uy) : CAMBER_REAL(-p->uy);
     *ny = y > 0.0f ? CAMBER_REAL(-p->ux) : CAMBER_REAL(p->ux);
 }
 
-/* The area of a pixel that a segment without features draws. camber_look has filled in its positions. */
+/* Returns the area of a pixel that a segment without features draws. camber_look must have filled in its positions. */
 CAMBER_FN CAMBER_INLINE camber_real camber_edge_area(const camber_edge *p, camber_pixel *at) {
     return camber_stroke_area(p, (const camber_extras *)0, 0u, at, CAMBER_NO);
 }

@@ -1,14 +1,14 @@
-/* emit: per point, its records and, for kite and fan, its indices.
+/* emit: writes the records of each point and, for kite and fan, its indices.
  * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_POINT_CHUNK], bases[2 * n / CAMBER_BLOCK] (each block's
- * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and
- * their order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a chunk of
- * CAMBER_POINT_CHUNK points has. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] as well, and records
+ * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count].
+ * camber_strip_records and camber_join_counts in join.h define them and their order. A work-item writes those of a
+ * chunk of CAMBER_POINT_CHUNK points. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] as well, and records
  * are twice as long; else arc_lengths is NULL. */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
-/* No restrict in what is inlined into kernels: oclgrind does not know what becomes of it there. */
+/* Functions that are inlined into kernels do not use restrict, because oclgrind does not support it there. */
 
 static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
@@ -16,7 +16,7 @@ static inline void put_record(global camber_u32 *records, size_t k, float x, flo
 }
 
 #if CAMBER_HAS_ARC_LENGTH
-/* All count records lie as far along their line as point i. */
+/* Writes the arc length of point i to all count records. */
 static inline void put_arc_lengths(global camber_u32 *records, size_t count, global const float *arc_lengths,
                                    size_t i) {
     const camber_u32 along = as_uint(arc_lengths[2 * i]), in_all = as_uint(arc_lengths[2 * i + 1]);
@@ -27,14 +27,15 @@ static inline void put_arc_lengths(global camber_u32 *records, size_t count, glo
 
 #if CAMBER_METHOD == CAMBER_STRIP
 
-/* Whether a point's records are others than two stores put: a ring's first, a dot, a split, a sentinel. */
+/* Whether a point's records are other than what two stores write: for a ring's first point, a dot, a split join, a
+ * sentinel. */
 static inline camber_u32 is_rare(camber_u32 join, camber_u32 point) {
     const camber_u32 ring_begins = CAMBER_POINT_FIRST | CAMBER_POINT_RING;
     return (camber_join_kind(join) - CAMBER_KIND_CAP > CAMBER_KIND_TIGHT - CAMBER_KIND_CAP ? 1u : 0u) |
            ((point & ring_begins) == ring_begins ? 1u : 0u);
 }
 
-/* All records of any point, from the first of these on; gives how many. */
+/* Writes all records of any point; returns how many. */
 static inline size_t put_any(global const float *x, global const float *y, size_t i, camber_u32 join, camber_u32 point,
                              global camber_u32 *records) {
     const camber_u32 kind = camber_join_kind(join), begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
@@ -43,7 +44,7 @@ static inline size_t put_any(global const float *x, global const float *y, size_
     if (kind == CAMBER_KIND_SENTINEL)
         return 0;
     put_record(records, begins, x[i], y[i], join, point);
-    if (begins) { /* a ring's first segment comes in from a sentinel; an open line begins with itself */
+    if (begins) { /* a ring's first segment comes from a sentinel; an open line begins with the point itself */
         const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
         put_record(records, 0, x[from], y[from], 0, breaks);
     }
@@ -58,9 +59,10 @@ static inline size_t put_any(global const float *x, global const float *y, size_
     return camber_strip_records(kind, point);
 }
 
-/* The one or two records of most points, in an order that no processor foresees. So two are stored for each: what may
- * be the second one first, and where there is none, the only one in its place. begins and goes_on are a record's words
- * where the other one comes before it, or behind it, and else 0. Gives where the next point's records go. */
+/* Writes the one or two records of most points, whose number no processor can predict. So two records are stored for
+ * each point: first the possible second one, and then the first; if there is only one, both stores go to the same
+ * position. begins and goes_on are a record's words if the other one comes before it, or after it, and else 0. Returns
+ * where the next point's records go. */
 static inline __attribute__((always_inline)) global camber_u32 *put_two(global camber_u32 *to, uint4 record,
                                                                         uint4 other, camber_u32 begins,
                                                                         camber_u32 goes_on) {
@@ -69,7 +71,8 @@ static inline __attribute__((always_inline)) global camber_u32 *put_two(global c
     return to + CAMBER_RECORD_WORDS + begins + goes_on;
 }
 
-/* First which records each point has, in vectors as wide as there are; then the records, four points at a time. */
+/* First computes which records each point has, in vectors as wide as possible; then writes the records, four points at
+ * a time. */
 CAMBER_KERNEL(LANES, emit,
               (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
                global const camber_row *restrict rows, global const camber_u32 *restrict joins,
@@ -91,7 +94,7 @@ CAMBER_KERNEL(LANES, emit,
         other_join[n] = is_first ? 0u : join;
         other_last[n] = is_first ? CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS) : CAMBER_RECORD_START | point;
     }
-    /* two indices a record */
+    /* two indices per record */
     const size_t k = ((size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16)) / 2;
     global camber_u32 *to = records + words * k;
     for (size_t n = 0; n < CAMBER_POINT_CHUNK; n += 4) {
@@ -129,13 +132,12 @@ static inline void put_triangle(global camber_u32 *indices, camber_u32 a, camber
     indices[2] = c;
 }
 
-/* The body between the start's L, R (sl, sr) and the end's (e, e + 1); a and b are the centres where the ends are
- * joins. Every triangle ends with a vertex that carries the segment, and all wind alike:
+/* Writes the body between the start's L, R (sl, sr) and the end's (e, e + 1); a and b are the centres if the ends are
+ * joins. Every triangle ends with a vertex that carries the segment, and all wind in the same direction:
  *
  *     sL--------eL
  *     A          B
- *     sR--------eR
- */
+ *     sR--------eR */
 static inline camber_u32 put_body(global camber_u32 *indices, camber_u32 sl, camber_u32 sr, camber_u32 e, camber_u32 a,
                                   camber_u32 has_a, camber_u32 b, camber_u32 has_b) {
     if (has_a && has_b) {
@@ -162,8 +164,8 @@ static inline camber_u32 put_body(global camber_u32 *indices, camber_u32 sl, cam
     return 6;
 }
 
-/* A triangle of a join about the centre p, ending with the vertex that carries its segment. outer < 0: the turn is to
- * the left, the outer side is the right one. */
+/* Writes a triangle of a join about the centre p, ending with the vertex that carries its segment. outer < 0: the turn
+ * is to the left, and the outer side is the right one. */
 static inline void put_wedge(global camber_u32 *indices, camber_u32 p, camber_u32 from, camber_u32 to,
                              camber_u32 to_carries, float outer) {
     const camber_u32 carries = to_carries ? to : from, other = to_carries ? from : to;
@@ -171,8 +173,8 @@ static inline void put_wedge(global camber_u32 *indices, camber_u32 p, camber_u3
     put_triangle(indices, flip ? other : p, flip ? p : other, carries);
 }
 
-/* From the outer edge of the segment in to that of the segment out. A kite's tip belongs to neither: its first triangle
- * is provoked by the edge. */
+/* Writes a join's triangles from the outer edge of the incoming segment to that of the outgoing one. A kite's tip
+ * belongs to neither: the edge is the provoking vertex of its first triangle. */
 static inline void put_join(global camber_u32 *indices, camber_u32 record, camber_u32 triangles, camber_u32 is_fan,
                             float outer) {
     const camber_u32 p = record | CAMBER_CORNER_CENTRE;
@@ -186,13 +188,13 @@ static inline void put_join(global camber_u32 *indices, camber_u32 record, cambe
     }
 }
 
-/* A point's record and indices; gives how many indices. */
+/* Writes a point's record and indices; returns how many indices. */
 static inline size_t put_point(global const float *x, global const float *y, global const camber_u32 *info,
                                global const camber_row *rows, global const camber_u32 *joins, size_t i,
                                global camber_u32 *records, global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
     const camber_u32 before = joins[i - 1], cap = rows[point >> CAMBER_POINT_ROW_SHIFT].cap;
-    /* A record a slot, sentinels too: a ring's are where its seam's neighbours lie. */
+    /* One record per slot, including sentinels: those of a ring are the neighbours of its seam. */
     put_record(records, i - 1, x[i], y[i],
                camber_record_join(
                    join, cap, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),

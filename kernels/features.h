@@ -1,10 +1,9 @@
-/* Gaps, blurs, dashes, trims and ramps: all that lies along and beside a stroke's line. With them, the whole of an
- * area.
+/* Gaps, blurs, dashes, trims and ramps: everything that varies along and across a stroke's line. Also the complete
+ * formula of a pixel's area.
  *
- * Input: a segment's coefficients, those of its brush (camber_extras), and a pixel as stroke.h has it. Output: the area
- * that the pixel keeps, and its colour. C, OpenCL C and GLSL compile it; kernels draw features only where they are
- * built with CAMBER_RASTER_RICH. Dashes and stops are read by the macros below: from the side table, or from a texture.
- */
+ * Input: a segment's coefficients, those of its brush (camber_extras), and a pixel as in stroke.h. Output: the area
+ * that remains of the pixel, and its colour. C, OpenCL C and GLSL compile it; kernels draw features only if they are
+ * built with CAMBER_RASTER_RICH. The macros below read dashes and stops from the side table, or from a texture. */
 #ifndef CAMBER_KERNELS_FEATURES_H
 #define CAMBER_KERNELS_FEATURES_H
 
@@ -17,11 +16,11 @@
 #define CAMBER_FEATURE_TRIM 8u
 #define CAMBER_FEATURE_RAMP 16u
 #define CAMBER_FEATURE_IMAGE 32u
-/* these change the colour from pixel to pixel */
+/* features that change the colour from pixel to pixel */
 #define CAMBER_FEATURES_COLORS (CAMBER_FEATURE_RAMP | CAMBER_FEATURE_IMAGE)
 #define CAMBER_FEATURES_ALONG (CAMBER_FEATURE_DASH | CAMBER_FEATURE_TRIM | CAMBER_FEATURE_RAMP)
 
-/* The most stops of a ramp that a cell, or in GL a pixel, reads. Where it sees more, it takes several for one. */
+/* The most stops of a ramp that a cell, or in GL a pixel, reads. If it sees more, it merges several into one. */
 #ifdef CAMBER_GLSL
 #define CAMBER_STOPS_SEEN 16u
 #else
@@ -34,7 +33,7 @@ CAMBER_STRUCT(camber_extras) {
     float half_gap, blur;     /* blur below 0: it fades by a smooth step */
     float along, rate, total; /* arc length of A, px; arc length of a px; the line's whole length, px */
     float trim_from, trim_to; /* px along the line */
-    float period, drawn;      /* of dashes: the period, px; the share of it that is drawn */
+    float period, drawn;      /* of dashes: the period, in px; the fraction of it that is drawn */
     camber_u32 dash_count, stop_count;
     camber_flag round_dashes;
 #ifndef CAMBER_GLSL
@@ -56,7 +55,7 @@ CAMBER_STRUCT(camber_extras) {
 
 /* ---- Along the line ---- */
 
-/* floor of numbers from 0 on. Floats from 2^23 on are whole already. */
+/* Returns the floor of numbers from 0 on. Floats from 2^23 on are integers already. */
 CAMBER_FN camber_real camber_whole(camber_real x) {
 #ifdef CAMBER_GLSL
     return floor(x);
@@ -67,7 +66,7 @@ CAMBER_FN camber_real camber_whole(camber_real x) {
 #endif
 }
 
-/* How far along its line a pixel lies, px. Past an end of the segment it is as far as the end. */
+/* Returns how far along its line a pixel is, in px. Past an end of the segment it is as far as the end. */
 CAMBER_FN camber_real camber_extras_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e, camber_real x) {
     const camber_real none = CAMBER_REAL(0.0f), most = CAMBER_REAL(p->length), least = x > 0.0f ? x : none;
     return e->along + (least < p->length ? least : most) * e->rate;
@@ -75,15 +74,15 @@ CAMBER_FN camber_real camber_extras_along(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
 
 /* ---- Dashes ---- */
 
-/* Dashes of a smaller period may fade to the share that they draw. How small they are seen with a pitch differs from
- * pixel to pixel. */
+/* Dashes with a smaller period may fade to the fraction that they draw. With a pitch, how small they appear differs
+ * from pixel to pixel. */
 #if CAMBER_STROKE_PITCHED
 #define CAMBER_SMALL_PERIOD_PX CAMBER_NEVER_PX
 #else
 #define CAMBER_SMALL_PERIOD_PX 2.0f
 #endif
 
-/* The share of the period that dashes draw. */
+/* Returns the fraction of the period that dashes draw. */
 CAMBER_FN float camber_dashes_drawn(CAMBER_IN(camber_extras) e) {
     float drawn = 0.0f;
     for (camber_u32 i = 0u; i < e->dash_count; i++) {
@@ -94,7 +93,7 @@ CAMBER_FN float camber_dashes_drawn(CAMBER_IN(camber_extras) e) {
     return drawn / e->period;
 }
 
-/* Where in the dashes' period a pixel lies, and where in it the line begins and ends, px. */
+/* A pixel's position in the dashes' period, and where in it the line begins and ends, in px. */
 CAMBER_STRUCT(camber_dash_place) {
     camber_real at, first, last;
 };
@@ -107,7 +106,7 @@ CAMBER_FN void camber_find_dash_place(CAMBER_IN(camber_extras) e, camber_real al
     place->last = e->total - before;
 }
 
-/* The shares of a pixel that flat caps at A and B leave, and how far past them it lies along the line, px. */
+/* The fractions of a pixel that flat caps at A and B leave, and how far past them it is along the line, in px. */
 CAMBER_STRUCT(camber_own_ends) {
     camber_real at_a, at_b, past;
 };
@@ -128,9 +127,9 @@ CAMBER_FN void camber_find_own_ends(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
     ends->past = (flat_b < CAMBER_NEVER_PX ? past_b : none) - (flat_a < CAMBER_NEVER_PX ? past_a : none);
 }
 
-/* The share of what flat caps leave of a pixel that dashes leave. A dash that reaches an end of the line is cut by the
- * cap and by no edge of its own: both would lie in one pixel, and the product of what they leave is too little. A pixel
- * that holds more than a period gets the share of the period that is drawn. */
+/* Returns the fraction that dashes leave of what flat caps leave of a pixel. A dash that reaches an end of the line is
+ * cut by the cap, and not also by its own edge: both would be in the same pixel, and the product of what they leave
+ * would be too small. A pixel that spans more than a period gets the fraction of the period that is drawn. */
 CAMBER_FN camber_real camber_dashes_cover(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
                                           CAMBER_IN(camber_pixel) at, camber_flag aside) {
     const camber_real none = CAMBER_REAL(0.0f), least = CAMBER_REAL(1e-6f);
@@ -157,7 +156,7 @@ CAMBER_FN camber_real camber_dashes_cover(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
     return e->drawn * (1.0f - apart) + area * apart;
 }
 
-/* How far the nearest dash lies back along the line, px; below 0 if it lies ahead. */
+/* Returns how far back along the line the nearest dash is, in px; negative if it is ahead. */
 CAMBER_FN camber_real camber_off_dash(CAMBER_IN(camber_extras) e, camber_real along) {
     camber_dash_place place;
     camber_find_dash_place(e, along, CAMBER_REF(place));
@@ -165,14 +164,14 @@ CAMBER_FN camber_real camber_off_dash(CAMBER_IN(camber_extras) e, camber_real al
     for (camber_u32 i = 0u; i < e->dash_count; i++) {
         const camber_real from = CAMBER_REAL(CAMBER_DASH_FROM(e, i)), to = CAMBER_REAL(CAMBER_DASH_TO(e, i));
         const camber_real least = place.at > from ? place.at : from, off = place.at - (least < to ? least : to);
-        /* Where the line ends, no dash begins any more. */
+        /* No dash begins past the end of the line. */
         nearest = CAMBER_BOTH(CAMBER_FABS(off) < CAMBER_FABS(nearest), from < place.last) ? off : nearest;
     }
     return nearest;
 }
 
 #if CAMBER_STROKE_PITCHED
-/* The share of a line's area that round dashes draw. */
+/* Returns the fraction of a line's area that round dashes draw. */
 CAMBER_FN float camber_round_dashes_drawn(CAMBER_IN(camber_extras) e, float half_width) {
     float drawn = 0.0f;
     for (camber_u32 i = 0u; i < e->dash_count; i++) {
@@ -182,7 +181,7 @@ CAMBER_FN float camber_round_dashes_drawn(CAMBER_IN(camber_extras) e, float half
     return drawn < e->period ? drawn / e->period : 1.0f;
 }
 
-/* Blends round dashes smaller than a pixel into their share of the whole line, whose area is `whole`. */
+/* Blends round dashes smaller than a pixel into their fraction of the whole line, whose area is `whole`. */
 CAMBER_FN camber_real camber_blend_round_dashes(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
                                                 CAMBER_IN(camber_pixel) at, camber_real area, camber_real whole) {
     const camber_real apart = camber_clamp_to_one(camber_seen_along(at, CAMBER_REAL(e->period)) - 1.0f);
@@ -190,7 +189,7 @@ CAMBER_FN camber_real camber_blend_round_dashes(CAMBER_IN(camber_edge) p, CAMBER
 }
 #endif
 
-/* The area of round dashes. */
+/* Returns the area of round dashes. */
 CAMBER_FN camber_real camber_round_dashes_within(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
                                                  CAMBER_INOUT(camber_pixel) at) {
 #if CAMBER_STROKE_PITCHED
@@ -209,7 +208,7 @@ CAMBER_FN camber_real camber_round_dashes_within(CAMBER_IN(camber_edge) p, CAMBE
 
 /* ---- Beside the line ---- */
 
-/* How far inside the second line of the join at an end a pixel lies; rim where there is none. */
+/* Returns how far inside the second line of the join at an end a pixel is; rim if there is none. */
 CAMBER_FN camber_real camber_rim_at(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real rim,
                                     float out_of) {
     const float c = out_of > 0.0f ? p->cb : p->ca, s = out_of > 0.0f ? p->sb : p->sa;
@@ -222,8 +221,8 @@ CAMBER_FN camber_real camber_rim_at(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
     return camber_second_cuts(CAMBER_REF(l), past, at->y, rim, CAMBER_LESS(rim, inside));
 }
 
-/* The coverage of a blurred stroke: it grows from half a pixel outside the edge inwards, and falls towards the gap.
- * sharp: joins may cut the pixel. */
+/* Returns the coverage of a blurred stroke: it grows inwards from half a pixel outside the edge, and falls towards the
+ * gap. sharp: joins may cut the pixel. */
 CAMBER_FN camber_real camber_blurred(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e, CAMBER_IN(camber_pixel) at,
                                      camber_flag sharp) {
     const float blur = CAMBER_FABS(e->blur);
@@ -244,8 +243,8 @@ CAMBER_FN camber_real camber_blurred(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_
 
 /* ---- Areas ---- */
 
-/* The area of a pixel that the segment draws: the one formula that all functions of stroke.h are parts of. features: of
- * e, or 0 where it has none to be drawn. aside: no end is near, so only the sides count. */
+/* Returns the area of a pixel that the segment draws: the one formula that all functions of stroke.h are parts of.
+ * features: those of e, or 0 if none are to be drawn. aside: no end is near, so that only the sides count. */
 CAMBER_FN CAMBER_INLINE camber_real camber_stroke_area(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
                                                        camber_u32 features, CAMBER_INOUT(camber_pixel) at,
                                                        camber_flag aside) {
@@ -291,7 +290,7 @@ CAMBER_FN CAMBER_INLINE camber_real camber_stroke_area(CAMBER_IN(camber_edge) p,
 
 /* ---- Colours ---- */
 
-/* How many stops lie up to a position on the line, px. */
+/* Returns how many stops are at or before a position on the line, in px. */
 CAMBER_FN camber_u32 camber_stops_up_to(CAMBER_IN(camber_extras) e, float place) {
     camber_u32 low = 0u, high = e->stop_count;
     while (low < high) {
@@ -304,7 +303,7 @@ CAMBER_FN camber_u32 camber_stops_up_to(CAMBER_IN(camber_extras) e, float place)
     return low;
 }
 
-/* The colour between the stops before the i-th one and that. */
+/* Returns the colour between stop i - 1 and stop i. */
 CAMBER_FN void camber_ramp_between(CAMBER_IN(camber_extras) e, camber_u32 i, camber_real along, CAMBER_COLOR(color)) {
     const camber_u32 next = i < e->stop_count ? i : i - 1u, before = i > 0u ? i - 1u : 0u;
     const float here = CAMBER_STOP(e, before), length = CAMBER_STOP(e, next) - here;
@@ -313,12 +312,12 @@ CAMBER_FN void camber_ramp_between(CAMBER_IN(camber_extras) e, camber_u32 i, cam
         color[k] = CAMBER_STOP_COLOR(e, before, k) * (1.0f - part) + CAMBER_STOP_COLOR(e, next, k) * part;
 }
 
-/* The mean colour of the ramp over each pixel, of which some see the ramp from low to high. Between two stops a pixel
- * has the colour in the middle of the stretch of the ramp that it sees. */
+/* Returns the mean colour of the ramp over each pixel; all pixels are within the range of the ramp from low to high.
+ * Between two stops a pixel has the colour in the middle of the part of the ramp that it sees. */
 CAMBER_FN void camber_ramp_over(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e, CAMBER_IN(camber_pixel) at,
                                 float low, float high, CAMBER_COLOR(color)) {
     const camber_u32 first = e->total > 0.0f ? camber_stops_up_to(e, low) : 0u;
-    const camber_u32 end = e->total > 0.0f ? camber_stops_up_to(e, high) : 0u; /* a dot has its first */
+    const camber_u32 end = e->total > 0.0f ? camber_stops_up_to(e, high) : 0u; /* a dot has the first stop's colour */
     const camber_real along = at->along, extent = camber_extent_along(p, at);
     if (first == end) {
         camber_ramp_between(e, first, along, color);

@@ -1,26 +1,27 @@
-/* Images along lines, or side by side over the picture.
+/* Images along lines, or repeated over the picture.
  *
- * Input: where an image lies and how it runs along its line (camber_image_sampler), and the positions of pixels.
- * Output: the colour that a pixel sees, as the mean of the texels that it shows. C, OpenCL C and GLSL compile it.
- * Kernels and their twin read texels from the side table, shaders from a texture: camber_add_texels. */
+ * Input: an image's position and direction along its line (camber_image_sampler), and the positions of pixels. Output:
+ * the colour of a pixel, as the mean of the texels that it shows. C, OpenCL C and GLSL compile it. The kernels and the
+ * twin read texels from the side table, shaders read them from a texture: camber_add_texels. */
 #ifndef CAMBER_KERNELS_IMAGES_H
 #define CAMBER_KERNELS_IMAGES_H
 
 #include "pitch.h"
 
 /* An image's layout in the side table, four float4s:
- *     0-3    the first word of its texels, texels a row, rows (all three are bits of unsigned integers); px along a
- * line 4-7    of a fill: where a corner of an image lies, px; images a px to the right, along their x and their y 8-11
- * of a fill: images a px down, along their x and their y; 0, 0 12-15  the mean colour, 0 to 255 Texels are
- * premultiplied RGBA8, a word each, from the top down, with a border of one texel around them. */
+ *     0-3    the first word of its texels, texels per row, rows (the bits of unsigned integers); px along a line
+ *     4-7    for a fill: the position of a corner of an image, px; images per px to the right, along their x and y
+ *     8-11   for a fill: images per px down, along their x and y; 0, 0
+ *     12-15  the mean colour, 0 to 255
+ * Texels are premultiplied RGBA8, one word each, from the top down, with a border of one texel around them. */
 #define CAMBER_IMAGE_WORDS 16u
 #define CAMBER_SAMPLES_MAX 8.0f /* the most along each side of a pixel that shows many texels */
 
-/* How an image is looked up: all that is the same for each pixel of a segment or a fill. */
+/* How an image is sampled: everything that is the same for each pixel of a segment or a fill. */
 CAMBER_STRUCT(camber_image_sampler) {
     float width, height;      /* texels */
-    float phase, rate, aside; /* in images: the position at A, what a px along the line is, what a px across it is */
-    float length, near;       /* the segment's length; how far from a joint the image bends; px */
+    float phase, rate, aside; /* in units of the image's size: the position at A, a px along the line, a px across it */
+    float length, near;       /* the segment's length; how far from a join the image bends; in px */
     float tangent_a, tangent_b;
     float left, top, across_x, across_y, down_x, down_y; /* of a fill */
     float mean[4];
@@ -48,13 +49,13 @@ CAMBER_FN void camber_image_along(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_
 }
 
 #ifndef CAMBER_GLSL
-/* The fraction of a number, from 0 to 1; 0 from 2^23 on. */
+/* Returns the fractional part of a number, from 0 to 1; 0 from 2^23 on. */
 CAMBER_FN float camber_fraction(float x) {
     const float held = CAMBER_FABS(x) < 8388608.0f ? x : 0.0f, rest = held - (float)(camber_i32)held;
     return rest < 0.0f ? rest + 1.0f : rest;
 }
 
-/* The sampler of a fill. at: where the image's layout begins in the side table, words. */
+/* Returns the sampler of a fill. at: the word in the side table at which the image's layout begins. */
 CAMBER_FN void camber_image_sampler_of(CAMBER_GLOBAL const float *side_table, camber_u32 at, camber_image_sampler *m) {
     m->side_table = side_table;
     m->first = CAMBER_BITS(side_table[at]);
@@ -72,7 +73,7 @@ CAMBER_FN void camber_image_sampler_of(CAMBER_GLOBAL const float *side_table, ca
         m->mean[k] = side_table[at + 12u + k];
 }
 
-/* The sampler of a line. arc_length: the segment's CAMBER_SEGMENT_ARC_LENGTHS words. */
+/* Returns the sampler of a line. arc_length: the segment's CAMBER_SEGMENT_ARC_LENGTHS words. */
 CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *side_table, camber_u32 at,
                                     CAMBER_GLOBAL const float *arc_length, const camber_edge *p,
                                     camber_image_sampler *m) {
@@ -85,7 +86,7 @@ CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *side_table, cambe
     m->tangent_b = camber_image_tangent(p->cb, p->sb);
 }
 
-/* For each pixel, the texel at a word of the side table and the one to its right. */
+/* Reads for each pixel the texel at a word of the side table and the one to its right. */
 CAMBER_FN void camber_texels_at(CAMBER_GLOBAL const float *side_table, camber_words at, camber_words *left,
                                 camber_words *right) {
 #if CAMBER_HAS_VECTORS
@@ -104,7 +105,8 @@ CAMBER_FN void camber_texels_at(CAMBER_GLOBAL const float *side_table, camber_wo
 #endif
 }
 
-/* Adds the image's colour, 0 to 255, bilinear, at shares u and v of its width and height, where it is wanted. */
+/* Adds the image's colour, 0 to 255, bilinearly sampled at fractions u and v of its width and height, for wanted lanes.
+ */
 CAMBER_FN void camber_add_texels(const camber_image_sampler *m, camber_real u, camber_real v, camber_mask wanted,
                                  camber_real rgba[4]) {
     const camber_real x = u * m->width + 0.5f, y = v * m->height + 0.5f;
@@ -133,14 +135,14 @@ CAMBER_FN void camber_add_texels(camber_image_sampler m, float u, float v, bool 
 
 /* ---- Pixels ---- */
 
-/* Where pixels lie: along and across a segment and how far from it, or in the plane. reach: how much of the plane a
- * pixel spans, px; 0 without a pitch. */
+/* The positions of pixels: along and across a segment and their distance from it, or in the plane. reach: how much of
+ * the plane a pixel spans, in px; 0 without a pitch. */
 CAMBER_STRUCT(camber_image_spot) {
     camber_real x, y, distance;
     camber_real reach_x, reach_y;
 };
 
-/* The spot of a line's pixel, as camber_stroke_area has filled it in. */
+/* Returns the spot of a line's pixel, which camber_stroke_area has filled in. */
 CAMBER_FN void camber_line_spot(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                 CAMBER_OUT(camber_image_spot) spot) {
     const camber_real arc_a = camber_arc(at->past_a, p->round_a), arc_b = camber_arc(at->past_b, p->round_b);
@@ -157,7 +159,7 @@ CAMBER_FN void camber_line_spot(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel
 #endif
 }
 
-/* The spot of a fill's pixel. x and y: its position from the picture's middle, px. */
+/* Returns the spot of a fill's pixel. x and y: its position relative to the picture's middle, in px. */
 CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, CAMBER_OUT(camber_image_spot) spot) {
     const camber_real by_depth = 1.0f + y * (e.fall / e.cosine), least = CAMBER_REAL(CAMBER_PITCH_LEAST);
     const camber_real depth = 1.0f / CAMBER_MORE(by_depth, least);
@@ -168,23 +170,24 @@ CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, CAM
     spot->reach_y = depth * depth / e.cosine;
 }
 
-/* How far before a joint a position lies in the image, if it lies t px before the joint. The image is stretched or
- * squeezed near the joint, up to `near` px from it, so that its end lies on the bisector. A cap leaves it as it is. */
+/* Returns how far before a join a position is in the image, if it is t px before the join on the line. The image is
+ * stretched or squeezed near the join, up to `near` px from it, so that its end is on the bisector. A cap leaves it as
+ * it is. */
 CAMBER_FN camber_real camber_before_joint(camber_real t, float tangent, camber_real y, float near) {
     const camber_real bisector = tangent * y, room = near - bisector, least = CAMBER_REAL(1e-3f);
     const camber_real share = camber_clamp_to_one((t - bisector) / CAMBER_MORE(room, least));
     return tangent == 0.0f ? t : t > near ? t : near * share;
 }
 
-/* How many samples a pixel takes along a side on which it shows so many texels. */
+/* Returns how many samples a pixel takes along a side on which it shows this many texels. */
 CAMBER_FN camber_real camber_samples(camber_real texels) {
     const camber_real least = CAMBER_REAL(1.0f), most = CAMBER_REAL(CAMBER_SAMPLES_MAX), wanted = texels + 0.5f;
     const camber_real bounded = wanted > least ? wanted : least;
     return CAMBER_TRUNCATE(bounded < most ? bounded : most);
 }
 
-/* The image's mean colour, premultiplied, 0 to 1, around u and v, over over_u and over_v images. It repeats along u;
- * tiled: along v, too. */
+/* Returns the image's mean colour, premultiplied, 0 to 1, around u and v, over over_u and over_v of its size. It
+ * repeats along u; if tiled, also along v. */
 CAMBER_FN void camber_image_over(CAMBER_IN(camber_image_sampler) m, camber_real u, camber_real v, camber_real over_u,
                                  camber_real over_v, camber_flag tiled, CAMBER_COLOR(rgba)) {
     const camber_real columns = camber_samples(over_u * m->width), rows = camber_samples(over_v * m->height);
@@ -202,7 +205,7 @@ CAMBER_FN void camber_image_over(CAMBER_IN(camber_image_sampler) m, camber_real 
         rgba[k] *= scale;
 }
 
-/* The colour of a line's image. Around a round join or cap it is swept. */
+/* Returns the colour of a line's image. Around a round join or cap the image is swept. */
 CAMBER_FN void camber_line_image(CAMBER_IN(camber_image_sampler) m, CAMBER_IN(camber_image_spot) at,
                                  CAMBER_COLOR(rgba)) {
     const camber_real t = m->length - at->x, none = CAMBER_REAL(0.0f), edge = CAMBER_REAL(0.5f);
@@ -216,7 +219,7 @@ CAMBER_FN void camber_line_image(CAMBER_IN(camber_image_sampler) m, CAMBER_IN(ca
                       m->aside * at->reach_y, CAMBER_NO, rgba);
 }
 
-/* The colour of a fill's images. Where a pixel shows very many texels, it tends to the mean. */
+/* Returns the colour of a fill's images. If a pixel shows very many texels, it tends to the mean. */
 CAMBER_FN void camber_fill_image(CAMBER_IN(camber_image_sampler) m, CAMBER_IN(camber_image_spot) at,
                                  CAMBER_COLOR(rgba)) {
     const camber_real x = at->x - m->left, y = at->y - m->top;

@@ -1,25 +1,24 @@
-/* Join maths, the one place where a formula of a join stands. Only + - * / sqrt, each correctly rounded, so that
- * device and twin agree to the last bit where the device rounds correctly; but for the corners, which no kernel places.
+/* Join maths: the only place with formulas of joins. It uses only + - * / sqrt, each correctly rounded, so that device
+ * and twin agree to the last bit if the device rounds correctly; except for the corners, which no kernel places.
  *
  * u and w are the directions into and out of a point, t the angle from u to w, positive from x to y. The half
  * turn's cosine c and sine s give all that a join needs:
  *
  *     tan(t/2) = s / c          how far along u the bisector cuts the edge
  *     tan(t/4) = s / (1 + c)    in -1 to 1 for every turn: what is stored, as 16 bits
- *     1 / c                     the miter length over the width
- */
+ *     1 / c                     the miter length over the width */
 #ifndef CAMBER_KERNELS_JOIN_H
 #define CAMBER_KERNELS_JOIN_H
 
 #include "layout.h"
 
-/* 0: no row has a round limit, which a build for the device may know: classify gathers one word of a row less. */
+/* 0: no row has a round limit, as a build for the device may know: classify then gathers one word less of a row. */
 #ifndef CAMBER_ROUND_LIMITS
 #define CAMBER_ROUND_LIMITS 1
 #endif
 
 /* The sine of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan.
- * Their corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
+ * Their corners would coincide, so that the rasteriser's rounding would decide which way they wind. */
 #define CAMBER_STRAIGHT_SINE 1e-4f
 
 CAMBER_STRUCT(camber_turn) {
@@ -28,20 +27,21 @@ CAMBER_STRUCT(camber_turn) {
     float half_shorter; /* half the shorter of the two segments, px */
 };
 
-/* Half the shorter of the segments into (dx, dy) and out of (ex, ey) a point, px. */
+/* Returns half the length of the shorter of the segments into (dx, dy) and out of (ex, ey) a point, in px. */
 CAMBER_FN float camber_half_shorter(float dx, float dy, float ex, float ey) {
     const float d2 = dx * dx + dy * dy, e2 = ex * ex + ey * ey;
     return 0.5f * CAMBER_SQRT(d2 < e2 ? d2 : e2);
 }
 
-/* The turn between them. The product of the lengths comes from (d.e)^2 + (d x e)^2 = |d|^2 |e|^2: one root and one
- * division serve both. Below 1e-9 px by 1e-9 px it counts as that; at the longest, 3e9 px, it still fits a float. */
+/* Returns the turn between them. The product of the lengths comes from (d.e)^2 + (d x e)^2 = |d|^2 |e|^2, so that one
+ * root and one division are enough. A product below 1e-9 px times 1e-9 px counts as that; at the longest, 3e9 px, it
+ * still fits into a float. */
 CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey) {
     const float along = dx * ex + dy * ey, aside = dx * ey - dy * ex;
     const float product = along * along + aside * aside; /* of the squared lengths */
     const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
     const float dot = along * scale, cross = aside * scale;
-    /* The larger one of c and s comes from a root that loses nothing, the smaller from cross = 2 s c. */
+    /* The larger one of c and s comes from a root that loses no precision, the smaller from cross = 2 s c. */
     const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
     const float smaller = 0.5f * cross / larger;
     camber_turn turn;
@@ -52,7 +52,7 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     return turn;
 }
 
-/* tan(t/4) as 16 bits. Never 0, which marks a cap: a straight join turns by 0.007 degrees. */
+/* Returns tan(t/4) as 16 bits. Never 0, which marks a cap: a straight join gets a turn of 0.007 degrees. */
 CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
     const float q = turn.s / (1.0f + turn.c) * CAMBER_LARGEST_TURN;
     const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
@@ -67,7 +67,7 @@ CAMBER_FN float camber_turn_unpack(camber_u32 join) {
     return CAMBER_CAST(float, CAMBER_CAST(camber_i32, join << 16) >> 16) * (1.0f / CAMBER_LARGEST_TURN);
 }
 
-/* tan(t/2) from q = tan(t/4). Large, not infinite, at a full reversal. */
+/* Returns tan(t/2) from q = tan(t/4). At a full reversal it is large, but not infinite. */
 CAMBER_FN float camber_turn_tan_half(float q) {
     const float below = 1.0f - q * q;
     return 2.0f * q / (below > 1e-6f ? below : 1e-6f);
@@ -81,8 +81,8 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
     return join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
 }
 
-/* The bits of a join word that tell of the line beyond the next point, from the info of the points beside it. A ring
- * has neither first nor last, and a line that the window cuts does not end there. */
+/* Returns the bits of a join word that describe the line beyond the neighbouring points, from the info words of these
+ * points. A ring has neither first nor last point, and a line that the window cuts does not end there. */
 CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 after) {
     const camber_u32 goes_on = CAMBER_POINT_RING | CAMBER_POINT_CUT;
     const camber_flag first = (before & (CAMBER_POINT_FIRST | goes_on)) == CAMBER_POINT_FIRST;
@@ -94,7 +94,7 @@ CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
     return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
 }
 
-/* The bits of a join word that tell of the stub and the caps. cap: of the line, camber_cap. */
+/* Returns the bits of a join word for the stub and the caps. cap: the line's camber_cap. */
 CAMBER_FN camber_u32 camber_stub_pack(camber_u32 cap, float half_shorter) {
     const float units = 2.0f * half_shorter * (1.0f / CAMBER_STUB_UNIT_PX),
                 longest = CAMBER_CAST(float, CAMBER_STUB_MOST - 2u);
@@ -103,15 +103,15 @@ CAMBER_FN camber_u32 camber_stub_pack(camber_u32 cap, float half_shorter) {
     return stub << CAMBER_JOIN_STUB_SHIFT | (cap == CAMBER_CAPS_BUTT ? CAMBER_JOIN_BUTT : 0u);
 }
 
-/* camber_end past a cap: round 0, butt 1, square 2. */
+/* Returns camber_end for a cap: round 0, butt 1, square 2. */
 CAMBER_FN camber_u32 camber_cap_end(camber_u32 cap) {
     return cap == CAMBER_CAPS_ROUND    ? CAMBER_ENDS_ROUND
            : cap == CAMBER_CAPS_SQUARE ? CAMBER_ENDS_SQUARE
                                        : CAMBER_ENDS_BUTT;
 }
 
-/* Triangles of a round join as a fan: steps of the row's angle until they pass the turn. cos falls from 0 to
- * half a circle, so comparing cosines compares angles. */
+/* Returns the number of triangles of a round join as a fan: steps of the row's angle until they exceed the turn. cos
+ * decreases from 0 to half a circle, so comparing cosines compares angles. */
 CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float step_sin) {
     float x = step_cos, y = step_sin;
     camber_u32 n = 1u;
@@ -124,11 +124,11 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
     return n;
 }
 
-/* The join word of a point where two segments meet.
+/* Returns the join word of a point where two segments meet.
  *
  *     cut: each segment's quad ends on the bisector M-C       tight: the inner side has no room, each quad goes on
  *     and holds its own part of the join                      past P there, by the pad: the fragment shader cuts
- *                                                             at P and the bisector what lies past them
+ *                                                             at P and the bisector what is past them
  *
  *        ______________ C                                        ______________ C
  *        in            /|                                        in            /|
@@ -138,8 +138,7 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  *                   |out|
  *
  *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
- *     its side of the bisector
- */
+ *     its side of the bisector */
 CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_IN(camber_row) row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
 #if CAMBER_ROUND_LIMITS
@@ -159,7 +158,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_IN(camber_row) ro
                                              : CAMBER_ENDS_SPLIT_ROUND;
         end = split || tight ? split_end : end;
     } else if (sine > CAMBER_STRAIGHT_SINE) {
-        /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
+        /* Beyond 120 degrees the kite's tip would be too far away, so there are two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
         triangles = method == CAMBER_FAN && asked == CAMBER_JOINS_ROUND
                         ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin)
@@ -170,7 +169,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_IN(camber_row) ro
            triangles << CAMBER_JOIN_TRIANGLES_SHIFT;
 }
 
-/* The join word of an end of an open polyline, or of a dot. */
+/* Returns the join word of an end of an open polyline, or of a dot. */
 CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
     const camber_u32 kind = dot == 0u                 ? CAMBER_KIND_CAP
                             : cap == CAMBER_CAPS_BUTT ? CAMBER_KIND_SENTINEL
@@ -178,9 +177,9 @@ CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
     return kind << CAMBER_JOIN_KIND_SHIFT | camber_cap_end(cap) << CAMBER_JOIN_END_SHIFT;
 }
 
-/* How far along its segment an edge vertex lies, in units of the reach. end: +1 at the segment's end, -1 at its start;
- * side: +1 or -1. Floats and no struct: two of them returned together are a float2 to the device's compiler, which then
- * does not vectorise. */
+/* Returns how far along its segment an edge vertex is, in units of the reach. end: +1 at the segment's end, -1 at its
+ * start; side: +1 or -1. This returns a float and not a struct: the device's compiler makes a float2 of two floats that
+ * are returned together, and then does not vectorise. */
 CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
     const float q = camber_turn_unpack(join);
@@ -195,7 +194,8 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     return kind < CAMBER_KIND_CUT ? end : 0.0f;
 }
 
-/* The bound on that, px: past a butt end, and past the inner side of a tight join, the pad, however wide the line. */
+/* Returns the bound on that, in px: past a butt end, and past the inner side of a tight join, it is the pad, however
+ * wide the line. */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_flag is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == CAMBER_ENDS_BUTT;
@@ -203,12 +203,12 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     return is_butt || is_inner ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX;
 }
 
-/* How many records a point of a strip has:
- *   break, start        a polyline's first
+/* Returns how many records a point of a strip has:
+ *   break, start        a polyline's first point
  *   break, start, end   a dot
- *   end                 the last, and where the strip goes on: a plain cut
+ *   end                 the last point, and a plain cut, at which the strip continues
  *   end, start          at a tight join inside a polyline: of the triangles between, one is Ma, C, Mb, which winds
- *                       the other way, as Mb lies before the line through Ma and C, and is culled; one has no area
+ *                       the other way, as Mb is before the line through Ma and C, and is culled; one has no area
  *   end, break, start   at a split join there */
 CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     const camber_u32 first = CAMBER_HAS(info, CAMBER_POINT_FIRST) ? 1u : 0u;
@@ -222,8 +222,8 @@ CAMBER_FN camber_flag camber_record_starts(camber_u32 last) {
     return CAMBER_HAS(last, CAMBER_POINT_FIRST | CAMBER_RECORD_START);
 }
 
-/* Whether a start's edge on a side is that of the end before it: at a ring's cut seam, so that no pixel falls between,
- * and at the outer side of a tight join. */
+/* Whether a start shares its edge vertex on a side with the end before it: at a ring's cut seam, so that no pixel falls
+ * between them, and at the outer side of a tight join. */
 CAMBER_FN camber_flag camber_edge_is_shared(camber_u32 join, camber_u32 last, float side) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_flag seam = CAMBER_HAS(last, CAMBER_POINT_RING) && kind == CAMBER_KIND_CUT;
@@ -231,13 +231,13 @@ CAMBER_FN camber_flag camber_edge_is_shared(camber_u32 join, camber_u32 last, fl
     return CAMBER_HAS(last, CAMBER_POINT_FIRST) ? seam : outer;
 }
 
-/* The join word of kite's and fan's records. cap: of the line. */
+/* Returns the join word for the records of kite and fan. cap: the line's camber_cap. */
 CAMBER_FN camber_u32 camber_record_join(camber_u32 join, camber_u32 cap, float half_shorter) {
     const camber_u32 stub = camber_join_kind(join) < CAMBER_KIND_CUT ? 0u : camber_stub_pack(cap, half_shorter);
     return (join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT)) | stub;
 }
 
-/* The corner that a body begins with on a side. Cut bodies have it in common with the end before: those of kites the
+/* Returns the corner that a body begins with on a side. Cut bodies share it with the end before: those of kites the
  * inner one, and straight ones both. */
 CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32 method) {
     const camber_flag inner = method == CAMBER_KITE && side * camber_turn_unpack(join) > 0.0f;
@@ -246,12 +246,12 @@ CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32
     return (in_both ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_OUT_LEFT) + (side > 0.0f ? 0u : 1u);
 }
 
-/* The i-th of a join's own vertices, of which it has triangles - 1. */
+/* Returns the i-th of a join's own vertices, of which it has triangles - 1. */
 CAMBER_FN camber_u32 camber_join_corner(camber_u32 i, camber_u32 triangles, camber_flag is_fan) {
     return is_fan ? CAMBER_CORNER_FAN + i + 1u : triangles == 2u ? CAMBER_CORNER_TIP : CAMBER_CORNER_IN_TIP + i;
 }
 
-/* Whether a corner is placed by the segment out of its point. */
+/* Whether the outgoing segment of the point places a corner. */
 CAMBER_FN camber_flag camber_corner_goes_out(camber_u32 corner) {
     return corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT || corner == CAMBER_CORNER_OUT_RIGHT ||
            corner == CAMBER_CORNER_OUT_TIP;
@@ -290,11 +290,11 @@ CAMBER_FN void camber_join_corner_at(camber_u32 corner, float q, float step, CAM
 }
 #endif
 
-/* How many vertices and indices a point emits, vertices | indices << 16. Vertices are distinct ones:
- *   strip       L, R of each start and end, but for the outer one that they have in common at a tight join
- *   kite, fan   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends, and but for those
- *               that camber_start_corner has in common
- * Indices of a strip are two a record, kept or not. */
+/* Returns how many vertices and indices a point emits, vertices | indices << 16. Only distinct vertices count:
+ *   strip       L, R of each start and end, except the outer one that they share at a tight join
+ *   kite, fan   in L, R | join's own | P if there is a join | out L, R, unless the polyline ends, and except those
+ *               that camber_start_corner shares
+ * A strip has two indices per record, stored or not. */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
     if (method == CAMBER_STRIP) {

@@ -1,8 +1,9 @@
-/* The vectors that the rasterizer computes with: types and conversions that depend on how many lanes a vector has.
+/* The vectors that the rasterizer computes with: types and conversions that depend on the number of lanes.
  *
- * CAMBER_LANES is 1 in C, in shaders and on GPUs: one segment or pixel is taken at a time. On a CPU's device it is 8 or
- * 16: its build says so. A formula over camber_real, camber_words and camber_mask has the same bits in each lane,
- * whatever their number. Where a formula takes lanes together, as the largest of them, it has to say whose they are. */
+ * CAMBER_LANES is 1 in C, in shaders and on GPUs, which take one segment or pixel at a time. On a CPU device it is 8 or
+ * 16, which the build sets. A formula over camber_real, camber_words and camber_mask gives the same bits in each lane,
+ * whatever the number of lanes. A formula that combines lanes, such as the largest of them, has to say which lanes
+ * count. */
 #ifndef CAMBER_KERNELS_LANES_H
 #define CAMBER_KERNELS_LANES_H
 
@@ -19,7 +20,7 @@
 
 #if CAMBER_HAS_VECTORS
 
-/* The name of a vector type or of its conversion: CAMBER_OF_LANES(float) is float16 where there are 16 lanes. */
+/* The name of a vector type or of its conversion: CAMBER_OF_LANES(float) is float16 if there are 16 lanes. */
 #define CAMBER_PASTE_LANES(name, lanes) name##lanes
 #define CAMBER_PASTED_LANES(name, lanes) CAMBER_PASTE_LANES(name, lanes)
 #define CAMBER_OF_LANES(name) CAMBER_PASTED_LANES(name, CAMBER_LANES)
@@ -30,7 +31,7 @@ typedef CAMBER_OF_LANES(int) camber_mask; /* all bits of a lane, or none */
 typedef CAMBER_OF_LANES(ulong) camber_long_words;
 
 #define CAMBER_TO_REAL(x) CAMBER_OF_LANES(convert_float)(x) /* of words or of integers */
-#define CAMBER_TO_WORDS(x) CAMBER_OF_LANES(convert_uint)(x) /* of reals from 0 on, cut to whole numbers */
+#define CAMBER_TO_WORDS(x) CAMBER_OF_LANES(convert_uint)(x) /* of reals from 0 on, truncated to integers */
 #define CAMBER_TO_INTEGERS(x) CAMBER_OF_LANES(convert_int)(x)
 #define CAMBER_TO_LONG_WORDS(x) CAMBER_OF_LANES(convert_ulong)(x)
 #define CAMBER_AS_REAL(x) CAMBER_OF_LANES(as_float)(x)
@@ -40,7 +41,7 @@ typedef CAMBER_OF_LANES(ulong) camber_long_words;
 #define CAMBER_STORE(vector, at, to) CAMBER_OF_LANES(vstore)(vector, at, to)
 #define CAMBER_ANY(mask) camber_any(mask)
 #define CAMBER_ALL(mask) camber_all(mask)
-#define CAMBER_BITS(x) as_uint(x) /* of one float */
+#define CAMBER_BITS(x) as_uint(x) /* the bits of one float */
 #define CAMBER_ALL_LANES(flag) ((camber_mask)((flag) ? -1 : 0))
 
 #elif defined(CAMBER_GLSL)
@@ -114,13 +115,13 @@ CAMBER_FN float camber_float_of(camber_u32 bits) {
 #define CAMBER_COLOR(color) camber_real color[4]
 #endif
 #define CAMBER_TRUNCATE(x) CAMBER_TO_REAL(CAMBER_TO_INTEGERS(x))
-/* The nearest whole numbers to reals of less than 2^22, as words: what is added leaves no bits for fractions. */
+/* The nearest integers to reals below 2^22, as words: the added constant leaves no bits for fractions. */
 #define CAMBER_ROUNDED_WORDS(x) (CAMBER_AS_WORDS((x) + 12582912.0f) - 0x4b400000u)
-/* The low 16 bits of join words, as numbers with a sign. */
+/* The low 16 bits of join words, as signed numbers. */
 #define CAMBER_TURNS(joins) CAMBER_TO_REAL(CAMBER_AS_INTEGERS((joins) << 16) >> 16)
 
 #ifndef CAMBER_GLSL
-/* Lane k of a vector that lies in memory: of reals, and of integers. */
+/* Returns lane k of a vector in memory: of reals, and of integers. */
 CAMBER_FN float camber_lane_of(const camber_real *vector, int k) {
     return ((const float *)vector)[k];
 }
@@ -131,7 +132,7 @@ CAMBER_FN int camber_integer_of(const camber_mask *vector, int k) {
 #endif
 
 #if CAMBER_HAS_VECTORS
-/* Whether any lane, and whether all lanes of a mask are set. PoCL's any and all look at one lane after the other. */
+/* Whether any lane of a mask is set, and whether all are. PoCL's own any and all look at one lane after another. */
 #if CAMBER_LANES == 16
 #define CAMBER_HALF_OF(mask, operator) ((mask).lo operator(mask).hi)
 #else
@@ -153,7 +154,7 @@ CAMBER_FN int camber_all(camber_mask mask) {
 }
 #endif
 
-/* The largest of a vector's lanes: of reals, and of integers. */
+/* Returns the largest of a vector's lanes: of reals, and of integers. */
 #if CAMBER_LANES == 1
 CAMBER_FN float camber_most_of(camber_real x) {
     return x;
@@ -187,7 +188,7 @@ CAMBER_FN int camber_largest_of(camber_mask x) {
 #endif
 
 #ifndef CAMBER_GLSL
-/* The sum of sixteen numbers, in one order whatever the lanes. */
+/* Returns the sum of sixteen numbers, in the same order whatever the number of lanes. */
 CAMBER_FN float camber_sum_of_sixteen(const camber_real *vectors) {
 #if CAMBER_LANES == 1
     float sums[8];

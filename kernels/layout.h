@@ -10,23 +10,23 @@
 #include "camber_proof.h"
 #endif
 
-/* Points a work-group, and the block of the scan. Point arrays are padded with sentinels to a multiple of it, so
- * that no kernel needs a guard. A device may take smaller ones, which divide it: its build sets them. */
+/* Points per work-group, and the block of the scan. Point arrays are padded with sentinels to a multiple of it, so that
+ * no kernel needs a guard. A device may use smaller blocks, which divide this: its build sets them. */
 #ifndef CAMBER_BLOCK
 #define CAMBER_BLOCK 256
 #endif
-/* Points a work-item of classify, scan and emit. On a CPU one takes a whole block: its build says so. */
+/* Points per work-item of classify, scan and emit. On a CPU a work-item takes a whole block, which the build sets. */
 #ifndef CAMBER_POINT_CHUNK
 #define CAMBER_POINT_CHUNK 8
 #endif
 
-/* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_WORK_ITEM. On a CPU the
- * body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and compiles its
- * loop over work-items around each, which takes twice as long and runs no faster. min_vector_width: LLVM halves
- * AVX-512's vectors unless a function asks for them whole; processors without such take no notice. */
+/* Defines a kernel with work-groups of `size` work-items; its body has the number of its work-item in CAMBER_WORK_ITEM.
+ * On a CPU the body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and
+ * compiles its loop over work-items around each, which takes twice as long and runs no faster. min_vector_width: LLVM
+ * halves AVX-512's vectors unless a function asks for whole ones; processors without AVX-512 ignore it. */
 #ifdef CAMBER_DEVICE
 #if CAMBER_POINT_CHUNK == CAMBER_BLOCK
-#define CAMBER_LIST(...) __VA_ARGS__ /* for CPUs alone: NVIDIA's compiler knows no such macro */
+#define CAMBER_LIST(...) __VA_ARGS__ /* only for CPUs: NVIDIA's compiler does not know such a macro */
 #define CAMBER_WORK_ITEM item_id
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     static void name##_item(const size_t item_id, CAMBER_LIST parameters)                                              \
@@ -43,9 +43,10 @@
 #endif
 
 /* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a sentinel: a neighbour to look at, or padding,
- * that emits nothing. A ring is stored as sentinel of its last but one point, its points with the first repeated
- * at the end, sentinel of its second point: so neighbours are always i - 1 and i + 1. A first or last point that is CUT
- * is no end: the line goes on outside the window. A point of an AREA's ring has no join: only edges are made of it. */
+ * that emits nothing. A ring is stored as a sentinel of its last but one point, its points with the first repeated at
+ * the end, and a sentinel of its second point, so that neighbours are always i - 1 and i + 1. A first or last point
+ * that is CUT is not an end: the line continues outside the window. A point of an AREA's ring has no join: only edges
+ * are made of it. */
 #define CAMBER_POINT_REAL 1u
 #define CAMBER_POINT_FIRST 2u
 #define CAMBER_POINT_LAST 4u
@@ -57,52 +58,52 @@
 
 /* A row of the style table as the kernels read it. */
 CAMBER_STRUCT(camber_row) {
-    float reach_px;    /* half the width + CAMBER_PAD_PX: the unit of extrusion at the widest */
+    float reach_px;    /* half the largest width + CAMBER_PAD_PX: the unit of extrusion */
     float miter_limit; /* 1 / cos(turn / 2) */
-    float fan_cos;     /* of the fan's step angle */
+    float fan_cos;     /* cosine of the fan's step angle */
     float fan_sin;
-    float round_cos; /* of half the turn: above it round joins are miters; 2: of other joins */
+    float round_cos; /* cosine of half the turn: above it round joins are miters; 2 for other joins */
     camber_u32 join; /* camber_join */
     camber_u32 cap;  /* camber_cap */
     float fan_step;  /* the angle */
 };
 
-/* Words of a record: see camber_record in camber_proof.h. A mesh with arc lengths has as many again behind them, of
- * which the first two are camber_arc_length. */
+/* Words of a record: see camber_record in camber_proof.h. A mesh with arc lengths has as many again after them, of
+ * which the first two are a camber_arc_length. */
 #define CAMBER_RECORD_WORDS 4
 #ifndef CAMBER_HAS_ARC_LENGTH
 #define CAMBER_HAS_ARC_LENGTH 0
 #endif
 
-/* A record's last word is its point's info, with one of these. The vertices of a start are placed by the segment that
- * goes out of it, but for the edges that it has in common with the end before, which lie where the segment that comes
- * in puts them, to the last bit. That segment begins where the break before the start says, or at a tight join the
- * record before the end. */
-#define CAMBER_RECORD_BREAK 16u /* between two strips: both its vertices are the neighbours' */
-#define CAMBER_RECORD_START 32u /* of a strip inside a polyline, where the one before has ended */
+/* A record's last word is its point's info, with one of these. The outgoing segment places the vertices of a start,
+ * except those that it shares with the end before: the incoming segment places these, to the last bit. The incoming
+ * segment begins at the break before the start, or at a tight join at the record before the end. */
+#define CAMBER_RECORD_BREAK 16u /* between two strips: both its vertices are those of its neighbours */
+#define CAMBER_RECORD_START 32u /* start of a strip inside a polyline, where the previous strip has ended */
 
-/* kite and fan: an index is record << CAMBER_CORNER_BITS | corner. In and out: of the segments into and out of the
- * point. Past CAMBER_CORNER_FAN come a fan's own vertices, by the number of steps from the edge of the segment in. */
+/* Kite and fan: an index is record << CAMBER_CORNER_BITS | corner. IN and OUT refer to the segments into and out of the
+ * point. From CAMBER_CORNER_FAN on there are a fan's own vertices, by the number of steps from the edge of the incoming
+ * segment. */
 #define CAMBER_CORNER_BITS 7
 #define CAMBER_CORNER_CENTRE 0u
 #define CAMBER_CORNER_IN_LEFT 1u
 #define CAMBER_CORNER_IN_RIGHT 2u
 #define CAMBER_CORNER_OUT_LEFT 3u
 #define CAMBER_CORNER_OUT_RIGHT 4u
-#define CAMBER_CORNER_TIP 5u      /* a kite's, where the outer edges meet */
-#define CAMBER_CORNER_IN_TIP 6u   /* of the first of two kites */
+#define CAMBER_CORNER_TIP 5u      /* tip of a kite, where the outer edges meet */
+#define CAMBER_CORNER_IN_TIP 6u   /* tip of the first of two kites */
 #define CAMBER_CORNER_BISECTOR 7u /* between two kites */
 #define CAMBER_CORNER_OUT_TIP 8u  /* of the second */
 #define CAMBER_CORNER_FAN 63u
 
-/* A point's join word, what classify writes and scan and emit read:
+/* A point's join word, which classify writes, and scan and emit read:
  *
  *     bits  0-15  tan(turn / 4) * 32767, two's complement
  *          16-18  camber_end
  *          19-25  join triangles; in the words of strips, and in records: 19-24 the stub, 25 the line has butt caps
- *             26  the point before is its line's first
- *             27  that behind is its last
- *          28-31  kind: it comes last, so that no mask narrows it to three bits, which oclgrind 21.10 gets wrong
+ *             26  the previous point is its line's first
+ *             27  the next point is its line's last
+ *          28-31  kind: in the top bits, so that no mask narrows it to three bits, which oclgrind 21.10 gets wrong
  *
  * The stub: 1 + the length of the shorter of its two segments, whole units of CAMBER_STUB_UNIT_PX, and 63 from
  * CAMBER_STUB_PX on. */
@@ -118,16 +119,16 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_JOIN_AFTER_FIRST (1u << 26)
 #define CAMBER_JOIN_BEFORE_LAST (1u << 27)
 #define CAMBER_JOIN_KIND_SHIFT 28
-#define CAMBER_JOIN_TRIANGLES_MAX 64u /* so that a block's index count fits 16 bits */
+#define CAMBER_JOIN_TRIANGLES_MAX 64u /* so that a block's index count fits into 16 bits */
 
-#define CAMBER_KIND_SENTINEL 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
+#define CAMBER_KIND_SENTINEL 0u /* emits nothing: not a point of a polyline, or a dot with butt caps */
 #define CAMBER_KIND_DOT 1u      /* a polyline of one point */
 #define CAMBER_KIND_CAP 2u      /* an end of an open polyline */
 #define CAMBER_KIND_CUT 3u      /* a join cut along its bisector */
 #define CAMBER_KIND_TIGHT 4u    /* cut on the outer side; the inner side has no room */
 #define CAMBER_KIND_SPLIT 5u    /* too sharp to cut: both segments end here */
 
-/* The public enums, which OpenCL C does not read: camber_method, camber_join, camber_cap. */
+/* The values of the public enums, which OpenCL C cannot include: camber_method, camber_join, camber_cap. */
 #define CAMBER_STRIP 0u
 #define CAMBER_KITE 1u
 #define CAMBER_FAN 2u
@@ -148,8 +149,8 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_ENDS_SPLIT_MITER 7u
 
 #define CAMBER_NO_LIMIT_PX 3.0e38f
-#define CAMBER_LARGEST_TURN 32767.0f /* what tan(turn / 4) = 1 is stored as */
-#define CAMBER_DIAGONAL 1.4143f      /* of a square whose side is 1, and a little more */
+#define CAMBER_LARGEST_TURN 32767.0f /* the stored value of tan(turn / 4) = 1 */
+#define CAMBER_DIAGONAL 1.4143f      /* the diagonal of a square whose side is 1, rounded up */
 
 #if defined(CAMBER_DEVICE)
 typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];

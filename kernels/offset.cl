@@ -1,4 +1,4 @@
-/* The program that moves lines aside. */
+/* The program that makes offset lines. */
 #include "offset_clip.cl"
 
 #include "offset_count.cl"

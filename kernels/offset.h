@@ -1,40 +1,42 @@
-/* Offset: decides which points a line has that lies beside another, its source line.
+/* Offset lines: computes the points of a line that runs beside another one, its source line.
  *
- *     offset segment   the one from a slot to the next, moved aside
- *     corner           where two of them meet: an arc about the point outside, a crossing inside
+ *     offset segment   the segment from a slot to the next, moved sideways
+ *     corner           where two of them meet: an arc about the point on the outer side, a crossing on the inner side
  *
- *         T0___T1                 outer: points on tangents, so that none lies nearer than the offset;
- *         /       \               the first and the last lie on the segments
+ *         T0___T1                 outer: points on tangents, so that none is nearer than the offset;
+ *         /       \               the first and the last are on the segments
  *        /    P----T2---- segment
- *       /    /                        seg ------J   P      inner: J, where both have room
+ *       /    /                        seg ------J   P      inner: J, if both have room
  *      seg  /                                    \   \
  *
- * What has no room goes: of a segment, and of an arc, that is left which lies no nearer than the offset to what the
- * line passes within its reach, CAMBER_OFFSET_REACH offsets around the end of the segment. As a capsule is convex, it
- * hides one interval of a segment; the line before hides the segment's beginning up to there, that behind its end. What
- * is left is linked in the order of the line. So a line has no more segments than it had, and what lies farther along
- * it than its reach does not count: a line that crosses itself is drawn through. */
+ * Parts without room are removed: what remains of a segment or an arc is at least the offset away from every part of
+ * the source line within its reach, which is CAMBER_OFFSET_REACH offsets around the end of the segment. A segment of
+ * the source line hides everything nearer than the offset, which is a capsule. Since a capsule is convex, it hides one
+ * interval of an offset segment; the line before hides the beginning of the offset segment up to that interval's end,
+ * the line after hides its end. The remaining parts are linked in the order of the line. So a line has no more segments
+ * than it had, and parts of the line beyond the reach do not count: a line that crosses itself is drawn through the
+ * crossing. */
 #ifndef CAMBER_KERNELS_OFFSET_H
 #define CAMBER_KERNELS_OFFSET_H
 
 #include "join.h"
 
-/* Slots whose points a work-item counts and emits. */
+/* Number of slots whose points a work-item counts and emits. */
 #define CAMBER_OFFSET_CHUNK 16
-/* How far around a segment's end the line is looked at, in offsets, and how many segments of it at most. */
+/* How far around a segment's end the line is searched, in offsets, and how many of its segments at most. */
 #define CAMBER_OFFSET_REACH 3.0f
 #define CAMBER_OFFSET_SEGMENTS 128u
-/* Slots that are passed at most to find a ring's other end, where its seam is looked across. */
+/* The most slots that are passed to find a ring's other end, if the search crosses its seam. */
 #define CAMBER_OFFSET_SEAM 65536u
-/* An arc's points lie no farther outside it; it has no more of them. */
+/* An arc's points are at most so far outside it; and the most points of an arc. */
 #define CAMBER_OFFSET_ARC_TOLERANCE_PX 0.125f
 #define CAMBER_OFFSET_ARC_POINTS_MAX 64u
-/* The rest of a cut segment is longer. Elements that are linked are so by one point where they end closer. */
+/* The rest of a cut segment is longer than this. Linked elements share one point if their ends are closer than this. */
 #define CAMBER_OFFSET_SEGMENT_SHORTEST_PX (1.0f / 1024.0f)
 #define CAMBER_OFFSET_GAP_PX 0.25f
-/* Segments that are cut may end so far from where they cross. */
+/* Cut segments may end this far from where they cross. */
 #define CAMBER_OFFSET_SLACK_PX 1.0f
-/* The end of a segment that is not cut there. */
+/* Marks an end of a segment that is not cut. */
 #define CAMBER_OFFSET_SEGMENT_WHOLE 1.0e30f
 
 /* The part of a row that an offset needs. */
@@ -45,13 +47,13 @@ typedef struct camber_offset_row {
     camber_u32 spare;
 } camber_offset_row;
 
-/* The rest of the offset segment that begins at a slot, px along it, and of the arc there. */
+/* The rest of the offset segment that begins at a slot, in px along it, and of the arc there. */
 typedef struct camber_offset_clip {
-    float from, to; /* nothing where to is not above from */
-    camber_u32 arc; /* its first point | the one behind its last << 8 | how many it would have << 16 */
+    float from, to; /* nothing if to is not above from */
+    camber_u32 arc; /* its first point | the one after its last << 8 | how many it would have in full << 16 */
 } camber_offset_clip;
 
-/* Lines as classify would read them, and what is known of them. */
+/* The source lines, as classify would read them, with their rows and arc lengths. */
 typedef struct camber_source_line {
     CAMBER_GLOBAL const float *x, *y;
     CAMBER_GLOBAL const camber_u32 *info;
@@ -63,7 +65,7 @@ typedef struct camber_source_line {
 
 /* ---- Slots along a line ---- */
 
-/* The other end of a ring, which is somewhere behind its first slot or before its last; 0: not found. */
+/* Returns the other end of a ring, which is somewhere after its first slot or before its last; 0: not found. */
 CAMBER_FN camber_u32 camber_seam_last(const camber_source_line *c, camber_u32 first, camber_u32 most) {
     const camber_u32 wanted = CAMBER_POINT_LAST | CAMBER_POINT_RING;
     const camber_u32 end = c->slots - first > most ? first + most : c->slots;
@@ -82,7 +84,7 @@ CAMBER_FN camber_u32 camber_seam_first(const camber_source_line *c, camber_u32 l
     return i >= end ? i : 0u;
 }
 
-/* The slot before along the line, past a ring's seam; 0: none. */
+/* Returns the previous slot along the line, across a ring's seam; 0: there is none. */
 CAMBER_FN camber_u32 camber_slot_before(const camber_source_line *c, camber_u32 at, camber_u32 most) {
     if (!(c->info[at] & CAMBER_POINT_FIRST))
         return at - 1u;
@@ -108,14 +110,14 @@ CAMBER_FN camber_u32 camber_is_open_end(camber_u32 info) {
 
 /* ---- Offset segments ---- */
 
-/* A component of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a
- * pixel. */
+/* Returns a component of a direction: 0 if two slots have the same position, as happens if a camera sees a whole city
+ * in a pixel. */
 CAMBER_FN float camber_direction(float offset, float length) {
     return length > 0.0f ? offset / length : 0.0f;
 }
 
 typedef struct camber_offset_segment {
-    float x, y; /* of its begin, px; not moved */
+    float x, y; /* its start in px, not moved */
     float ux, uy, length;
 } camber_offset_segment;
 
@@ -147,13 +149,13 @@ CAMBER_FN camber_u32 camber_offset_has_segment(camber_offset_clip clip) {
 typedef struct camber_offset_corner {
     float c, s;    /* cosine and sine of half the turn that the offset makes, positive from x to y */
     float in, out; /* lengths of the segments */
-    float ix, iy;  /* direction of the one that comes in */
+    float ix, iy;  /* direction of the incoming segment */
     float x, y;    /* px */
     camber_u32 inner;
 } camber_offset_corner;
 
-/* The corner at a slot that has neighbours. Segments that lie on each other, as of a way to a dead end and back, are
- * gone around on either side. */
+/* Returns the corner at a slot that has neighbours. If its segments coincide, as on a way to a dead end and back, the
+ * offset line goes around the end on either side. */
 CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line *c, camber_u32 slot, float offset) {
     const float x = c->x[slot], y = c->y[slot];
     const float dx = x - c->x[slot - 1u], dy = y - c->y[slot - 1u];
@@ -181,14 +183,14 @@ CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line 
     return corner;
 }
 
-/* How far along both segments the place lies where they cross. */
+/* Returns how far along both segments the point is at which they cross. */
 CAMBER_FN float camber_offset_corner_overlap(const camber_offset_corner *corner, float offset) {
     const float c = corner->c > 1.0e-6f ? corner->c : 1.0e-6f;
     return CAMBER_FABS(offset * corner->s) / c;
 }
 
-/* How much of a segment its neighbour over an inner corner hides. That may be too short to reach where both cross: then
- * it is the disc about its other end that does. */
+/* Returns how much of a segment its neighbour hides at an inner corner. If the neighbour is too short to reach the
+ * crossing, the disc about its other end hides it. */
 CAMBER_FN float camber_offset_corner_hides(const camber_offset_corner *corner, float offset, float neighbour) {
     const float d = CAMBER_FABS(offset), reach = CAMBER_OFFSET_REACH * d;
     const float length = neighbour < reach ? neighbour : reach, room = camber_offset_corner_overlap(corner, offset);
@@ -201,7 +203,7 @@ CAMBER_FN float camber_offset_corner_hides(const camber_offset_corner *corner, f
     return hidden > 0.0f ? hidden : 0.0f;
 }
 
-/* An arc: where its next point lies from the corner, and the turn to the one behind. */
+/* An arc: the position of its next point relative to the corner, and the turn to the one after that. */
 typedef struct camber_offset_arc {
     float vx, vy;
     float c, s;
@@ -214,7 +216,7 @@ CAMBER_FN void camber_offset_arc_step(camber_offset_arc *arc) {
     arc->vx = vx;
 }
 
-/* The arc of an outer corner; a bevel has none. One point is the tip. */
+/* Returns the arc of an outer corner; a bevel has none. If it has one point, this is the tip. */
 CAMBER_FN camber_offset_arc camber_offset_arc_of(const camber_offset_corner *corner, camber_offset_row row) {
     const float d = CAMBER_FABS(row.offset_px);
     float c = corner->c, s = corner->s;

@@ -1,4 +1,4 @@
-/* Clips offset segments and arcs where the line passes nearer to it than the offset: offset.h says the rule. */
+/* Clips offset segments and arcs where the source line comes nearer than the offset: offset.h has the rule. */
 #ifndef CAMBER_KERNELS_OFFSET_CLIP_H
 #define CAMBER_KERNELS_OFFSET_CLIP_H
 
@@ -9,7 +9,7 @@
 /* A walk away from a slot: the segments of the line, cut where they leave its reach. */
 typedef struct camber_neighbour_walk {
     camber_u32 at, left;
-    float x, y, reach;    /* where it began, and how far it goes from there */
+    float x, y, reach;    /* where it began, and how far from there it goes */
     float ax, ay, bx, by; /* the segment */
 } camber_neighbour_walk;
 
@@ -24,7 +24,7 @@ CAMBER_FN camber_neighbour_walk camber_neighbour_walk_from(const camber_source_l
     return p;
 }
 
-/* Goes on by a segment; 0: there is none. */
+/* Advances by a segment; 0: there is none. */
 CAMBER_FN camber_u32 camber_neighbour_walk_on(const camber_source_line *c, camber_neighbour_walk *p, camber_u32 back) {
     if (p->left == 0u)
         return 0u;
@@ -52,8 +52,8 @@ CAMBER_FN camber_u32 camber_neighbour_walk_on(const camber_source_line *c, cambe
     return 1u;
 }
 
-/* The interval of a straight line that lies nearer than `near` to a segment. The segment's ends lie at ax and bx along
- * the line, and ha and hb below it. */
+/* Computes the interval of a straight line that is nearer than `near` to a segment. The segment's ends are at ax and bx
+ * along the line, and ha and hb below it. */
 CAMBER_FN camber_u32 camber_hidden_interval(float near, float ax, float ha, float bx, float hb, float *lo, float *hi) {
     *lo = CAMBER_OFFSET_SEGMENT_WHOLE;
     *hi = -CAMBER_OFFSET_SEGMENT_WHOLE;
@@ -83,17 +83,17 @@ CAMBER_FN camber_u32 camber_hidden_interval(float near, float ax, float ha, floa
     return *lo < *hi ? 1u : 0u;
 }
 
-/* How much nearer than the offset counts as nearer: rounding does not. */
+/* Returns the distance below which something is nearer than the offset, with a margin for rounding. */
 CAMBER_FN float camber_offset_near(float offset) {
     const float d = CAMBER_FABS(offset);
     const float least = d < 0.5f ? d * (1.0f / 16.0f) : 1.0f / 32.0f, coarse = d * (1.0f / 65536.0f);
     return d - (coarse > least ? coarse : least);
 }
 
-/* The walks go both ways in turn: of a ring that lies within the reach each way sees half. */
+/* Walks in both directions in turn: if a whole ring is within the reach, each direction sees half of it. */
 typedef struct camber_neighbour_walks {
     camber_neighbour_walk back, ahead;
-    camber_u32 turn; /* 1: back went last */
+    camber_u32 turn; /* 1: back advanced last */
 } camber_neighbour_walks;
 
 CAMBER_FN void camber_neighbour_walks_meet(camber_neighbour_walks *p) {
@@ -101,7 +101,7 @@ CAMBER_FN void camber_neighbour_walks_meet(camber_neighbour_walks *p) {
         p->back.left = p->ahead.left = 0u;
 }
 
-/* From two slots, past the segments that lie at them. */
+/* Begins at two slots, past the segments at them. */
 CAMBER_FN camber_neighbour_walks camber_neighbour_walks_from(const camber_source_line *c, camber_u32 back,
                                                              camber_u32 ahead, float offset) {
     camber_neighbour_walks p;
@@ -114,7 +114,7 @@ CAMBER_FN camber_neighbour_walks camber_neighbour_walks_from(const camber_source
     return p;
 }
 
-/* Goes on by a segment, which is in p->back or p->ahead; 0: there is none. */
+/* Advances by a segment, which is then in p->back or p->ahead; 0: there is none. */
 CAMBER_FN camber_u32 camber_neighbour_walks_on(const camber_source_line *c, camber_neighbour_walks *p) {
     for (camber_u32 i = 0; i < 2u; i++) {
         p->turn = 1u - p->turn;
@@ -126,7 +126,7 @@ CAMBER_FN camber_u32 camber_neighbour_walks_on(const camber_source_line *c, camb
     return 0u;
 }
 
-/* Cuts a segment by what the line passes before it and behind it, but for the neighbours of the segment. */
+/* Cuts a segment by the parts of the line before and after it, except the segment's neighbours. */
 CAMBER_FN void camber_offset_segment_cut(const camber_source_line *c, camber_u32 slot,
                                          const camber_offset_segment *segment, float offset, float *from, float *to) {
     const float d = CAMBER_FABS(offset), near = camber_offset_near(offset), side = offset < 0.0f ? -1.0f : 1.0f;
@@ -152,7 +152,7 @@ CAMBER_FN void camber_offset_segment_cut(const camber_source_line *c, camber_u32
     }
 }
 
-/* Clips an arc: as with a segment, what comes before hides its beginning. */
+/* Clips an arc: as with a segment, the line before hides its beginning. */
 CAMBER_FN void camber_offset_arc_cut(const camber_source_line *c, camber_u32 slot, const camber_offset_corner *corner,
                                      const camber_offset_arc *arc, float offset, camber_u32 *first, camber_u32 *end) {
     const float near = camber_offset_near(offset);
@@ -197,7 +197,7 @@ CAMBER_FN void camber_offset_clip_segment(const camber_source_line *c, camber_u3
         folds = folds && corner.inner && CAMBER_FABS(corner.s) < 0.5f ? 1u : 0u;
         room += camber_offset_corner_overlap(&corner, offset);
     }
-    /* The inside of a narrow curve: the segment would run backwards. */
+    /* On the inside of a narrow curve the segment would run backwards. */
     if (folds && room > segment.length)
         to = clip->from;
     if (to > clip->from)
@@ -219,8 +219,8 @@ CAMBER_FN camber_u32 camber_offset_clip_arc(const camber_source_line *c, camber_
     return end > first ? first | end << 8 | arc.count << 16 : 0u;
 }
 
-/* Clips the segment that begins at a slot, and the arc there, which a ring's last point leaves to its first.
- * An arc of a single point needs a segment behind it. */
+/* Clips the segment that begins at a slot, and the arc there; a ring's last point leaves the arc to its first. An arc
+ * of a single point needs a segment after it. */
 CAMBER_FN camber_offset_clip camber_offset_clip_of(const camber_source_line *c, camber_u32 slot) {
     const camber_u32 info = c->info[slot];
     camber_offset_clip clip = {0.0f, -1.0f, 0u};

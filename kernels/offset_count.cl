@@ -1,4 +1,4 @@
-/* offset_count: how many slots come of each chunk of CAMBER_OFFSET_CHUNK slots, a work-item each.
+/* offset_count: counts how many slots each chunk of CAMBER_OFFSET_CHUNK slots yields. One work-item per chunk.
  * Reads what offset_clip reads and clips[n + 2]; writes counts[chunks]. */
 #include "offset_emit.h"
 

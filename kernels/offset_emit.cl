@@ -1,8 +1,9 @@
-/* offset_emit: the slots of the lines beside. A work-item a chunk of CAMBER_OFFSET_CHUNK slots.
- * Reads what offset_count reads and bases[chunks + 1], the slots before each chunk and all of them. Writes x, y,
- * info[s + 2], s being all slots rounded up to CAMBER_BLOCK: a sentinel before them and sentinels behind; the joins of
- * the first and the last sentinel, which classify leaves; places[n], the slots that come of those before each. With
- * CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] and writes out_arc_lengths[2 * s]; else both are NULL. */
+/* offset_emit: writes the slots of the offset lines. One work-item per chunk of CAMBER_OFFSET_CHUNK slots.
+ * Reads what offset_count reads and bases[chunks + 1], the slots before each chunk and their total. Writes x, y, info[s
+ * + 2], s being the total rounded up to CAMBER_BLOCK: a sentinel before the slots and sentinels after them; the joins
+ * of the first and the last sentinel, which classify does not write; places[n], for each source slot the number of
+ * slots from those before it. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] and writes out_arc_lengths[2 * s];
+ * else both are NULL. */
 #include "offset_emit.h"
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1, 1))) void offset_emit(

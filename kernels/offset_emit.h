@@ -1,4 +1,4 @@
-/* The points of what is left of a line beside another, in the order of the line. */
+/* Emits the points of what remains of an offset line, in the order of the line. */
 #ifndef CAMBER_KERNELS_OFFSET_EMIT_H
 #define CAMBER_KERNELS_OFFSET_EMIT_H
 
@@ -13,10 +13,10 @@
 typedef struct camber_offset_element {
     camber_u32 kind, slot;
     camber_u32 steps; /* slots back */
-    camber_u32 seam;  /* 1: a ring's seam lies between */
+    camber_u32 seam;  /* 1: a ring's seam is between them */
 } camber_offset_element;
 
-/* An arc that is one point, the tip, is there where both its segments reach it. */
+/* Whether there is an arc. An arc of one point, the tip, exists only if both its segments reach it. */
 CAMBER_FN camber_u32 camber_has_arc(const camber_source_line *c, camber_u32 slot) {
     const camber_offset_clip clip = c->clips[slot];
     if (camber_offset_arc_count(clip.arc) != 1u)
@@ -28,7 +28,7 @@ CAMBER_FN camber_u32 camber_has_arc(const camber_source_line *c, camber_u32 slot
                : 0u;
 }
 
-/* The last element before a slot's own. */
+/* Returns the last element before a slot's own. */
 CAMBER_FN camber_offset_element camber_offset_element_before(const camber_source_line *c, camber_u32 slot) {
     camber_offset_element element = {CAMBER_OFFSET_NONE, slot, 0u, 0u};
     camber_u32 around = c->info[slot] & CAMBER_POINT_LAST ? 1u : 0u; /* all of a ring has been seen at its seam */
@@ -53,14 +53,14 @@ CAMBER_FN camber_offset_element camber_offset_element_before(const camber_source
 
 /* ---- Points ---- */
 
-/* Takes points, and remembers the first two and the last. */
+/* Receives points, and remembers the first two and the last. */
 typedef struct camber_offset_writer {
     CAMBER_GLOBAL float *x, *y;
     CAMBER_GLOBAL camber_u32 *info;
     CAMBER_GLOBAL float *arc_lengths;
-    camber_u32 emits;       /* 0: points are counted, 1: and put */
+    camber_u32 emits;       /* 0: points are only counted, 1: they are also written */
     camber_u32 at;          /* the next slot */
-    camber_u32 word, flags; /* of the next point; flags are for one */
+    camber_u32 word, flags; /* info word and flags of the next point; flags are only for one point */
     camber_u32 count;
     float x0, y0, x1, y1, last_x, last_y;
     float total;
@@ -104,7 +104,7 @@ CAMBER_FN float camber_offset_along_segment(const camber_source_line *c, camber_
     return from + (to - from) * (along / segment->length);
 }
 
-/* Where an element ends. */
+/* The end of an element. */
 typedef struct camber_offset_point {
     float x, y, along;
 } camber_offset_point;
@@ -142,7 +142,7 @@ CAMBER_FN void camber_offset_emit_end(const camber_source_line *c, camber_offset
     camber_offset_writer_point(writer, place.x, place.y, place.along);
 }
 
-/* Emits the rest of an arc, but for its last point, which the next element emits. */
+/* Emits what remains of an arc, except its last point, which the next element emits. */
 CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                       camber_offset_row row, camber_offset_writer *writer) {
     const camber_offset_clip clip = c->clips[slot];
@@ -164,7 +164,7 @@ CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset
     }
 }
 
-/* Whether segments end about where they cross, and each keeps the half that lies away from there. */
+/* Whether segments end approximately where they cross, and each keeps the half that leads away from there. */
 CAMBER_FN camber_u32 camber_crossing_holds(float p, float q, camber_offset_clip a, float a_length, camber_offset_clip b,
                                            float b_length) {
     const float a_to = a.to < a_length ? a.to : a_length, b_to = b.to < b_length ? b.to : b_length;
@@ -174,7 +174,7 @@ CAMBER_FN camber_u32 camber_crossing_holds(float p, float q, camber_offset_clip 
                : 0u;
 }
 
-/* Links a segment to one behind it: by the place where they cross, else by both ends. */
+/* Links a segment to the next one: by the point where they cross, or else by both ends. */
 CAMBER_FN void camber_offset_emit_crossing(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                            const camber_offset_segment *segment, camber_offset_row row,
                                            camber_offset_writer *writer) {
@@ -237,7 +237,7 @@ CAMBER_FN void camber_offset_emit_segment(const camber_source_line *c, camber_of
     camber_offset_writer_point(writer, x, y, camber_offset_along_segment(c, slot, &segment, clip.from));
 }
 
-/* The points that a slot's arc and segment make, linked to the element before: none, or one at least. */
+/* Emits the points of a slot's arc and segment, linked to the previous element: none, or at least one. */
 CAMBER_FN void camber_offset_emit_elements(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                            camber_offset_row row, camber_offset_writer *writer) {
     if (camber_has_arc(c, slot)) {
@@ -259,8 +259,8 @@ CAMBER_FN camber_offset_writer camber_offset_writer_counting(void) {
     return writer;
 }
 
-/* The last point of a line: the end of its last element, or, where that is linked to a ring's first over the seam, the
- * first point again, and a sentinel of the second. */
+/* Emits the last point of a line: the end of its last element, or, if that is linked to a ring's first element across
+ * the seam, the first point again, and a sentinel of the second. */
 CAMBER_FN void camber_offset_emit_last(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                        camber_offset_row row, camber_offset_writer *writer) {
     const camber_u32 first = c->info[slot] & CAMBER_POINT_RING ? camber_seam_first(c, slot, c->slots) : 0u;
@@ -290,7 +290,7 @@ CAMBER_FN void camber_offset_emit_last(const camber_source_line *c, camber_offse
                               0u, 0.0f);
 }
 
-/* A slot of a line without offset stays as it is. */
+/* Emits a slot of a line without offset unchanged. */
 CAMBER_FN void camber_offset_emit_same(const camber_source_line *c, camber_u32 slot, camber_offset_writer *writer) {
     const camber_u32 info = c->info[slot], ring = info & CAMBER_POINT_RING;
     if (ring && (info & CAMBER_POINT_FIRST))
@@ -300,7 +300,7 @@ CAMBER_FN void camber_offset_emit_same(const camber_source_line *c, camber_u32 s
         camber_offset_writer_slot(writer, c->x[slot + 1u], c->y[slot + 1u], 0u, 0.0f);
 }
 
-/* The slots that are made of one: its own points, a ring's sentinels, a line's last point. */
+/* Emits the slots that are made of a source slot: its own points, a ring's sentinels, a line's last point. */
 CAMBER_FN void camber_offset_emit_beside(const camber_source_line *c, camber_u32 slot, camber_offset_writer *writer) {
     const camber_u32 info = c->info[slot];
     if (!(info & CAMBER_POINT_REAL))

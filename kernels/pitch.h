@@ -1,7 +1,7 @@
-/* How a camera with a pitch sees places, directions and ends of the plane.
+/* How a camera with a pitch sees points, directions and ends of the plane.
  *
- * Positions in the plane count from the point that the camera looks at, those seen from the picture's middle. C, OpenCL
- * C and GLSL compile it. */
+ * Positions in the plane are relative to the point that the camera looks at; positions in the picture ("seen") are
+ * relative to its middle. C, OpenCL C and GLSL compile it. */
 #ifndef CAMBER_KERNELS_PITCH_H
 #define CAMBER_KERNELS_PITCH_H
 
@@ -14,7 +14,7 @@
 CAMBER_STRUCT(camber_eye) {
     float x, y;   /* half the picture's size, px */
     float cosine; /* cosine of the pitch */
-    float fall;   /* by how much depth falls for each px of the plane towards the viewer */
+    float fall;   /* by how much depth falls per px of the plane towards the viewer */
 };
 
 CAMBER_FN camber_real camber_pitch_depth(camber_eye e, camber_real y) {
@@ -29,12 +29,13 @@ CAMBER_FN void camber_pitch_see(camber_eye e, camber_real x, camber_real y, CAMB
     CAMBER_AT(seen_y) = y * e.cosine * by_depth;
 }
 
-/* Clips a segment to what the camera sees: from where to where, px along it from A, which lies at ay. all_over: it may
- * be seen anywhere in the picture, as a wide line with one side behind the camera. Returns whether it is seen. */
+/* Clips a segment to what the camera sees: from and to, in px along it from A, which is at ay. all_over: it may be seen
+ * anywhere in the picture, like a wide line with one side behind the camera. Returns whether it is seen. */
 CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, camber_real ay, camber_real ux, camber_real uy,
                                         camber_real half_width, CAMBER_INOUT(camber_real) from,
                                         CAMBER_INOUT(camber_real) to, CAMBER_OUT(camber_mask) all_over) {
-    /* A point that is nearer than the picture's bottom is not seen. One half as deep is not projected exactly. */
+    /* A point that is nearer than the picture's bottom is not seen. A point at half that depth is not projected
+     * exactly. */
     const float nearest = e.cosine / (e.cosine + e.fall * e.y), hidden = 0.5f * nearest;
     const camber_real spread = e.fall * CAMBER_FABS(ux) * half_width, rate = e.fall * uy;
     const camber_real room = 1.0f - e.fall * ay - spread - hidden;
@@ -48,7 +49,7 @@ CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, camber_real ay, camber_rea
     return CAMBER_EITHER(everywhere, !gone);
 }
 
-/* The width in the picture of a line through a point of the plane, px. */
+/* Returns the width in the picture of a line through a point of the plane, in px. */
 CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_real y, camber_real ux, camber_real uy,
                                          camber_real half_width) {
     const camber_real across = (ux - e.fall * (y * ux - x * uy)) / e.cosine;
@@ -56,7 +57,7 @@ CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_rea
     return 2.0f * half_width / (camber_pitch_depth(e, y) * CAMBER_MORE(seen, least));
 }
 
-/* The end of a segment at a place of the plane. turns: 1 at B, -1 at A; c and s: cosine and sine of half the turn; own:
+/* The end of a segment at a point of the plane. turns: 1 at B, -1 at A; c and s: cosine and sine of half the turn; own:
  * camber_owner_side. */
 CAMBER_STRUCT(camber_pitch_end) {
     camber_real x, y, ux, uy, half_width, c, s;
@@ -65,7 +66,7 @@ CAMBER_STRUCT(camber_pitch_end) {
     float turns;
 };
 
-/* The direction in the picture of the plane's direction u, at the end's place. */
+/* Computes the direction in the picture of the plane's direction u at the end. */
 CAMBER_FN void camber_pitch_direction(camber_eye e, CAMBER_IN(camber_pitch_end) s, camber_real ux, camber_real uy,
                                       CAMBER_OUT(camber_real) seen_x, CAMBER_OUT(camber_real) seen_y) {
     const camber_real x = ux * camber_pitch_depth(e, s->y) + e.fall * s->x * uy, y = e.cosine * uy;
@@ -75,9 +76,10 @@ CAMBER_FN void camber_pitch_direction(camber_eye e, CAMBER_IN(camber_pitch_end) 
     CAMBER_AT(seen_y) = y * scale;
 }
 
-/* How far past an end the segment draws pixels behind the bisector (camber_owner_from), and its cut in the picture.
- * Where the join is seen narrower than a pixel, the cut divides the pixels between both segments: its normal, its
- * position, and a share, 1 where the line is wide and the plane's bisector divides the pixels, down to 0. */
+/* How far past an end the segment draws pixels beyond the bisector (camber_owner_from), and its cut in the picture. If
+ * the join is seen narrower than a pixel, the cut divides the pixels between both segments: it has a normal, a
+ * position, and a share, which is 1 if the line is wide and the plane's bisector divides the pixels, and goes down to
+ * 0. */
 CAMBER_STRUCT(camber_pitch_cut) {
     camber_real owner, x, y, at, wide;
 };
@@ -95,8 +97,8 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
     camber_pitch_see(e, s->x, s->y, CAMBER_REF(seen_x), CAMBER_REF(seen_y));
     const camber_real sum_x = along_x + behind_x, sum_y = along_y + behind_y;
     const camber_real length = CAMBER_SQRT(sum_x * sum_x + sum_y * sum_y);
-    /* Past a right angle the bisector runs along the line, and would halve a segment where its neighbour, which may be
-     * short, does not lie: there it is cut off at its end. */
+    /* Beyond a right angle the bisector runs along the line, and would cut off half of a segment even where its
+     * neighbour, which may be short, does not cover it. Such a segment is cut at its end instead. */
     const camber_mask bends = CAMBER_BOTH(length > 1e-5f, CAMBER_FABS(s->s) < s->c);
     const camber_real scale = one / (bends ? length : one);
     const camber_real x = bends ? sum_x * scale : along_x, y = bends ? sum_y * scale : along_y;
@@ -108,20 +110,20 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
     cut->y = wide ? none : s->turns * y;
     cut->at = wide ? none : s->turns * (x * seen_x + y * seen_y);
     cut->wide = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
-    /* A flat join ends in an edge, so that the segment may draw all that it has past the bisector. Whether it does is
-     * decided by the width in the plane as well, like where it is flat. */
+    /* A flat join ends in an edge, so that the segment may draw everything that it has past the bisector. Whether it
+     * does depends on the width in the plane as well, like the position where it is flat. */
     const camber_mask is_flat = CAMBER_BOTH(CAMBER_END_FLAT(s->end) != 0u, cut->wide >= 1.0f);
     cut->owner = camber_owner_from(CAMBER_EITHER(is_cap, CAMBER_BOTH(is_flat, CAMBER_EITHER(s->own, kept))),
                                    CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept), no);
 }
 
-/* Where an end is flat, px of the plane past it; wide: of its cut. A join that is seen narrower than a pixel is not:
- * both segments share the pixel. */
+/* Returns where an end is flat, in px of the plane past it; wide: that of its cut. A join that is seen narrower than a
+ * pixel is not flat: both segments share the pixel. */
 CAMBER_FN float camber_pitch_flat_from(camber_u32 end, float half_width, float wide) {
     return wide < 1.0f ? camber_flat_from(CAMBER_END_KIND(end), half_width) : camber_flat_end_from(end, half_width);
 }
 
-/* How far a stroke reaches past an end, px of the plane. */
+/* Returns how far a stroke reaches past an end, in px of the plane. */
 CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber_real sine, camber_real half_width) {
     const camber_real one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-5f), aside = CAMBER_FABS(sine);
     const camber_words kind = CAMBER_END_KIND(end), ends_as = CAMBER_END_CLASS(end);

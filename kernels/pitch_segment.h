@@ -1,9 +1,9 @@
-/* Segments in a picture with a pitch: where in the picture a segment of the plane is seen.
+/* Segments in a picture with a pitch: computes where in the picture a segment of the plane is seen.
  *
  * Input: a segment in the plane and the camera (src/base/perspective.h). Output: the segment's footprint, a rectangle
- * of the picture around all that it draws, in the words of a segment; and camber_plane, which its edge needs besides.
- * Positions in the plane count from the point that the camera looks at; those seen count from the picture's middle. The
- * footprint alone counts from the picture's corner. shaders/stroke.vert makes a trapezoid of it.
+ * of the picture around everything that it draws, in the words of a segment; and camber_plane, which its edge needs in
+ * addition. Positions in the plane are relative to the point that the camera looks at, and positions in the picture to
+ * its middle; only the footprint is relative to the picture's corner. shaders/stroke.vert uses a trapezoid instead.
  *
  * A distance from a line of the plane, n . p - n . a, times by_depth (1 / depth) is linear in the picture. So straight
  * edges of the plane are straight in the picture, and far from the ends of a segment only its sides count. */
@@ -22,7 +22,7 @@
 #define CAMBER_PLANE_CUT_A 13 /* four words each: camber_pitch_cut */
 #define CAMBER_PLANE_CUT_B 17
 #define CAMBER_PLANE_ENDS 21   /* how far the footprint reaches past its ends, px of the picture */
-#define CAMBER_PLANE_MARGIN 22 /* at most so many px of the plane by depth make a px along the segment */
+#define CAMBER_PLANE_MARGIN 22 /* the most px of the plane / depth per px along the segment */
 #define CAMBER_PLANE_LEFT 23   /* its sides in the picture, three words each: camber_pitch_project_edge */
 #define CAMBER_PLANE_RIGHT 26
 
@@ -36,8 +36,8 @@ typedef struct camber_plane {
     camber_real ends, margin, left[3], right[3];
 } camber_plane;
 
-/* The footprint of a segment: the rectangle along it in the picture that holds its corners, and half a pixel around
- * them. from and to: px along the segment in the plane. */
+/* Computes the footprint of a segment: the rectangle along it in the picture that contains its corners and half a pixel
+ * around them. from and to: px along the segment in the plane. */
 CAMBER_FN void camber_pitch_footprint(camber_eye e, const camber_segment *s, camber_real from, camber_real to,
                                       camber_mask all_over, camber_segment *footprint, camber_real *ends) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), h = s->half_width;
@@ -81,8 +81,8 @@ CAMBER_FN void camber_pitch_footprint(camber_eye e, const camber_segment *s, cam
     *ends = all_over ? whole : past;
 }
 
-/* Projects a straight edge of the plane, by its unit normal out of the stroke and its position along that. In the
- * picture a pixel lies at[0] - at[1] x - at[2] y px inside it. */
+/* Projects a straight edge of the plane, given its unit normal out of the stroke and its position along that. In the
+ * picture a pixel is at[0] - at[1] x - at[2] y px inside it. */
 CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_real ny, camber_real at,
                                          camber_real edge[3]) {
     const camber_real x = nx, y = (ny - e.fall * at) / e.cosine, least = CAMBER_REAL(1e-15f);
@@ -92,8 +92,8 @@ CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_re
     edge[2] = y * scale;
 }
 
-/* The edge of a ring: a straight line in the picture, too. What lies behind the camera is lower than the picture, and
- * changes nothing in it. An end that two edges share stays the same point. Returns whether it is seen. */
+/* Projects the edge of a ring, which is a straight line in the picture too. Parts behind the camera are below the
+ * picture, and change nothing in it. An end that two edges share stays the same point. Returns whether it is seen. */
 CAMBER_FN camber_mask camber_pitch_edge_of(camber_eye e, const camber_segment *s, camber_segment *footprint) {
     const camber_real length = (s->bx - s->ax) * s->ux + (s->by - s->ay) * s->uy;
     camber_real from = CAMBER_REAL(0.0f), to = length, x0, y0, x1, y1;

@@ -5,7 +5,7 @@
 
 #include "pitch.h"
 
-/* The tiles of an area: where the first lies in the picture, px, and how many there are. */
+/* The tiles of an area: the position of the first in the picture, in px, and how many there are. */
 typedef struct camber_tile_grid {
     float left, top;
     camber_u32 columns, rows;
@@ -16,57 +16,59 @@ typedef struct camber_setup_args {
     camber_u32 first, end, slot_count; /* the range's slots [first, end), and how many the part has */
     camber_u32 has_arc_length, linear; /* has_arc_length: the part's slots have arc lengths */
     camber_u32 makes, among_edges;     /* CAMBER_MAKES_...; whether there are edges of rings before and after them */
-    camber_u32 base, first_row; /* where the range's segments begin, a multiple of 16, and its table among all rows */
-    float left, top;            /* where the area begins in the picture, px */
-    camber_u32 columns, rows;   /* tiles */
-    float horizon;              /* rows of pixels at the picture's top in which no segment is drawn */
+    /* where the range's segments begin, a multiple of 16, and where its table begins among all rows */
+    camber_u32 base, first_row;
+    float left, top;          /* where the area begins in the picture, px */
+    camber_u32 columns, rows; /* tiles */
+    float horizon;            /* rows of pixels at the picture's top in which no segment is drawn */
     camber_eye eye;
-    /* The range's slots at which the brush changes, and how many changes of the same input lie before the part. */
+    /* The range's slots at which the brush changes, and how many changes of the same input are before the part. */
     camber_u32 first_change, change_count, changes_before;
-    camber_u32 first_item; /* of the work-items that take it; each range begins one */
+    camber_u32 first_item; /* the first of its work-items; each range begins a new one */
 } camber_setup_args;
 
-/* So many slots a work-item of setup takes: some, as a work-group takes a while to begin. */
+/* The number of slots that a work-item of setup takes: several, because starting a work-group takes a while. */
 #define CAMBER_SETUP_SLOTS(lanes) ((lanes) == 1u ? 16u : 128u)
 #define CAMBER_MAKES_SEGMENTS 0u
 #define CAMBER_MAKES_EDGES 1u
-#define CAMBER_MAKES_FILL 2u /* one segment that covers every tile, of no points */
+#define CAMBER_MAKES_FILL 2u /* one segment that covers every tile, without points */
 
 /* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
 typedef struct camber_bin_args {
-    camber_u32 segment_count, a_chunk; /* of all chunks, and of one */
-    camber_u32 lists;                  /* of tiles, and of rows of tiles, rounded up to sixteens */
-    camber_u32 first_edge, edge_count; /* no edge of a ring lies outside these segments */
+    camber_u32 segment_count, a_chunk; /* segments of all chunks, and of one chunk */
+    camber_u32 lists;                  /* lists of tiles and of rows of tiles, rounded up to a multiple of 16 */
+    camber_u32 first_edge, edge_count; /* all edges of rings are among these segments */
     camber_tile_grid of;
 } camber_bin_args;
 
 /* rasterize: the area that is drawn into. */
 typedef struct camber_target_args {
-    float left, top; /* where the first tile lies in the picture, px */
+    float left, top; /* position of the first tile in the picture, in px */
     camber_u32 columns, stride;
-    camber_u32 first_row;              /* the list of the first row of tiles; ~0: there are no areas */
-    camber_u32 first_edge, edge_count; /* no edge of a ring lies outside these segments */
+    camber_u32 first_row;              /* the list of the first row of tiles; ~0: there are no polygons */
+    camber_u32 first_edge, edge_count; /* all edges of rings are among these segments */
     float r, g, b, a;                  /* background, premultiplied */
     camber_u32 above;                  /* rows of pixels of the target before the first tile */
     float horizon; /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
     camber_eye eye;
     float sky[4];         /* the sky's colour, premultiplied */
-    camber_u32 first_job; /* an argument, as PoCL builds a kernel again for an offset of its work-items */
+    camber_u32 first_job; /* an argument, because PoCL compiles a kernel again for an offset of its work-items */
 } camber_target_args;
 
 /* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
- * spills its state, once it has one: some words for each cell, and then planes of sixteen floats for each cell, of
- * which the first are the brush and the picture. Behind them lie what a brush of areas has turned, and its edges so
- * far. */
+ * spills its state, if it has one: some words per cell, and then planes of sixteen floats per cell, of which the first
+ * are the brush and the picture. After them there are the winding changes of a brush of polygons, and its edges so far.
+ */
 typedef struct camber_spill_args {
     camber_u32 is_last; /* the slice that is drawn last: pixels are written */
     camber_u32 tile_words;
-    camber_u32 sums, group, layer, behind; /* the first plane of sums, of a group, of a layer, and behind all */
+    /* the first plane of sums, of a group, of a layer, and the end of all planes */
+    camber_u32 sums, group, layer, behind;
 } camber_spill_args;
 
-/* The words of a cell: in which sets it is, how many segments were drawn into it, and which cells of its row edges
- * pass; the brush, and which levels are open; the winding of an area's rings; 0 where no edge of it came by, else 1 +
- * how many did, and in the upper half how many are kept. */
+/* The words of a cell: the sets it is in, how many segments were drawn into it, and which cells of its row edges pass;
+ * the brush, and which levels are open; the winding number of a polygon's rings; 0 if it has no edges, else 1 + their
+ * number, and in the upper half how many of them are kept. */
 #define CAMBER_SPILL_STATE 0
 #define CAMBER_SPILL_NOW 1
 #define CAMBER_SPILL_WINDING 2
@@ -78,28 +80,30 @@ typedef struct camber_spill_args {
 #define CAMBER_SPILL_COUNT_SHIFT 8
 #define CAMBER_SPILL_EDGED_SHIFT 16
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
-#define CAMBER_SPILL_FULL 0x3ffffffeu /* in place of a brush: nothing below shows through the cell */
+#define CAMBER_SPILL_FULL 0x3ffffffeu /* instead of a brush: nothing below shows through the cell */
 
-/* Planes at most: of the brush and the picture, of sums, of a group, of a layer, and of masks. */
+/* The most planes: of the brush and the picture, of sums, of a group, of a layer, and of masks. */
 #define CAMBER_SPILL_PLANES 17u
 
-/* An edge of an area as a tile keeps it: where it begins, where it ends, how steep it is, and the way it goes: 1 down
- * the ring, -1 up, and times these where it enters the tile through its left side, and where it leaves it there. Of one
- * brush a tile keeps so many. */
+/* An edge of a polygon as a tile keeps it: its start, its end, its slope, and its direction: 1 down the ring, -1 up,
+ * multiplied by CAMBER_PLACED_ENTERS if it enters the tile through its left side, and by CAMBER_PLACED_LEAVES if it
+ * leaves it there. CAMBER_PLACED_MOST is how many edges of one brush a tile keeps. */
 #define CAMBER_PLACED_WORDS 5
 #define CAMBER_PLACED_MOST 1024
 #define CAMBER_PLACED_ENTERS 2.0f
 #define CAMBER_PLACED_LEAVES 3.0f
-/* How a brush turns at the top and the bottom of a row of cells, as a spill has it; behind all rows' lie the edges. */
+/* Changes of a brush's winding numbers at the top and the bottom of a row of cells, as spilled; the edges come after
+ * those of all rows. */
 #define CAMBER_TURN_WORDS 18
 #define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
-/* A cell that more edges pass keeps its sums where areas overlap, and so does a tile with more than CAMBER_PLACED_MOST
- * of one brush. Where a work-item draws one cell, each has its own turns and edges, one more than that at most. */
+/* A cell that more edges than this pass keeps its plain sums even if polygons overlap, and so does a tile with more
+ * than CAMBER_PLACED_MOST edges of one brush. If a work-item draws one cell, each has its own turns and edges, at most
+ * one more than this. */
 #define CAMBER_OVERLAP_EDGES 64
 #define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 
-/* rasterize: a job is three words, the tile, the first and the last row of its cells to draw, and where among the
- * spills the tile has its own. With CAMBER_JOB_BEGINS nothing of it was drawn yet, and there is nothing to restore. */
+/* rasterize: a job is three words: the tile, the first and the last row of its cells to draw, and the number of the
+ * tile's spill. With CAMBER_JOB_BEGINS nothing of the tile was drawn yet, and there is nothing to restore. */
 #define CAMBER_JOB_WORDS 3
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
 #define CAMBER_JOB_BEGINS 0x80000000u

@@ -3,19 +3,20 @@
  * Reads segments and edges, as setup writes them, starts[tiles + 2], lists[starts[tiles]], brushes[brush count],
  * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
  * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
- * planes[CAMBER_PLANE_WORDS * n]. Where there are areas it reads crossings and ends, as wind writes them. Writes
+ * planes[CAMBER_PLANE_WORDS * n]. If there are polygons, it reads crossings and ends, as wind writes them. Writes
  * pixels, rows of `stride` words. Before the last slice it writes spill[spills * tile_words] instead.
  *
- * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
- * Each brush is gathered as the share of light that it lets through, and then put under what is there already. */
+ * The list is walked from its end, because what is drawn last is on top. Segments below cells that are full are
+ * skipped. Each brush is accumulated as the fraction of light that it lets through, and then composited under what is
+ * there already. */
 #include "spill.cl"
 
-#if CAMBER_LANES > 1 /* rasterize_one.cl has it for one lane */
+#if CAMBER_LANES > 1 /* rasterize_one.cl does this for one lane */
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
 
-/* A list's segments are scattered in memory. Where the compiler is known to be clang, those of the next batch are
- * prefetched while one is drawn. And pixels go past the caches: nobody reads them before all tiles are drawn. */
+/* A list's segments are scattered in memory. If the compiler is known to be clang, those of the next batch are
+ * prefetched while one is drawn. Pixels bypass the caches, because nobody reads them before all tiles are drawn. */
 #if defined(POCL_DEVICE_ADDRESS_BITS) && CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define AHEAD 24
 #define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address))
@@ -26,7 +27,8 @@
 #define WRITE(vector, at) CAMBER_STORE(vector, 0, at)
 #endif
 
-/* As many cells beside each other as a vector has rows of a cell: together their rows are vectors, too. */
+/* The number of adjacent cells that equals the number of a cell's rows in a vector: together, a row of them fills a
+ * vector. */
 #define CELLS_ABREAST (CAMBER_LANES / CAMBER_CELL_PX)
 #if CAMBER_LANES == 16
 #define ABREAST(cells, row) (uint16)((cells)[0].row, (cells)[1].row, (cells)[2].row, (cells)[3].row)
@@ -34,7 +36,7 @@
 #define ABREAST(cells, row) (uint8)((cells)[0].row, (cells)[1].row)
 #endif
 
-/* Writes the rows of cells that lie abreast. Rows of many pixels write whole lines of the processor's caches. */
+/* Writes the rows of adjacent cells. Rows of many pixels write whole cache lines. */
 static inline void write_abreast(const camber_words *cells, global camber_u32 *at, size_t stride) {
 #if CAMBER_LANES == 16
     WRITE(ABREAST(cells, s0123), at);
@@ -47,8 +49,8 @@ static inline void write_abreast(const camber_words *cells, global camber_u32 *a
 #endif
 }
 
-/* Behind a tile's pixels lies the background, and above the horizon the sky. Cells that the last brush covers as a
- * whole have its colour. */
+/* The background behind a tile's pixels; above the horizon it is the sky. Cells that the last brush covers completely
+ * have its colour. */
 typedef struct backdrop {
     float back[4], top;
     camber_words bare, covered;
@@ -117,7 +119,7 @@ static inline void write_cells(camber_tile_state *c, global camber_u32 *pixels, 
 
 /* ---- Areas ---- */
 
-/* All that brushes need beside a tile's state. */
+/* The data that brushes need in addition to a tile's state. */
 typedef struct tile_brushes {
     global const camber_brush *brushes;
 #if CAMBER_RASTER_RICH
@@ -129,7 +131,7 @@ typedef struct tile_brushes {
 #endif
 } tile_brushes;
 
-/* Adds the edges that wait to the area. */
+/* Adds the queued edges to the polygon. */
 static __attribute__((noinline)) void add_edges(camber_tile_state *c, global const float *edges, camber_tile_rows where,
                                                 sixteen *b) {
     const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -154,7 +156,7 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
     b->count = 0;
 }
 
-/* Draws the segments that wait, all of the brush that is drawn now. */
+/* Draws the queued segments, which all have the current brush. */
 static inline void draw_waiting(camber_tile_state *c, const positions *at, global const float *segments,
                                 global const float *edges, camber_tile_rows where, sixteen *b) {
     if (b->count != 0 && camber_brush_is_area(&c->now))
@@ -163,7 +165,7 @@ static inline void draw_waiting(camber_tile_state *c, const positions *at, globa
         draw_sixteen(c, at, segments, where, b);
 }
 
-/* Draws the area whose edges have been added. */
+/* Draws the polygon whose edges have been added. */
 static inline void end_area(camber_tile_state *c, const positions *at, const tile_brushes *from,
                             camber_tile_rows where) {
     if (!camber_brush_is_area(&c->now))
@@ -197,7 +199,7 @@ static inline void change_brush(camber_tile_state *c, const positions *at, tile_
 #endif
 }
 
-/* Asks for the words of a listed segment. Mostly it is an edge if it lies among edges. */
+/* Prefetches the words of a listed segment. It is usually an edge if it is among edges. */
 static inline void ask_for(global const float *segments, global const float *edges, camber_target_args s,
                            camber_u32 which) {
     if (which - s.first_edge < s.edge_count) {
@@ -208,7 +210,7 @@ static inline void ask_for(global const float *segments, global const float *edg
     }
 }
 
-/* Its brush. */
+/* Returns its brush. */
 static inline camber_u32 brush_of(global const float *segments, global const float *edges, camber_target_args s,
                                   camber_u32 which) {
     const camber_u32 brush =
@@ -217,8 +219,8 @@ static inline camber_u32 brush_of(global const float *segments, global const flo
                                    : as_uint(segments[(size_t)CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
 }
 
-/* Draws the areas above a brush that cover the tile as a whole: it has none of their edges. Returns the brush that was
- * drawn last. */
+/* Draws the polygons above a brush that cover the tile completely, with none of their edges in it. Returns the last
+ * brush that was drawn. */
 static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
                                                              tile_brushes *from, camber_tile_rows where,
                                                              camber_crossings_left *left, camber_u32 brush,
@@ -257,7 +259,8 @@ CAMBER_KERNEL(1, rasterize,
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
     const camber_tile_rows where = {left, top, first, last};
     camber_u32 current = ~0u;
-    /* The next tile's first batch, and the list behind. Mostly they come next, and segments are scattered in memory. */
+    /* Prefetches the next tile's first batch, and its list. They usually come next, and segments are scattered in
+     * memory. */
     for (camber_u32 k = starts[tile + 2]; k > starts[tile + 1] && k + AHEAD > starts[tile + 2]; k--)
         ask_for(segments, edges, s, lists[k - 1]);
     for (camber_u32 k = 0; k < 4 * AHEAD; k += 16)

@@ -1,12 +1,12 @@
-/* rasterize where a device has no vectors, as GPUs have none: a work-item takes one cell of a tile, and a pixel at a
- * time. A work-group is a job, a whole tile, so that its work-items walk the same list. rasterize.cl says what is read
+/* rasterize for devices without vectors, such as GPUs: a work-item takes one cell of a tile, one pixel at a time. A
+ * work-group is a job, which is a whole tile, so that its work-items walk the same list. rasterize.cl says what is read
  * and written. */
 #include "spill.cl"
 
 #if CAMBER_LANES == 1
 #include "draw_cells.h"
 
-/* Writes the pixels of the cell. Above the horizon lies the sky. */
+/* Writes the pixels of the cell. Above the horizon is the sky. */
 static inline void write_cell(camber_tile_state *c, camber_tile_rows where, global camber_u32 *pixels,
                               camber_target_args s) {
     const float back[4] = {s.r, s.g, s.b, s.a};
@@ -23,7 +23,7 @@ static inline void write_cell(camber_tile_state *c, camber_tile_rows where, glob
     }
 }
 
-/* Draws entries [first, end) of the lists, from the last on, until nothing shows below them. */
+/* Draws entries [first, end) of the lists, from the last to the first, until nothing below them shows. */
 static inline void draw_entries(camber_tile_state *c, camber_drawn_tile *d, camber_u32 first, camber_u32 end) {
     for (camber_u32 k = end; k-- > first && !camber_tile_is_full(c);)
         camber_draw_listed(c, d, k);

@@ -7,7 +7,7 @@
 
 #if CAMBER_RASTER_RICH
 
-/* Fills cells with images: the whole of them, or the areas that their sums say. */
+/* Fills cells with images: completely, or by the areas in their sums. */
 static inline void fill_with_images(camber_tile_state *c, const positions *at, drawn_segment from,
                                     camber_area_cells cells) {
     camber_image_sampler m;
@@ -33,7 +33,7 @@ static inline void fill_with_images(camber_tile_state *c, const positions *at, d
     }
 }
 
-/* A segment with all that its features need. */
+/* A segment with everything that its features need. */
 typedef struct rich_segment {
     camber_edge edge;
     camber_extras extras;
@@ -41,8 +41,8 @@ typedef struct rich_segment {
     drawn_segment from;
 } rich_segment;
 
-/* Finds how a cell lies to the features: CAMBER_CELL_*. range: where along the line the cell lies, px. With a pitch all
- * cells are drawn as if an end were near. */
+/* Finds the position of a cell relative to the features: CAMBER_CELL_*. range: where along the line the cell is, in px.
+ * With a pitch all cells are drawn as if an end were near. */
 static inline camber_u32 find_left(const rich_segment *t, const cell_sets *sets, int i, camber_tile_rows where,
                                    float range[2]) {
 #if CAMBER_RASTER_PITCHED
@@ -59,7 +59,7 @@ static inline camber_u32 find_left(const rich_segment *t, const cell_sets *sets,
 #endif
 }
 
-/* Where the pixels of a cell lie to the segment, and their areas. */
+/* The positions of a cell's pixels relative to the segment, and their areas. */
 typedef struct cell_pixels {
     camber_pixel at[CAMBER_VECTORS];
     camber_real area[CAMBER_VECTORS];
@@ -82,7 +82,7 @@ static inline void find_areas_of_one(const rich_segment *t, const positions *at,
     }
 }
 
-/* The colours of pixels: of a ramp, and of an image along the line. */
+/* Finds the colours of pixels: of a ramp, or of an image along the line. */
 static inline void find_colors(const rich_segment *t, const camber_pixel *pixels, const float range[2],
                                camber_real *color) {
     for (int channel = 0; channel < 4; channel++)
@@ -99,7 +99,7 @@ static inline void find_colors(const rich_segment *t, const camber_pixel *pixels
     }
 }
 
-/* Puts colours that change from pixel to pixel under what a cell has. */
+/* Composites colours that change from pixel to pixel under what a cell has. */
 static inline void put_colors(camber_tile_state *c, const rich_segment *t, int i, const cell_pixels *pixels,
                               float range[2]) {
 #if CAMBER_RASTER_PITCHED
@@ -119,7 +119,7 @@ static inline void put_colors(camber_tile_state *c, const rich_segment *t, int i
     }
 }
 
-/* Draws a cell, which the segment meets in one way or another. */
+/* Draws a cell that the segment touches. */
 static inline void draw_rich_cell(camber_tile_state *c, const positions *at, const rich_segment *t, int i,
                                   camber_u32 meets, float range[2]) {
     const int whole = meets == CAMBER_CELL_FULL;

@@ -1,13 +1,13 @@
 /* Draws segments of one brush without features, sixteen at a time.
  *
- * Input: the numbers of up to sixteen segments. Their coefficients and cells are found side by side in vectors, to the
- * same bits as camber_edge_of finds for one. Then all their cells are put into one list and drawn. One long loop lets
- * the processor predict most branches. */
+ * Input: the numbers of up to sixteen segments. Their coefficients and cells are computed side by side in vectors, with
+ * the same bits as camber_edge_of computes for one. Then all their cells are put into one list and drawn. In one long
+ * loop the processor can predict most branches. */
 #include "cells.cl"
 #include "tile_state.h"
 #include "transpose.cl"
 
-/* Segments of a brush wait until there are so many. */
+/* Segments of a brush are queued until there are this many. */
 #define SIXTEEN 16
 
 typedef struct sixteen {
@@ -20,13 +20,14 @@ typedef struct sixteen {
 #define draw_sixteen(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* A segment's ends need nothing more, flat caps, or any of the rest, of which sharp joins need most. */
+/* Classes of a segment's ends: they need nothing more, flat caps, or one of the rest, of which sharp joins need most.
+ */
 #define ENDS_PLAIN 0u
 #define ENDS_CAPPED 1u
 #define ENDS_OTHER 2u
 #define ENDS_SHARP 3u
 
-/* Which of them each of a vector of segments has. */
+/* Returns the class of each of a vector of segments. */
 static inline camber_words ends_of(const camber_edges *p) {
     const camber_real never = CAMBER_REAL(CAMBER_NEVER_PX);
     const camber_mask joined_a = (p->flat_a < never) & (p->sa != 0.0f),
@@ -36,7 +37,7 @@ static inline camber_words ends_of(const camber_edges *p) {
     return (p->sharp | p->thin | p->tips | joined_a | joined_b) ? rest : plain;
 }
 
-/* Takes one of sixteen segments' coefficients, as if no join of it were sharp. */
+/* Takes the coefficients of one of sixteen segments, as if no join of it were sharp. */
 static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
     const camber_edges *all = from + k / CAMBER_LANES;
     const int lane = (int)(k % CAMBER_LANES);
@@ -81,7 +82,7 @@ static inline __attribute__((always_inline)) void take_edge(const camber_edges *
 
 /* ---- Cells ---- */
 
-/* Moves four rows of four bits to a byte each. */
+/* Moves four rows of four bits to one byte each. */
 static inline camber_words spread(camber_words bits) {
     return (bits & 0xfu) | (bits & 0xf0u) << 4 | (bits & 0xf00u) << 8 | (bits & 0xf000u) << 12;
 }
@@ -91,7 +92,7 @@ typedef struct sixteen_sets {
     ulong partial[SIXTEEN], near_end[SIXTEEN], full[SIXTEEN];
 } sixteen_sets;
 
-/* Finds the sets of a vector of segments, which go to place v. */
+/* Finds the sets of a vector of segments, and stores them at index v. */
 static inline void find_sets(const camber_edges *p, const camber_cell_boxes *b, camber_tile_rows where, size_t v,
                              sixteen_sets *sets) {
     const int columns = camber_largest_of(b->columns), rows = camber_largest_of(b->rows);
@@ -155,8 +156,8 @@ static inline void list_cells(cell_list *list, ulong cells, uint word) {
         list->words[at++] = word | (uint)camber_lowest(cells);
 }
 
-/* Lists the cells of all segments, segment by segment, but those that are shut: nothing below shows through them.
- * Returns which cells are listed. */
+/* Lists the cells of all segments, segment by segment, except closed cells, through which nothing below shows. Returns
+ * which cells are listed. */
 static inline ulong list_all(const sixteen_sets *sets, uint count, ulong shut, cell_list *list) {
     ulong listed = 0;
     list->count = 0;
@@ -175,7 +176,7 @@ static inline ulong list_all(const sixteen_sets *sets, uint count, ulong shut, c
 
 /* ---- Pixels ---- */
 
-/* All that a list is drawn from. */
+/* Everything that a list is drawn from. */
 typedef struct list_source {
     const positions *at;
     const camber_edges *all; /* of sixteen segments */
@@ -190,14 +191,14 @@ static inline camber_real list_y(const list_source *d, int i, int v) {
     return d->at->y[i / CAMBER_TILE_CELLS][v];
 }
 
-/* The part of an area that flat caps leave. */
+/* Returns the part of an area that flat caps leave. */
 static inline camber_real cut_caps(const camber_edge *p, const camber_pixel *at, camber_real area) {
     return camber_between_ends(area, camber_cut_along(p, at, p->flat_a - at->past_a),
                                camber_cut_along(p, at, p->flat_b - at->past_b));
 }
 
-/* The areas of a cell's pixels near an end. `ends` is a constant: what such ends do not need is left out. Caps come
- * last: what belongs to a neighbour is 0 and stays 0. */
+/* Computes the areas of a cell's pixels near an end. `ends` is a constant, so that the compiler leaves out what such
+ * ends do not need. Caps come last: what belongs to a neighbour is 0 and stays 0. */
 static inline __attribute__((always_inline)) void find_areas_by(const list_source *d, uint word, uint ends,
                                                                 camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
@@ -216,8 +217,8 @@ static inline __attribute__((always_inline)) void find_areas_by(const list_sourc
     }
 }
 
-/* The ways that need much are apart: beside them the drawing of a list would keep all that it knows of a pixel in
- * memory. */
+/* The expensive cases are a function of their own; inlined, they would make the drawing of a list keep everything about
+ * a pixel in memory instead of registers. */
 static __attribute__((noinline)) void find_other_areas(const list_source *d, uint word, camber_real *area) {
     find_areas_by(d, word, ENDS_OTHER, area);
 }
@@ -226,8 +227,8 @@ static __attribute__((noinline)) void find_sharp_areas(const list_source *d, uin
     find_areas_by(d, word, ENDS_SHARP, area);
 }
 
-/* The areas of a cell's pixels. Each way takes the edge for itself: so the compiler spreads coefficients over vectors
- * as it loads them. */
+/* Computes the areas of a cell's pixels. Each case takes the edge separately, so that the compiler spreads coefficients
+ * over vectors as it loads them. */
 static inline __attribute__((always_inline)) void find_areas(const list_source *d, uint word, camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
     const uint k = word >> CELL_SEGMENT;
@@ -242,7 +243,7 @@ static inline __attribute__((always_inline)) void find_areas(const list_source *
     } else if (d->ends[k] == ENDS_CAPPED) {
         find_areas_by(d, word, ENDS_CAPPED, area);
     } else {
-        camber_real found[CAMBER_VECTORS]; /* what a call is given lies in memory: not the area of all ways */
+        camber_real found[CAMBER_VECTORS]; /* an argument by pointer has to be in memory: only this case's area is */
         if (d->ends[k] == ENDS_OTHER)
             find_other_areas(d, word, found);
         else
@@ -299,7 +300,7 @@ static inline void draw_list(camber_tile_state *c, const list_source *d, const c
 
 /* ---- Sixteen segments ---- */
 
-/* Reads vector v of sixteen segments, a lane each, and works out their coefficients. */
+/* Reads vector v of sixteen segments, one per lane, and computes their coefficients. */
 static inline void take_segments(global const float *segments, const uint *which, size_t v, camber_edges *p,
                                  camber_footprint *f) {
 #define WORD(name) words[CAMBER_SEGMENT_##name]

@@ -1,9 +1,9 @@
-/* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, by chunks of CAMBER_POINT_CHUNK
- * points, and each block's sum. A work-group a block, a chunk a work-item: sums over 32 lanes are a tenth of the work
- * of sums over 256, and where one item takes the block there is but its sum. Reads joins[n + 2], info[n + 2]; writes
- * offsets[n / CAMBER_POINT_CHUNK] and sums[n / CAMBER_BLOCK], both vertices | indices << 16. The sums of blocks are
- * few; the host adds them up in 64 bits and learns the sizes by it. joins_before is joins once more, for the
- * vectoriser's sake. */
+/* scan: computes exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, by chunks of
+ * CAMBER_POINT_CHUNK points, and each block's sum. There is one work-group per block, and one work-item per chunk: sums
+ * over 32 lanes are a tenth of the work of sums over 256, and if one item takes the whole block, there is only its sum.
+ * Reads joins[n + 2], info[n + 2]; writes offsets[n / CAMBER_POINT_CHUNK] and sums[n / CAMBER_BLOCK], both vertices |
+ * indices << 16. There are few sums of blocks; the host adds them up in 64 bits, which gives the sizes. joins_before is
+ * joins again, for the vectoriser's sake. */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)

@@ -1,9 +1,9 @@
 /* The rasterizer's segment: its words and flags, and the tiles that it touches.
  *
- * Input: the points before A, A and B with their join words, and the row that the segment is drawn by. Output:
+ * Input: the point before A, A and B with their join words, and the row that the segment is drawn with. Output:
  * camber_segment, the 16 words that all later stages read, and the box of tiles around it. Only + - * / sqrt and
- * comparisons are used, so that device and twin agree to the last bit. A camber_real has a segment, or a pixel,
- * in each of its lanes: lanes.h. */
+ * comparisons are used, so that device and twin agree to the last bit. A camber_real has a segment, or a pixel, in each
+ * of its lanes: lanes.h. */
 #ifndef CAMBER_KERNELS_SEGMENT_H
 #define CAMBER_KERNELS_SEGMENT_H
 
@@ -13,42 +13,43 @@
 /* A picture is cut into tiles, which are drawn independently, and a tile into cells of 4 x 4 pixels. */
 #define CAMBER_TILE_PX 32
 #define CAMBER_CELL_PX 4
-#define CAMBER_TILE_CELLS 8               /* along each side of a tile */
-#define CAMBER_TILES_MAX 256              /* along each side of an area: a box has a byte for each */
-#define CAMBER_LOOK_EVERY 16              /* a cell is checked for being full after so many segments */
-#define CAMBER_NOTHING_PX (1.0f / 512.0f) /* where less than this shows through, what lies below is not drawn */
-/* A fill is a line along y = 0 that is this long to either side, and this half width; the join word of its ends. */
+#define CAMBER_TILE_CELLS 8               /* cells along each side of a tile */
+#define CAMBER_TILES_MAX 256              /* tiles along each side of an area: a box has a byte for each coordinate */
+#define CAMBER_LOOK_EVERY 16              /* after this many segments, a cell is checked for being full */
+#define CAMBER_NOTHING_PX (1.0f / 512.0f) /* if less than this shows through, nothing below is drawn */
+/* A fill is a line along y = 0 that is this long to either side and has this half width; then the join word of its
+ * ends. */
 #define CAMBER_FILL_PX 1e6f
 #define CAMBER_FILL_JOIN (CAMBER_KIND_CAP << CAMBER_JOIN_KIND_SHIFT | CAMBER_ENDS_BUTT << CAMBER_JOIN_END_SHIFT)
 
-/* The box of a segment that is not drawn: its first tile lies behind the last one. */
+/* The box of a segment that is not drawn: its first tile is after the last one. */
 #define CAMBER_NO_BOX 0xffu
 
 /* Words of a row of the rasterizer's table. */
 #define CAMBER_RASTER_ROW_WORDS 4 /* half width, px, below 0: not drawn; x, y translation, px; brush number */
-/* The half width of an edge of a ring, and how far around the box of its ends tiles have to know of it, px. */
+/* The half width that marks the edge of a ring, and how far around the box of its ends tiles have to list it, in px. */
 #define CAMBER_EDGE_PX 0.0f
 #define CAMBER_EDGE_REACH_PX 0.5f
-/* The middles of pixels lie half a pixel inside their tile; a sixteenth is left for rounding. */
+/* The middles of pixels are half a pixel inside their tile; a sixteenth is left for rounding. */
 #define CAMBER_INSET_PX 0.4375f
 
-/* How a brush's segments come together. */
+/* How a brush's segments are combined. */
 #define CAMBER_BRUSH_OVER 0u  /* each is drawn over the others */
-#define CAMBER_BRUSH_UNION 1u /* their areas are united first, and drawn once */
+#define CAMBER_BRUSH_UNION 1u /* their union is computed first, and drawn once */
 #define CAMBER_BRUSH_MASKED                                                                                            \
-    2u /* in a masked layer, a translucent colour replaces what lies below it; only CAMBER_RASTER_RICH */
-#define CAMBER_BRUSH_AREA 3u         /* they are the edges of rings, and what is inside is drawn: area.h */
+    2u /* in a masked layer, a translucent colour replaces what is below it; only CAMBER_RASTER_RICH */
+#define CAMBER_BRUSH_AREA 3u         /* they are the edges of rings, and their inside is drawn: area.h */
 #define CAMBER_BRUSH_AREA_EVENODD 4u /* the same, by CAMBER_FILL_EVENODD */
 
-/* A colour and mode that segments are drawn with. Layers and groups are put onto what lies below as a whole; number 0
- * is none. A layer belongs to one group. */
+/* A colour and mode that segments are drawn with. Layers and groups are composited as a whole; number 0 is none. A
+ * layer belongs to one group. */
 typedef struct camber_brush {
     float r, g, b, a; /* not premultiplied */
     camber_u32 mode, layer, group, spare;
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
-/* How many of the changes of brush, ascending slots, lie at a slot or before it. */
+/* Returns how many of the changes of brush, ascending slots, are at a slot or before it. */
 CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *changes, camber_u32 count, camber_u32 slot) {
     camber_u32 low = 0u, high = count;
     while (low < high) {
@@ -82,13 +83,13 @@ CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *change
 #define CAMBER_SEGMENT_BRUSH 15u
 #define CAMBER_SEGMENT_WORDS 16u
 
-/* The edges of rings lie apart from segments, sixteen together: first the ends of each, ax, ay, bx, by, then the
- * brushes of all. An edge has the number of its segment, which has no words. Among edges, lines have CAMBER_NO_EDGE
- * there. */
+/* The edges of rings are stored apart from segments, in groups of sixteen: first the ends of each, ax, ay, bx, by, then
+ * the brushes of all. An edge has the number of its segment, whose own words are not used. Among edges, lines have
+ * CAMBER_NO_EDGE there. */
 #define CAMBER_SIXTEEN_EDGES_WORDS 80u
 #define CAMBER_NO_EDGE 0xffffffffu
 
-/* The word at which the ends of edge i lie, and its brush. */
+/* Returns the word at which the ends of edge i are, and that of its brush. */
 CAMBER_FN size_t camber_edge_ends(size_t i) {
     return CAMBER_SIXTEEN_EDGES_WORDS * (i / 16u) + 4u * (i % 16u);
 }
@@ -99,8 +100,8 @@ CAMBER_FN size_t camber_edge_brush(size_t i) {
 
 typedef struct camber_segment {
     camber_real ax, ay, bx, by, ux, uy; /* A, B, and the direction from A to B */
-    camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, which point along the line */
-    camber_real half_width, reach; /* reach: no pixel is touched farther than this, px, outside the box of A and B */
+    camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, pointing along the line */
+    camber_real half_width, reach; /* reach: no pixel farther than this, in px, outside the box of A and B is touched */
     camber_real slope, curve;      /* how its sides cut pixels: camber_profile_of */
     camber_words flags;
 } camber_segment;
@@ -115,7 +116,7 @@ CAMBER_FN camber_words camber_end_flags(camber_words end) {
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
 
-/* How far an end reaches outside the box of A and B, in units of half width + pad. */
+/* Returns how far an end reaches outside the box of A and B, in units of half width + pad. */
 CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     const camber_words end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
     const camber_real below = 1.0f - q * q;
@@ -126,7 +127,7 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
-/* Finds the direction of a vector; that of a dot is the x axis. Returns its length. */
+/* Computes the direction of a vector; that of a dot is the x axis. Returns its length. */
 CAMBER_FN camber_real camber_direction(camber_real dx, camber_real dy, camber_real *ux, camber_real *uy) {
     const camber_real one = CAMBER_REAL(1.0f), none = CAMBER_REAL(0.0f), length = CAMBER_SQRT(dx * dx + dy * dy);
     const camber_real scale = one / (length > 0.0f ? length : one);
@@ -136,8 +137,8 @@ CAMBER_FN camber_real camber_direction(camber_real dx, camber_real dy, camber_re
 }
 
 /* Makes the segment from A to B, which is half_width to either side. (px, py) is where the segment before it begins.
- * Both segments at a join turn the bisector from the direction of the first, so that both get the same bits for its
- * normal. */
+ * Both segments at a join compute the bisector from the direction of the first one, so that both get the same bits for
+ * its normal. */
 CAMBER_FN void camber_segment_of(camber_real px, camber_real py, camber_real ax, camber_real ay, camber_real bx,
                                  camber_real by, camber_words join_a, camber_words join_b, camber_real half_width,
                                  camber_u32 linear, camber_segment *s) {
@@ -176,7 +177,8 @@ CAMBER_FN void camber_segment_of(camber_real px, camber_real py, camber_real ax,
     s->flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
 }
 
-/* The edge of a ring from A to B: a segment without width, joins and sides, of which only ends and direction count. */
+/* Makes the edge of a ring from A to B: a segment without width, joins and sides, of which only ends and direction
+ * count. */
 CAMBER_FN void camber_edge_segment(camber_real ax, camber_real ay, camber_real bx, camber_real by, camber_segment *s) {
     camber_direction(bx - ax, by - ay, &s->ux, &s->uy);
     s->ax = ax;
@@ -187,13 +189,14 @@ CAMBER_FN void camber_edge_segment(camber_real ax, camber_real ay, camber_real b
     s->reach = CAMBER_REAL(CAMBER_EDGE_REACH_PX);
 }
 
-/* The box of tiles that a segment may touch: x and y of the first tile, then x and y of the last, a byte each. left and
- * top: where the area's first tile lies in the picture, px. */
+/* Returns the box of tiles that a segment may touch: x and y of the first tile, then x and y of the last, one byte
+ * each. left and top: position of the area's first tile in the picture, in px. */
 CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask drawn, float left, float top,
                                           camber_u32 columns, camber_u32 rows) {
     const float a_tile = 1.0f / CAMBER_TILE_PX, right = (float)(columns - 1u), bottom = (float)(rows - 1u);
-    /* The box reaches to the middles of pixels, and a little farther, so that no cell's box lies outside its tile's.
-     * Tiles are counted from the picture's first one, and then from the area's, so that every area finds the same. */
+    /* The box extends to the middles of pixels, and a little farther, so that no cell's box is outside its tile's.
+     * Tiles are counted from the picture's first one, and then from the area's, so that every area gets the same
+     * result. */
     const float inset = CAMBER_INSET_PX, from_x = left * a_tile, from_y = top * a_tile;
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_real x0 = (CAMBER_LESS(s->ax, s->bx) - s->reach + inset) * a_tile - from_x;
@@ -212,7 +215,7 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
 
 /* ---- Tiles ---- */
 
-/* A segment as its tiles are found: A, B, its direction, half width and reach. */
+/* The values of a segment that finding its tiles needs: A, B, its direction, half width and reach. */
 typedef struct camber_tile_line {
     float ax, ay, bx, by, ux, uy, half_width, reach;
 } camber_tile_line;
@@ -228,7 +231,7 @@ CAMBER_FN void camber_tile_line_of(CAMBER_GLOBAL const float *segment, camber_ti
     l->reach = segment[CAMBER_SEGMENT_REACH];
 }
 
-/* The same of an edge, by its ends. */
+/* Makes the same of an edge, given its ends. */
 CAMBER_FN void camber_tile_line_of_edge(CAMBER_GLOBAL const float *ends, camber_tile_line *l) {
     l->ax = ends[0];
     l->ay = ends[1];
@@ -242,8 +245,8 @@ CAMBER_FN void camber_tile_line_of_edge(CAMBER_GLOBAL const float *ends, camber_
     l->reach = CAMBER_EDGE_REACH_PX;
 }
 
-/* The squares (tiles or cells) of one row of a box that a segment with its reach touches: first | last << 8. middle: y
- * of the row's middle, px; left: where the first square begins, px. */
+/* Returns the squares (tiles or cells) of one row of a box that a segment with its reach touches: first | last << 8.
+ * middle: y of the row's middle, in px; left: where the first square begins, in px. */
 CAMBER_FN camber_u32 camber_row_span(const camber_tile_line *l, float middle, float left, camber_u32 first,
                                      camber_u32 last, float side) {
     const float to_middle = 0.5f * side, a_square = 1.0f / side;
@@ -255,17 +258,17 @@ CAMBER_FN camber_u32 camber_row_span(const camber_tile_line *l, float middle, fl
         return first | last << 8;
     const float scale = 1.0f / l->uy, across = (middle - l->ay) * l->ux;
     const float one = l->ax + (across - reach) * scale, other = l->ax + (across + reach) * scale;
-    /* Counted from the squares' middles. */
+    /* Relative to the squares' middles. */
     const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
     const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
     if (from > (float)last || to < (float)first)
-        return 1u; /* none: the last lies before the first */
+        return 1u; /* none: the last is before the first */
     const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
     return (from > (float)begin ? begin + 1u : begin) | (to < (float)last ? (camber_u32)to : last) << 8;
 }
 
-/* Whether from and to lie in the same column, or row, of tiles, as camber_segment_box counts them before the area's
- * edges cut the box. */
+/* Whether from and to are in the same column, or row, of tiles, as camber_segment_box counts them before it clips the
+ * box to the area. */
 CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
     const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = CAMBER_INSET_PX;
     const float a = (from + inset) * a_tile, b = (to - inset) * a_tile;
@@ -274,7 +277,7 @@ CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
     return first - (lower < (float)first) == last - (upper < (float)last);
 }
 
-/* Whether the box of a segment lies in one column or in one row of tiles. */
+/* Whether the box of a segment is in one column or in one row of tiles. */
 CAMBER_FN camber_u32 camber_line_is_narrow(const camber_tile_line *l) {
     return camber_same_tile(CAMBER_LESS(l->ax, l->bx) - l->reach, CAMBER_MORE(l->ax, l->bx) + l->reach) ||
            camber_same_tile(CAMBER_LESS(l->ay, l->by) - l->reach, CAMBER_MORE(l->ay, l->by) + l->reach);
@@ -286,9 +289,9 @@ CAMBER_FN camber_u32 camber_line_is_narrow(const camber_tile_line *l) {
 #define CAMBER_BOX_LAST_X(box) ((box) >> 16 & 255u)
 #define CAMBER_BOX_LAST_Y(box) ((box) >> 24)
 
-/* The tiles of a box in row y that a segment touches: first | last << 8. A box of one column or row has all its tiles.
- * At the area's edge the box may be cut, but the span must be as in any other area. words: of the segment, or where it
- * is an edge its ends. */
+/* Returns the tiles of a box in row y that a segment touches: first | last << 8. If the box is one column or row, these
+ * are all its tiles. At the area's edge the box may be cut, but the span must be the same as in any other area. words:
+ * those of the segment, or the ends of an edge. */
 CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_flag is_edge, camber_u32 box,
                                       camber_u32 y, const camber_tile_grid *of) {
     const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
@@ -306,7 +309,7 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_f
     return camber_row_span(&line, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
-/* The first row of tiles whose top a segment with such a box may cross; the last is that of the box. */
+/* Returns the first row of tiles whose top a segment with this box may cross; the last is that of the box. */
 CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
     return CAMBER_BOX_FIRST_Y(box) == 0u ? 0u : CAMBER_BOX_FIRST_Y(box) + 1u;
 }

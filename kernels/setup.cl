@@ -1,11 +1,11 @@
-/* setup: makes a segment, or the edge of a ring, of each point that ends one, and finds the box of tiles around it. A
- * work-item takes 128 slots of a range, and on a GPU 16.
+/* setup: makes a segment, or the edge of a ring, from each point that ends one, and finds the box of tiles around it. A
+ * work-item takes 128 slots of a range, or 16 on a GPU.
  *
  * Reads ranges[range_count] of one part, x, y, info, joins[slot_count + 2] of the part (one sentinel before and after
  * its slots), rows[CAMBER_RASTER_ROW_WORDS * row count], changes[first_change + change_count]. For the n slots of a
  * range, rounded up to sixteens, it writes from element `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
- *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, of slots that belong to rings of areas
+ *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, for slots that belong to rings
  *     boxes[n]; CAMBER_NO_BOX for a slot that ends no segment, or one that is not drawn
  *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH, from slot_arc_lengths[2 * slot_count];
  *         0 if the part has none
@@ -15,17 +15,17 @@
 #include "pitch_segment.h"
 #include "transpose.cl"
 
-/* The points of a part: a word of each slot, in arrays. */
+/* The points of a part: arrays with one word per slot. */
 typedef struct part_points {
     global const camber_u32 *x, *y, *info, *joins;
 } part_points;
 
-/* The words of consecutive points, a vector for each word. */
+/* The words of consecutive points, one vector per word. */
 typedef struct lane_points {
     camber_words x, y, join, info;
 } lane_points;
 
-/* Reads a vector of words from index `first` on. Indices outside the part stand for its nearest word. */
+/* Reads a vector of words from index `first` on. Indices outside the part give its nearest word. */
 static inline camber_words take_words(global const camber_u32 *words, int first, const camber_setup_args *r) {
     const int last = (int)r->slot_count + 1;
     if (first >= 0 && first + CAMBER_LANES <= last + 1)
@@ -38,7 +38,7 @@ static inline camber_words take_words(global const camber_u32 *words, int first,
     return CAMBER_LOAD(0, taken);
 }
 
-/* Reads the rows of a vector of segments. Mostly they all have the same one. */
+/* Reads the rows of a vector of segments. Usually they all have the same one. */
 static inline void take_rows(global const float *rows, camber_u32 first, camber_words numbers, camber_mask drawn,
                              camber_real *row) {
     const camber_words known = drawn ? numbers : (camber_words)(0u);
@@ -65,7 +65,7 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
         row[k] = CAMBER_LOAD(0, words[k]);
 }
 
-/* The brushes of a vector of edges that end in the slots from `first` on, by those of their rows. */
+/* Returns the brushes of a vector of edges that end in the slots from `first` on, given those of their rows. */
 static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, const camber_setup_args *r,
                                         camber_real of_rows) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -86,7 +86,7 @@ static inline float2 arc_length_at(global const float *slot_arc_lengths, int slo
     return r->has_arc_length ? vload2((size_t)at, slot_arc_lengths) : (float2)(0.0f);
 }
 
-/* The lanes that are dots lie as far along their line as their point. */
+/* Writes arc lengths. Lanes that are dots are as far along their line as their point. */
 static inline void put_arc_lengths(global const float *slot_arc_lengths, int first, camber_mask is_dot,
                                    const camber_setup_args *r, const camber_segment *s, global float *arc_lengths) {
     float from[CAMBER_LANES], to[CAMBER_LANES], total[CAMBER_LANES], rates[CAMBER_LANES];
@@ -103,7 +103,7 @@ static inline void put_arc_lengths(global const float *slot_arc_lengths, int fir
 }
 #endif
 
-/* Writes sixteen words of each of a vector of segments, which lie segment_words apart. */
+/* Writes sixteen words of each of a vector of segments, which are segment_words apart. */
 static inline void put_segments(camber_real *words, global float *segments, size_t segment_words) {
 #pragma unroll
     for (size_t from = 0; from < 16; from += CAMBER_LANES) {
@@ -143,7 +143,7 @@ typedef struct ends {
     camber_mask is_dot, is_drawn;
 } ends;
 
-/* Takes the rows of the points that end segments, and leaves out those that their row does not draw. */
+/* Reads the rows of the points that end segments, and drops segments that their row does not draw. */
 static inline void look_up_rows(global const float *rows, const camber_setup_args *r, ends *e) {
     take_rows(rows, r->first_row, e->b.info >> CAMBER_POINT_ROW_SHIFT, e->is_drawn, e->row);
     e->is_drawn &= e->row[0] >= 0.0f;
@@ -156,7 +156,7 @@ static inline void look_up_rows(global const float *rows, const camber_setup_arg
 #endif
 }
 
-/* Takes the points of the slots from `first` on. The word of a slot follows that of the sentinel. */
+/* Takes the points of the slots from `first` on. The words of the slots come after that of the leading sentinel. */
 static inline void take_points(part_points from, int first, const camber_setup_args *r, ends *e) {
     const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const int at = first + 1;
@@ -179,7 +179,7 @@ static inline void take_ends(part_points from, global const float *rows, int fir
     look_up_rows(rows, r, e);
 }
 
-/* Edges have no joins. */
+/* Takes the ends of edges of rings, which have no joins. */
 static inline void take_edge_ends(part_points from, global const float *rows, int first, const camber_setup_args *r,
                                   ends *e) {
     take_points(from, first, r, e);
@@ -201,7 +201,7 @@ static inline void take_fill(global const float *rows, int first, const camber_s
     look_up_rows(rows, r, e);
 }
 
-/* Where a segment begins and ends. */
+/* The points at which segments begin and end. */
 typedef struct lane_ends {
     camber_real ax, ay, bx, by;
 } lane_ends;
@@ -224,7 +224,7 @@ static inline void make_segments(part_points from, global const float *rows, glo
     else
         take_ends(from, rows, first, r, &e);
     place_ends(&e, &l);
-    /* The segment before begins at the point before the last; that of a cap does not matter. */
+    /* The previous segment begins two points before the end; for a cap it does not matter. */
     const camber_words px = take_words(from.x, first - 1, r), py = take_words(from.y, first - 1, r);
     camber_segment_of(CAMBER_AS_REAL(px) + e.x, CAMBER_AS_REAL(py) + e.y, l.ax, l.ay, l.bx, l.by,
                       e.is_dot ? e.b.join : e.before.join, e.b.join, e.row[0], r->linear, &s);
@@ -235,7 +235,7 @@ static inline void make_segments(part_points from, global const float *rows, glo
 #endif
     const camber_words box = camber_segment_box(&s, e.is_drawn, r->left, r->top, r->columns, r->rows);
     CAMBER_STORE(box, 0, to.boxes);
-    /* If a picture is drawn in several areas, most segments lie in others. */
+    /* If a picture is drawn in several areas, most segments are in other areas. */
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
         return;
 #if CAMBER_RASTER_PITCHED
@@ -253,7 +253,7 @@ static inline void make_segments(part_points from, global const float *rows, glo
         CAMBER_STORE((camber_words)(CAMBER_NO_EDGE), 0, to.brushes);
 }
 
-/* The same of edges. */
+/* The same for edges of rings. */
 static inline void make_edges(part_points from, global const float *rows, global const camber_u32 *changes, int first,
                               const camber_setup_args *r, outputs to) {
     ends e;
@@ -279,7 +279,7 @@ static inline void make_edges(part_points from, global const float *rows, global
     CAMBER_STORE(take_brushes(changes, (camber_u32)first, r, e.row[3]), 0, to.brushes);
 }
 
-/* The range whose slots a work-item takes. */
+/* Returns the range whose slots a work-item takes. */
 static inline uint range_of(global const camber_setup_args *ranges, uint count, uint item) {
     uint first = 0;
     while (count > 1) {

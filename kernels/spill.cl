@@ -1,12 +1,12 @@
-/* How the cells of a tile are spilled between two slices and restored: raster_args.h has the layout. A work-item spills
- * the cells that it draws. */
+/* Spills the cells of a tile between two slices and restores them: raster_args.h has the layout. A work-item spills the
+ * cells that it draws. */
 #ifndef CAMBER_SPILL_CL
 #define CAMBER_SPILL_CL
 
 #include "area_inside.h"
 
-/* Rows share their turns, and a tile its edges, among the cells that a work-item draws. Work-items share nothing, as
- * one may spill before another restores. */
+/* The cells that a work-item draws share the winding changes of their rows and the edges of their tile. Work-items
+ * share nothing, because one may spill before another restores. */
 #if CAMBER_OWN_SIDE == 1
 #define SHARES CAMBER_CELLS
 #define SHARE_OF(row, column) (CAMBER_TILE_CELLS * (row) + (column))
@@ -17,7 +17,7 @@
 #define PLACED_OF(row, column) 0
 #endif
 
-/* The planes of a tile, and its words that lie behind them. */
+/* The planes of a tile, and its words after them. */
 typedef struct spilled_tile {
     global camber_u32 *cells;
     global float *planes;
@@ -33,12 +33,12 @@ static inline spilled_tile spilled_tile_of(global float *spill, camber_spill_arg
     return tile;
 }
 
-/* Vector v of a cell of the tile in a plane. */
+/* Returns the position of vector v of a cell of the tile in a plane. */
 static inline size_t plane_at(camber_u32 plane, int cell, int v) {
     return ((size_t)plane * CAMBER_CELLS + (size_t)cell) * CAMBER_VECTORS + (size_t)v;
 }
 
-/* from and to: of a cell, count planes beside each other. */
+/* from and to: those of a cell, in count consecutive planes. */
 static inline void spill_planes(global float *planes, const camber_real *from, camber_u32 plane, camber_u32 count,
                                 int cell) {
     for (camber_u32 k = 0; k < count; k++)
@@ -53,12 +53,12 @@ static inline void restore_planes(global const float *planes, camber_real *to, c
             to[CAMBER_VECTORS * (int)k + v] = CAMBER_LOAD(plane_at(plane + k, cell, v), planes);
 }
 
-/* The words of a cell of the tile. */
+/* Returns the words of a cell of the tile. */
 static inline global camber_u32 *cell_words(const spilled_tile *to, int row, int column) {
     return to->cells + CAMBER_SPILL_CELL_WORDS * (CAMBER_TILE_CELLS * row + column);
 }
 
-/* Spills the changes that the edges of an area make in a cell. */
+/* Spills the changes that the edges of a polygon make in a cell. */
 static inline void spill_area(const camber_area_state *s, const spilled_tile *to, camber_u32 plane,
                               camber_tile_rows where, int row, int column) {
     const int cell = CAMBER_TILE_CELLS * row + column;
@@ -93,7 +93,7 @@ static inline void restore_area(camber_area_state *s, const spilled_tile *from, 
             s->placed[i][k] = from->placed[PLACED_OF(row, column) + (size_t)(CAMBER_KEPT_MOST * i + k)];
 }
 
-/* The sets of a state, in the order of their bits in a cell's first word. */
+/* Returns the sets of a state, in the order of their bits in a cell's first word. */
 static inline camber_u32 sets_of(const camber_tile_state *c, int i) {
     const ulong of[CAMBER_SPILL_SETS] = {c->brushed, c->filled, c->done, c->touched[0], c->touched[1], c->touched[2]};
     camber_u32 bits = 0;
@@ -124,7 +124,7 @@ static inline void spill_cell(const camber_tile_state *c, const spilled_tile *to
         spill_area(&c->area, to, s.sums, where, row, column);
 }
 
-/* Spills the cells of rows that are drawn. now: the brush, and which levels are open. */
+/* Spills the cells of the drawn rows. now: the brush, and which levels are open. */
 static inline void spill_cells(const camber_tile_state *c, global float *spill, camber_spill_args s,
                                camber_tile_rows where, camber_u32 now) {
     const spilled_tile to = spilled_tile_of(spill, s);
@@ -153,7 +153,7 @@ static inline void restore_sets(camber_tile_state *c, camber_u32 state, int i) {
     c->blend_count[i] = (uchar)(state >> CAMBER_SPILL_COUNT_SHIFT);
 }
 
-/* Restores what a cell has of the brush that is drawn now, if any, and of its levels. */
+/* Restores what a cell has of the current brush, if any, and of its levels. */
 static inline void restore_cell(camber_tile_state *c, const spilled_tile *from, camber_spill_args s, camber_u32 sets,
                                 camber_tile_rows where, int row, int column) {
     const int i = CAMBER_OWN_CELL(row, column, where), cell = CAMBER_TILE_CELLS * row + column;
@@ -192,7 +192,7 @@ static inline global const camber_u32 *restore_words(camber_tile_state *c, const
     return open;
 }
 
-/* Restores the cells of rows. Returns the brush that was drawn last, ~0 if none was, or CAMBER_SPILL_FULL. */
+/* Restores the cells of rows. Returns the last brush that was drawn, ~0 if there was none, or CAMBER_SPILL_FULL. */
 static inline camber_u32 restore_cells(camber_tile_state *c, global float *spill, global const camber_brush *brushes,
                                        camber_spill_args s, camber_tile_rows where) {
     const spilled_tile from = spilled_tile_of(spill, s);

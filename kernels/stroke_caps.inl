@@ -1,12 +1,13 @@
-/* How a segment ends flat: in a cap, or in a join that it does not share with its neighbour. A part of stroke.h: each
- * projection includes it behind what cuts pixels, so it is no header. */
+/* Flat ends of a segment: caps, or joins that it does not share with its neighbour. A part of stroke.h: each projection
+ * includes it after its functions that cut pixels, so it is not a header. */
 
-/* How a pixel lies to a flat end: a cap, or a flat join (camber_flat_join). There the segment's body ends in an edge of
- * its own past the bisector, and before it the segment draws what lies inside this edge or the cap, which is turned. */
+/* The position of a pixel relative to a flat end: a cap, or a flat join (camber_flat_join). At a flat join the
+ * segment's body ends in an edge of its own past the bisector; before the bisector the segment draws what is inside
+ * this edge or inside the cap, which is turned. */
 CAMBER_STRUCT(camber_flat_end) {
-    camber_real body, cap; /* how far inside of the two, px */
+    camber_real body, cap; /* how far inside each of the two, in px */
     camber_mask behind;    /* past the bisector */
-    float cosine, sine;    /* of the turn from one to the other */
+    float cosine, sine;    /* cosine and sine of the turn from one to the other */
 };
 
 /* Whether the end at B (out_of: 1) or at A (-1) is a flat join. */
@@ -26,8 +27,9 @@ CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
     f->cap = from - past * f->cosine - at->y * f->sine;
 }
 
-/* The share of a pixel inside a flat end. llvmpipe runs both sides of a branch: in shaders a cap is a join whose two
- * edges are one, but for what a pitch makes of either, and where there is no stub, its cap is far. */
+/* Returns the fraction of a pixel inside a flat end. llvmpipe runs both sides of a branch, so in shaders a cap is
+ * treated as a join whose two edges coincide, apart from what a pitch makes of them; if there is no stub, its cap is
+ * far away. */
 CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
     const float from = out_of > 0.0f ? p->flat_b : p->flat_a;
     const camber_flag is_join = camber_is_flat_join(p, out_of);

@@ -1,4 +1,4 @@
-/* How edges are seen in a picture without a pitch: as they are. A part of stroke.h. */
+/* How edges appear in a picture without a pitch: unchanged. A part of stroke.h. */
 #ifndef CAMBER_KERNELS_STROKE_FLAT_H
 #define CAMBER_KERNELS_STROKE_FLAT_H
 
@@ -13,12 +13,12 @@ CAMBER_STRUCT(camber_edge) {
 };
 #endif
 
-/* A pixel as a segment sees it, px. */
+/* A pixel relative to a segment, in px. */
 CAMBER_STRUCT(camber_pixel) {
     camber_real x, y;           /* along the segment, and across it */
     camber_real past_a, past_b; /* past the ends, along the segment */
     camber_real fa, fb;         /* past the bisectors */
-    camber_real off, across;    /* from the nearest place of the line: along it, and across */
+    camber_real off, across;    /* from the nearest point of the line: along it, and across */
     camber_real d;              /* the same as one distance */
     camber_real along;          /* arc length */
 #ifdef CAMBER_GLSL
@@ -26,7 +26,7 @@ CAMBER_STRUCT(camber_pixel) {
 #endif
 };
 
-/* Px of the picture that so many px along the line, or away from it, are. */
+/* Returns how many px of the picture a distance along the line, or away from it, is. */
 CAMBER_FN camber_real camber_seen_along(CAMBER_IN(camber_pixel) at, camber_real px) {
     CAMBER_UNUSED(at)
     return px;
@@ -38,13 +38,13 @@ CAMBER_FN camber_real camber_seen_away(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
     return px;
 }
 
-/* The share of a pixel inside an edge across the line, whose centre lies s px inside it. */
+/* Returns the fraction of a pixel inside an edge across the line, with its centre s px inside it. */
 CAMBER_FN camber_real camber_cut_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s) {
     CAMBER_UNUSED(at)
     return camber_covered(s, CAMBER_REF(p->side));
 }
 
-/* The same of an edge of the stroke, whose normal looks from the line to the pixel (facing: 1) or back (-1). */
+/* The same for an edge of the stroke, whose normal points from the line to the pixel (facing: 1) or back (-1). */
 CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float facing) {
     CAMBER_UNUSED(at)
@@ -52,7 +52,7 @@ CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return camber_covered(s, CAMBER_REF(p->side));
 }
 
-/* The same of a join's second line. cosine: of the angle between it and the stroke's edge. */
+/* The same for a join's second line. cosine: that of the angle between it and the stroke's edge. */
 CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                         CAMBER_IN(camber_second) l, float out_of, camber_real inside,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -64,23 +64,23 @@ CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return camber_covered(inside, CAMBER_REF(e));
 }
 
-/* How far half a pixel reaches along the line. */
+/* Returns how far half a pixel reaches along the line. */
 CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at) {
     CAMBER_UNUSED(at)
     return CAMBER_REAL(p->side.extent);
 }
 
-/* Finds the nearest place of the line: fills in `off` and `across`. */
+/* Finds the nearest point of the line: fills in `off` and `across`. */
 CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real none = CAMBER_REAL(0.0f), arc_a = at->past_a - p->round_a, arc_b = at->past_b - p->round_b;
     const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = CAMBER_MORE(farther, none);
-    /* On an arc farther than a pixel from the segment, the distance is all. */
+    /* On an arc farther than a pixel from the segment, only the distance counts. */
     const camber_real straight = 1.0f - arc, bend = camber_join_bend(at->fa, p->sa) + camber_join_bend(-at->fb, p->sb);
     at->off = arc;
     at->across = at->y - bend * CAMBER_MORE(straight, none);
 }
 
-/* Adds what lies between the nearest place of the line and a dash. */
+/* Adds the distance between the nearest point of the line and a dash. */
 CAMBER_FN void camber_go_off(CAMBER_INOUT(camber_pixel) at, camber_real off) {
     at->off += CAMBER_FABS(off);
 }
@@ -90,15 +90,15 @@ CAMBER_FN void camber_find_distance(CAMBER_IN(camber_edge) p, CAMBER_INOUT(cambe
     at->d = CAMBER_SQRT(at->off * at->off + at->across * at->across);
 }
 
-/* The share of a pixel that the round caps of a thin line leave. */
+/* Returns the fraction of a pixel that the round caps of a thin line leave. */
 CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real tips =
         camber_clamp_to_one(p->tip_a - at->past_a) + camber_clamp_to_one(p->tip_b - at->past_b) - 1.0f;
     return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
 }
 
-/* The share of a pixel inside the cap of a flat join, which is turned by an angle from the segment's own end: it is cut
- * as an edge across the segment is. cosine: of the angle between both as they are seen. */
+/* Returns the fraction of a pixel inside the cap of a flat join, which is turned by an angle from the segment's own
+ * end: it is cut like an edge across the segment. cosine: that of the angle between the two in the picture. */
 CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float out_of, float turn_cosine, float turn_sine,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -110,25 +110,26 @@ CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
 
 #include "stroke_caps.inl"
 
-/* The part of an area between both ends. at_a, at_b: the shares that each of them leaves. */
+/* Returns the part of an area between both ends. at_a, at_b: the fractions that each of them leaves. */
 CAMBER_FN camber_real camber_between_ends(camber_real area, camber_real at_a, camber_real at_b) {
     const camber_real both = at_a + at_b - 1.0f;
     return area * (both > 0.0f ? both : CAMBER_REAL(0.0f));
 }
 
-/* The part of an area that flat ends leave: one, or both of a short segment. Ends that are not flat leave all. */
+/* Returns the part of an area that flat ends leave: one end, or both of a short segment. Ends that are not flat leave
+ * all. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     return camber_between_ends(area, camber_cut_end(p, at, -1.0f), camber_cut_end(p, at, 1.0f));
 }
 
-/* The area, or 0 where the pixel lies on the neighbour's side of a bisector and the neighbour draws it. */
+/* Returns the area, or 0 if the pixel is on the neighbour's side of a bisector and the neighbour draws it. */
 CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     const camber_mask at_a = CAMBER_BOTH(at->fa<-CAMBER_TIE(at), at->past_a> p->owner_a);
     const camber_mask at_b = CAMBER_BOTH(at->fb >= CAMBER_TIE(at), at->past_b > p->owner_b);
     return CAMBER_EITHER(at_a, at_b) ? CAMBER_REAL(0.0f) : area;
 }
 
-/* How far inside a flat end a pixel lies, and the end's normal along and across the segment. */
+/* Returns how far inside a flat end a pixel is, and the end's normal along and across the segment. */
 CAMBER_FN camber_real camber_end_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of,
                                         CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
     const camber_real cap = out_of > 0.0f ? p->flat_b - at->past_b : p->flat_a - at->past_a;
@@ -144,7 +145,7 @@ CAMBER_FN camber_real camber_end_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return is_cap ? f.cap : f.body;
 }
 
-/* The normal of the nearest edge, into the stroke, in the picture. Returns whether it has one. */
+/* Computes the normal of the nearest edge, into the stroke, in the picture. Returns whether it has one. */
 CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                          CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
     const camber_real least = CAMBER_REAL(1e-3f);

@@ -1,11 +1,12 @@
-/* How edges of the plane are seen in a picture with a pitch: each becomes an edge of the picture by itself. A part of
+/* How edges of the plane appear in a picture with a pitch: each becomes an edge of the picture separately. A part of
  * stroke.h.
  *
- * Positions in the plane count from the point that the camera looks at, those seen from the picture's middle. */
+ * Positions in the plane are relative to the point that the camera looks at; positions in the picture ("seen") are
+ * relative to its middle. */
 #ifndef CAMBER_KERNELS_STROKE_PITCHED_H
 #define CAMBER_KERNELS_STROKE_PITCHED_H
 
-/* A straight edge in the picture, and how it cuts pixels: a pixel lies at - (x, y) . pixel inside it. */
+/* A straight edge in the picture, and how it cuts pixels: a pixel is at - (x, y) . pixel inside it. */
 CAMBER_STRUCT(camber_seen_edge) {
     float at, x, y;
     camber_profile cuts;
@@ -16,7 +17,7 @@ CAMBER_FN camber_real camber_seen_inside(CAMBER_IN(camber_seen_edge) edge, cambe
 }
 
 #ifdef CAMBER_GLSL
-/* The coefficients that fragments read; below is what each is. */
+/* The coefficients that fragments read; they are explained below. */
 CAMBER_STRUCT(camber_edge) {
     float ux, uy, length, half_width, by_cosine, fall, along_a, across_a;
     float ca, sa, cb, sb, flat_a, flat_b, round_a, round_b, tip_a, tip_b, owner_a, owner_b, wide_a, wide_b;
@@ -25,14 +26,15 @@ CAMBER_STRUCT(camber_edge) {
     camber_flag linear, thin, tips, capped, sharp, bends;
 };
 #else
-/* How far a pixel lies past a line of the plane, divided by its depth. This is linear in the picture: x, y, less at. */
+/* How far a pixel is past a line of the plane, divided by its depth. This is linear in the picture: (x, y) . pixel -
+ * at. */
 typedef struct camber_form {
     float at, x, y;
 } camber_form;
 typedef struct camber_edge {
     float by_cosine, fall; /* of the camera */
     float ux, uy, half_width, length;
-    float along_a, across_a; /* where A lies along the segment's direction and across it, px */
+    float along_a, across_a; /* position of A along the segment's direction and across it, in px */
     float ca, sa, cb, sb;
     camber_form x, y, past_b, fa, fb;
     camber_seen_edge left, right; /* the sides */
@@ -46,16 +48,16 @@ typedef struct camber_edge {
 } camber_edge;
 #endif
 
-/* A pixel as a segment sees it; px of the plane, where nothing else is said. */
+/* A pixel relative to a segment, in px of the plane unless stated otherwise. */
 CAMBER_STRUCT(camber_pixel) {
     camber_real seen_x, seen_y; /* in the picture, px */
     camber_real by_depth, ground_x, ground_y;
     camber_real x, y;                    /* along the segment, and across it */
     camber_real past_a, past_b;          /* past the ends, along the segment */
     camber_real fa, fb;                  /* past the bisectors */
-    camber_real scale, seen_ux, seen_uy; /* px of the picture a px along the line, and the line's direction there */
+    camber_real scale, seen_ux, seen_uy; /* px of the picture per px along the line, and the line's direction there */
     camber_profiles line;                /* of edges across the line */
-    camber_real off, across;             /* from the nearest place of the line: along it, and across */
+    camber_real off, across;             /* from the nearest point of the line: along it, and across */
     camber_real d, side_x, side_y;       /* the same as one distance, and its direction in the plane */
     camber_real along;                   /* arc length */
 #ifdef CAMBER_GLSL
@@ -63,8 +65,8 @@ CAMBER_STRUCT(camber_pixel) {
 #endif
 };
 
-/* Projects an edge of the plane, which lies `lies` px along its unit normal. seen: its normal in the picture. Returns
- * how many px of the picture, times the depth, a px of the plane across the edge is. */
+/* Projects an edge of the plane, which is `lies` px along its unit normal. seen: its normal in the picture. Returns how
+ * many px of the picture, times the depth, a px of the plane across the edge is. */
 CAMBER_FN camber_real camber_see_normal(CAMBER_IN(camber_edge) p, camber_real nx, camber_real ny, camber_real lies,
                                         CAMBER_OUT(camber_real) seen_x, CAMBER_OUT(camber_real) seen_y) {
     const camber_real y = (ny - p->fall * lies) * p->by_cosine, square = nx * nx + y * y, least = CAMBER_REAL(1e-30f);
@@ -74,8 +76,8 @@ CAMBER_FN camber_real camber_see_normal(CAMBER_IN(camber_edge) p, camber_real nx
     return scale;
 }
 
-/* The share of a pixel inside an edge of the plane, whose normal outwards is (nx, ny), s px inside it. seen: that
- * normal in the picture. */
+/* Returns the fraction of a pixel inside an edge of the plane, whose outward normal is (nx, ny), with its centre s px
+ * inside it. seen: that normal in the picture. */
 CAMBER_FN camber_real camber_plane_covered(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                            camber_real nx, camber_real ny, CAMBER_OUT(camber_real) seen_x,
                                            CAMBER_OUT(camber_real) seen_y) {
@@ -89,7 +91,8 @@ CAMBER_FN camber_real camber_plane_covered(CAMBER_IN(camber_edge) p, CAMBER_IN(c
     return camber_covered(s * scale * at->by_depth, CAMBER_REF(e));
 }
 
-/* The normal that the stroke's edge has beside the pixel, in the picture. Returns px of the picture a px across it. */
+/* Computes the normal of the stroke's edge beside the pixel, in the picture. Returns the px of the picture per px
+ * across it. */
 CAMBER_FN camber_real camber_see_side(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                       CAMBER_OUT(camber_real) seen_x, CAMBER_OUT(camber_real) seen_y) {
     const camber_real lies = at->side_x * at->ground_x + at->side_y * at->ground_y;
@@ -100,7 +103,7 @@ CAMBER_FN camber_real camber_see_side(CAMBER_IN(camber_edge) p, CAMBER_IN(camber
     return scale * at->by_depth;
 }
 
-/* Px of the picture that so many px along the line, or away from it, are. */
+/* Returns how many px of the picture a distance along the line, or away from it, is. */
 CAMBER_FN camber_real camber_seen_along(CAMBER_IN(camber_pixel) at, camber_real px) {
     return px * at->scale;
 }
@@ -110,20 +113,20 @@ CAMBER_FN camber_real camber_seen_away(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
     return px * camber_see_side(p, at, CAMBER_REF(x), CAMBER_REF(y));
 }
 
-/* The share of a pixel inside an edge across the line, whose centre lies s px inside it. */
+/* Returns the fraction of a pixel inside an edge across the line, with its centre s px inside it. */
 CAMBER_FN camber_real camber_cut_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s) {
     CAMBER_UNUSED(p)
     return camber_covered(s * at->scale, CAMBER_REF(at->line));
 }
 
-/* The same of an edge of the stroke, whose normal looks from the line to the pixel (facing: 1) or back (-1). */
+/* The same for an edge of the stroke, whose normal points from the line to the pixel (facing: 1) or back (-1). */
 CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float facing) {
     camber_real x, y;
     return camber_plane_covered(p, at, s, facing * at->side_x, facing * at->side_y, CAMBER_REF(x), CAMBER_REF(y));
 }
 
-/* The same of a join's second line. cosine: of the angle between it and the stroke's edge. */
+/* The same for a join's second line. cosine: that of the angle between it and the stroke's edge. */
 CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                         CAMBER_IN(camber_second) l, float out_of, camber_real inside,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -136,13 +139,13 @@ CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return second;
 }
 
-/* How far half a pixel reaches along the line. */
+/* Returns how far half a pixel reaches along the line. */
 CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at) {
     CAMBER_UNUSED(p)
     return at->line.extent / at->scale;
 }
 
-/* Finds the nearest place of the line: the line's scale and direction there, `off` and `across`. */
+/* Finds the nearest point of the line: the line's scale and direction there, `off` and `across`. */
 CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real none = CAMBER_REAL(0.0f), ux = CAMBER_REAL(p->ux), uy = CAMBER_REAL(p->uy);
     const camber_real arc_a = camber_arc(at->past_a, p->round_a), arc_b = camber_arc(at->past_b, p->round_b);
@@ -152,7 +155,7 @@ CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber
     if (p->bends) {
         const camber_real arc = CAMBER_MORE(arc_a, arc_b), straight = 1.0f - arc * scale;
         const camber_real bend = camber_join_bend(at->fa * scale, p->sa) + camber_join_bend(-at->fb * scale, p->sb);
-        /* A segment shorter than a pixel does not know how the line goes on. */
+        /* A segment shorter than a pixel does not know how the line continues. */
         const camber_real knows = camber_clamp_to_one(p->length * scale - 1.0f);
         across = at->y - bend / scale * (straight > 0.0f ? straight : none) * knows;
     }
@@ -164,7 +167,7 @@ CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber
     at->across = across;
 }
 
-/* Adds what lies between the nearest place of the line and a dash. */
+/* Adds the distance between the nearest point of the line and a dash. */
 CAMBER_FN void camber_go_off(CAMBER_INOUT(camber_pixel) at, camber_real off) {
     at->off += off;
 }
@@ -179,8 +182,8 @@ CAMBER_FN void camber_find_distance(CAMBER_IN(camber_edge) p, CAMBER_INOUT(cambe
     at->side_y = x * p->uy + y * p->ux;
 }
 
-/* Round caps shorter than a pixel, and seen upright, end like flat ones of the same area. Returns the share of a pixel
- * that they leave along the line. */
+/* Round caps that are shorter than a pixel, and seen upright, end like flat ones of the same area. Returns the fraction
+ * of a pixel that they leave along the line. */
 CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
     camber_real x, y;
@@ -197,7 +200,7 @@ CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(ca
     return left > 0.0f ? left : none;
 }
 
-/* The share of a pixel inside the cap of a flat join, as stroke_flat.h has it. */
+/* Returns the fraction of a pixel inside the cap of a flat join, as in stroke_flat.h. */
 CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float out_of, float turn_cosine, float turn_sine,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -212,8 +215,8 @@ CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
 
 #include "stroke_caps.inl"
 
-/* The part of an area that flat ends leave. Seen at an angle they meet the sides at any angle. A line thinner than the
- * pixel has no such corner. */
+/* Returns the part of an area that flat ends leave. Seen with a pitch, they meet the sides at any angle. A line thinner
+ * than the pixel has no such corner. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     camber_real x, y;
     const camber_real across = camber_see_side(p, at, CAMBER_REF(x), CAMBER_REF(y));
@@ -223,8 +226,8 @@ CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
     return camber_inside_both(camber_inside_both(area, cut_a, -cosine), cut_b, cosine);
 }
 
-/* The share of a pixel that a segment draws at one of its ends. Where the line is wide, the segment draws all of a
- * pixel whose centre lies before the join. Where it is thin, many segments may meet in a pixel, and each takes its
+/* Returns the fraction of a pixel that a segment draws at one of its ends. If the line is wide, the segment draws all
+ * of a pixel whose centre is before the join. If it is thin, many segments may meet in a pixel, and each takes its
  * share. */
 CAMBER_FN camber_real camber_cut_share(CAMBER_IN(camber_pixel) at, CAMBER_IN(camber_seen_edge) cut, float wide,
                                        camber_mask others) {
@@ -235,14 +238,14 @@ CAMBER_FN camber_real camber_cut_share(CAMBER_IN(camber_pixel) at, CAMBER_IN(cam
     return share * (1.0f - wide) + whole * wide;
 }
 
-/* The part of the area that the segment draws, and no neighbour. */
+/* Returns the part of the area that the segment draws, and no neighbour. */
 CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     const camber_mask at_a = CAMBER_BOTH(at->fa<-CAMBER_TIE(at), at->past_a> p->owner_a);
     const camber_mask at_b = CAMBER_BOTH(at->fb >= CAMBER_TIE(at), at->past_b > p->owner_b);
     const camber_real share = camber_cut_share(at, CAMBER_REF(p->cut_a), p->wide_a, at_a) +
                               camber_cut_share(at, CAMBER_REF(p->cut_b), p->wide_b, at_b) - 1.0f;
 #ifdef CAMBER_GLSL
-    const camber_mask out_of_reach = false; /* the triangles bound it */
+    const camber_mask out_of_reach = false; /* the triangles limit it */
 #else
     const camber_real along = at->seen_x * p->axis_x + at->seen_y * p->axis_y - p->axis_at;
     const camber_real aside = at->seen_y * p->axis_x - at->seen_x * p->axis_y - p->aside_at;
@@ -251,8 +254,8 @@ CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return CAMBER_EITHER(out_of_reach, share < 0.0f) ? CAMBER_REAL(0.0f) : area * share;
 }
 
-/* The normal of the nearest edge, into the stroke, in the picture; where that is a flat join's, the side's. Returns
- * whether it has one. */
+/* Computes the normal of the nearest edge, into the stroke, in the picture; if that edge is a flat join's, the normal
+ * of the side. Returns whether it has one. */
 CAMBER_FN camber_mask camber_edge_normal(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                          CAMBER_OUT(camber_real) nx, CAMBER_OUT(camber_real) ny) {
     camber_real x, y;

@@ -1,9 +1,9 @@
-/* The coefficients of strokes: all that is the same for each pixel of a segment.
+/* The coefficients of strokes: everything that is the same for all pixels of a segment.
  *
- * Input: a segment's words, or single ones of them. Output: camber_edge, from which stroke.h finds areas. The same text
- * is compiled for one segment (camber_edge) and, on a device, for as many as a vector has lanes (camber_edges):
- * stroke.h includes this file for each, behind CAMBER_COEF and its like. So it is no header. In shaders the
- * vertices' stage calls its functions one by one, since varyings hold what they return. */
+ * Input: a segment's words, or single ones of them. Output: camber_edge, from which stroke.h computes areas. The same
+ * code is compiled for one segment (camber_edge) and, on a device, for as many as a vector has lanes (camber_edges):
+ * stroke.h includes this file for each, after defining CAMBER_COEF and the like. So it is not a header. In shaders the
+ * vertex stage calls its functions one by one, because varyings hold their results. */
 
 /* How a straight edge cuts pixels: half a pixel's extent along its normal, the smaller component of that, and how the
  * covered area grows, linearly and over a pixel's corners. */
@@ -34,7 +34,7 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE void camber_profile_of(CAMBER_COEF x, C
     e->curve = linear ? none : curve;
 }
 
-/* The share of a pixel inside an edge, whose centre lies s px inside it (below 0: outside). */
+/* Returns the fraction of a pixel inside an edge, with its centre s px inside it (below 0: outside). */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE camber_real camber_covered(camber_real s, CAMBER_IN(CAMBER_PROFILE) e) {
     const camber_real none = CAMBER_REAL(0.0f), corner = CAMBER_REAL(e->corner);
     const camber_real left = e->extent - CAMBER_FABS(s), rest = CAMBER_MORE(left, none);
@@ -45,27 +45,28 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE camber_real camber_covered(camber_real 
 
 /* ---- Ends ---- */
 
-/* Where a flat cap lies, px past the end. */
+/* Returns where a flat cap is, in px past the end. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_flat_from(CAMBER_COEF_WORDS kind, CAMBER_COEF half_width) {
     const CAMBER_COEF none = CAMBER_COEF_OF(0.0f), never = CAMBER_COEF_OF(CAMBER_NEVER_PX);
     return kind == CAMBER_ENDS_BUTT ? none : kind == CAMBER_ENDS_SQUARE ? half_width : never;
 }
 
-/* Where a round end begins, px past the end. */
+/* Returns where a round end begins, in px past the end. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_round_from(CAMBER_COEF_WORDS kind) {
     const CAMBER_COEF none = CAMBER_COEF_OF(0.0f), never = CAMBER_COEF_OF(CAMBER_NEVER_PX);
     return CAMBER_EITHER(kind == CAMBER_ENDS_ROUND, kind == CAMBER_ENDS_SPLIT_ROUND) ? none : never;
 }
 
-/* Where the cap of a thin line ends, px past the end. The arc alone would take such a line for one that crosses the
- * pixel. It is cut straight there, and has a half circle's area: pi / 4 of half the width. */
+/* Returns where the cap of a thin line ends, in px past the end. The formula for arcs would treat such a line as one
+ * that crosses the whole pixel. So it is cut straight there, where the cap has the area of a half circle: pi / 4 of
+ * half the width. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_cap_until(CAMBER_COEF half_width) {
     const CAMBER_COEF more = half_width - 0.5f, past = more > 0.0f ? more : CAMBER_COEF_OF(0.0f);
     return 0.5f + 0.785398f * half_width + 1.2f * past;
 }
 
-/* The same for an end that may be no round cap. How wide a line with a pitch is seen differs from pixel to pixel: there
- * it counts from what is seen. */
+/* The same for an end that may not be a round cap. With a pitch, the width of a line in the picture differs from pixel
+ * to pixel, so it is computed from what is seen. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_tip_from(CAMBER_COEF_MASK is_round_cap, CAMBER_COEF half_width) {
 #if CAMBER_STROKE_PITCHED
     CAMBER_UNUSED(half_width)
@@ -76,14 +77,14 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_tip_from(CAMBER_COEF_MASK is_round
     return is_round_cap ? until : CAMBER_COEF_OF(CAMBER_NEVER_PX);
 }
 
-/* Where any end is flat, px past it: a cap, or a join by camber_flat_join. */
+/* Returns where any flat end is, in px past it: a cap, or a join by camber_flat_join. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_flat_end_from(CAMBER_COEF_WORDS end, CAMBER_COEF half_width) {
     const CAMBER_COEF stub = (CAMBER_COEF_NUMBER(CAMBER_END_FLAT(end)) - 1.0f) * CAMBER_STUB_UNIT_PX;
     return stub < 0.0f ? camber_flat_from(CAMBER_END_KIND(end), half_width) : stub;
 }
 
-/* How far past its end a segment still draws pixels that lie behind the bisector, px. own: camber_owner_side; is_flat:
- * it ends in an edge there. */
+/* Returns how far past its end a segment still draws pixels beyond the bisector, in px. own: camber_owner_side;
+ * is_flat: it ends in an edge there. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_owner_from(CAMBER_COEF_MASK is_cap, CAMBER_COEF_MASK own,
                                                          CAMBER_COEF_MASK is_flat) {
     const CAMBER_COEF past = is_flat ? CAMBER_COEF_OF(CAMBER_PAD_PX) : CAMBER_COEF_OF(0.0f);
@@ -98,18 +99,20 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_owner_from(CAMBER_COEF_MASK is_cap
 CAMBER_STRUCT(CAMBER_EDGE) {
     CAMBER_COEF ax, ay, bx, by, ux, uy, nax, nay, nbx, nby;
     CAMBER_COEF length, half_width;
-    CAMBER_PROFILE side;          /* of its sides, and of flat caps */
+    CAMBER_PROFILE side;          /* profile of its sides, and of flat caps */
     CAMBER_COEF ca, sa, cb, sb;   /* cosine and sine of half the turn at A and at B */
     CAMBER_COEF flat_a, flat_b;   /* camber_flat_end_from */
     CAMBER_COEF round_a, round_b; /* camber_round_from */
     CAMBER_COEF tip_a, tip_b;     /* camber_tip_from */
-    CAMBER_COEF owner_a, owner_b; /* behind the bisector and this far past the end is the neighbour's, px */
+    /* beyond the bisector and farther than this past the end, pixels are the neighbour's, in px */
+    CAMBER_COEF owner_a, owner_b;
     CAMBER_COEF_WORDS end_a, end_b;
     CAMBER_COEF_MASK linear, thin, tips, capped, sharp;
 };
 
-/* Works out all that does not stand in the segment's words. It is always inlined, so that the compiler drops what the
- * caller does not read. The result goes through a pointer, because oclgrind does not follow large ones otherwise. */
+/* Computes everything that is not in the segment's words. It is always inlined, so that the compiler drops what the
+ * caller does not read. The result is returned through a pointer, because oclgrind does not handle large return values.
+ */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE void camber_edge_finish(CAMBER_COEF_WORDS flags, CAMBER_EDGE *p) {
     const CAMBER_COEF_WORDS end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
     const CAMBER_COEF h = p->half_width;

@@ -1,4 +1,4 @@
-/* The program that turns slots into records and indices, built once a method. */
+/* The program that turns slots into records and indices, built once per method. */
 #include "classify.cl"
 
 #include "scan.cl"

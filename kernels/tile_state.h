@@ -1,11 +1,12 @@
-/* The accumulator of a tile: what rasterize keeps for the tile's pixels while it draws segments into them.
+/* The accumulator of a tile: the state that rasterize keeps for the tile's pixels while it draws segments into them.
  *
- * Input: areas of pixels, brush by brush, in the order from front to back. Output: the tile's pixels. Each brush is
- * gathered first, as the share of light that it lets through. Then it is put under what its level has so far: the
- * picture, the open group, or the open layer. A closed layer or group goes under the level below it in the same way.
+ * Input: areas of pixels, brush by brush, from front to back. Output: the tile's pixels. Each brush is accumulated
+ * first, as the fraction of light that it lets through. Then it is composited under what its level has so far: the
+ * picture, the open group, or the open layer. A closed layer or group is composited under the level below it in the
+ * same way.
  *
- * The sixteen pixels of a cell lie in CAMBER_VECTORS vectors. The kernels have one or two, and the twin, which compiles
- * this file too, has sixteen of one lane. What a cell has not received yet is not stored: the sets of cells say so. */
+ * The sixteen pixels of a cell are in CAMBER_VECTORS vectors. The kernels have one or two, and the twin, which compiles
+ * this file too, has sixteen of one lane. A cell that has received nothing is not stored: the sets of cells say so. */
 #ifndef CAMBER_KERNELS_TILE_STATE_H
 #define CAMBER_KERNELS_TILE_STATE_H
 
@@ -25,30 +26,30 @@ typedef uint16_t camber_u16;
 #define CAMBER_LAYER 2
 #define CAMBER_LEVELS 3
 
-/* The twin draws plain frames by the code for masked layers, and finds none. */
+/* The twin draws plain frames with the code for masked layers, of which it finds none. */
 #if !defined(CAMBER_DEVICE) || CAMBER_RASTER_RICH
 #define CAMBER_HAS_MASKS 1
 #else
 #define CAMBER_HAS_MASKS 0
 #endif
 
-/* Areas and windings of a brush of areas are whole numbers of such parts of a pixel: sums of them have no order, and
- * edges that run to and fro add up to nothing. */
+/* Areas and winding numbers of a brush of polygons are integers in fixed point, with this for a whole pixel: their sums
+ * do not depend on the order, and edges in opposite directions cancel. */
 #define CAMBER_AREA_ONE 65536
-/* How many edges of a brush are kept. */
+/* The most edges of a brush that are kept. */
 #define CAMBER_KEPT_MOST (CAMBER_OWN_SIDE == 1 ? CAMBER_OVERLAP_EDGES + 1 : CAMBER_PLACED_MOST)
-/* A brush of areas: how its edges change a tile (area.h). */
+/* A brush of polygons: how its edges change a tile (area.h). */
 typedef struct camber_area_state {
-    /* The edges of a cell change its pixels, and all edges left of a cell change it and those right of it: how much
-     * more they are wound around. The last column lies right of the tile. */
+    /* Changes of the winding: the edges of a cell change its pixels, and all edges left of a cell change it and the
+     * cells right of it. The last column is right of the tile. */
     camber_words changes[CAMBER_OWN_SIDE][CAMBER_OWN_SIDE + 1][2][CAMBER_VECTORS];
-    /* Just below the tops of rows of cells, and the tile's lower end: how many times more the rings wind around a
-     * cell's left end, and all right of it, than around what lies left of that. */
+    /* Just below the tops of rows of cells, and at the tile's lower end: the change of the winding number at a cell's
+     * left side, for it and everything right of it. */
     int turns[CAMBER_TILE_CELLS + 1][CAMBER_TILE_CELLS + 1];
     camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
-    int has_edges;    /* else nothing else is set */
+    int has_edges;    /* if false, nothing else is set */
     int placed_count; /* of the tile */
-    int kept_count;   /* those that are here: a cell's own alone, or all unless they are more than CAMBER_PLACED_MOST */
+    int kept_count;   /* edges that are here: only a cell's own, or all unless they are more than CAMBER_PLACED_MOST */
     float placed[CAMBER_PLACED_WORDS][CAMBER_KEPT_MOST + CAMBER_LANES];
 } camber_area_state;
 
@@ -58,29 +59,31 @@ typedef struct camber_area_state {
 #define CAMBER_AREA_SUM 1
 
 typedef struct camber_tile_state {
-    /* Numbers of a cell that are used together lie together: planes of 4 KB hinder each other in the first cache. */
+    /* Numbers of a cell that are used together are stored together, because planes of 4 KB conflict in the first-level
+     * cache. */
     camber_real brush[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* let through */
-    /* A union's, of areas and of normals. An area's: what is inside of the pixels, and the sums of their windings. */
+    /* For a union: sums of areas and of normals. For polygons: what is inside each pixel, and the sums of the winding
+     * numbers. */
     camber_real sums[CAMBER_OWN_CELLS][3][CAMBER_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
     camber_real level[CAMBER_LEVELS][CAMBER_OWN_CELLS][4][CAMBER_VECTORS];
-    camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; a bit each */
-    camber_u64 done;                            /* cells in which nothing below shows */
-    camber_u64 filled;                          /* cells in which no more of the same brush shows */
-    camber_u64 whole; /* cells that the brush covers and lets nothing through: of one colour */
+    camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; one bit each */
+    camber_u64 done;                            /* cells in which nothing below shows through */
+    camber_u64 filled;                          /* cells in which no more of the same brush would show */
+    camber_u64 whole; /* cells that the brush covers completely and opaquely: they have one colour */
     int is_open[CAMBER_LEVELS];
-    int winding;                             /* of the brush's rings around the tile's top left corner */
+    int winding;                             /* winding number of the brush's rings at the tile's top left corner */
     camber_u8 blend_count[CAMBER_OWN_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
     camber_area_state area;
 #if CAMBER_HAS_MASKS
     camber_brush_ext brush_ext; /* the same brush's extension */
-    float layer_alpha;          /* of a masked layer's colour, which covers as if it were opaque; else 1 */
-    camber_real mask[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* of a masked layer: its alpha; its level has what it covers */
+    float layer_alpha;          /* alpha of a masked layer's colour, which covers as if it were opaque; else 1 */
+    camber_real mask[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* alpha of a masked layer; its coverage is in its level */
 #endif
 } camber_tile_state;
 
-/* The number of the lowest bit that is set. */
+/* Returns the number of the lowest bit that is set. */
 CAMBER_FN int camber_lowest(camber_u64 bits) {
 #ifdef CAMBER_DEVICE
     return (int)popcount((bits - 1) & ~bits);
@@ -101,12 +104,12 @@ CAMBER_FN int camber_lets_nothing(const camber_real *through) {
     return camber_most_of(most) < CAMBER_NOTHING_PX;
 }
 
-/* The level that a brush is drawn into. */
+/* Returns the level that a brush is drawn into. */
 CAMBER_FN int camber_tile_level(const camber_tile_state *c) {
     return c->is_open[CAMBER_LAYER] ? CAMBER_LAYER : c->is_open[CAMBER_GROUP] ? CAMBER_GROUP : CAMBER_PICTURE;
 }
 
-/* cells: those that are drawn. first: the brush that no segment has drawn by yet. */
+/* Begins a tile. cells: those that are drawn. first: the first brush. */
 CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_GLOBAL const camber_brush *first) {
     for (int i = 0; i < CAMBER_OWN_CELLS; i++)
         c->blend_count[i] = 0;
@@ -125,7 +128,7 @@ CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_
 #endif
 }
 
-/* Whether nothing shows of the segments to come. A cell that is filled in a layer or group may still be translucent. */
+/* Whether no further segment would show. A cell that is filled in a layer or group may still be translucent. */
 CAMBER_FN int camber_tile_is_full(const camber_tile_state *c) {
     const int opaque = c->now.mode != CAMBER_BRUSH_UNION && camber_tile_level(c) == CAMBER_PICTURE;
     return (c->done | (opaque ? c->filled : 0)) == ~(camber_u64)0;
@@ -133,7 +136,7 @@ CAMBER_FN int camber_tile_is_full(const camber_tile_state *c) {
 
 /* ---- Brushes ---- */
 
-/* Cells that the brush is about to draw in: they have nothing of it yet. */
+/* Prepares cells that the brush is about to draw in, and has not drawn in yet. */
 CAMBER_FN void camber_tile_take_cells(camber_tile_state *c, camber_u64 cells) {
     for (camber_u64 left = cells & ~c->brushed; left; left &= left - 1) {
         const int i = camber_lowest(left);
@@ -151,8 +154,8 @@ CAMBER_FN void camber_tile_put_over(camber_tile_state *c, int i, int v, camber_r
     c->brush[i][v] *= 1.0f - area * c->now.a;
 }
 
-/* The same for a union. (nx, ny): the normal of the nearest edge. thick: the pixels where the line has such a normal.
- */
+/* The same for a union. (nx, ny): the normal of the nearest edge. thick: the pixels in which the line has such a
+ * normal. */
 CAMBER_FN void camber_tile_put_union(camber_tile_state *c, int i, int v, camber_real area, camber_mask thick,
                                      camber_real nx, camber_real ny) {
     const camber_real none = CAMBER_REAL(0.0f), edge = area * (1.0f - area);
@@ -169,20 +172,20 @@ CAMBER_FN void camber_tile_count(camber_tile_state *c, int i) {
         c->filled |= (camber_u64)1 << i;
 }
 
-/* Draws a cell that lies inside the stroke as a whole. */
+/* Draws a cell that is completely inside the stroke. */
 CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
     const float through = c->now.mode == CAMBER_BRUSH_UNION ? 0.0f : 1.0f - c->now.a;
     for (int v = 0; v < CAMBER_VECTORS; v++)
         c->brush[i][v] *= through;
     if (through == 0.0f) {
         c->filled |= (camber_u64)1 << i;
-        c->whole |= c->now.mode == CAMBER_BRUSH_UNION ? 0 : (camber_u64)1 << i; /* a union's opacity comes later */
+        c->whole |= c->now.mode == CAMBER_BRUSH_UNION ? 0 : (camber_u64)1 << i; /* a union's opacity is applied later */
     }
 }
 
 /* ---- Levels ---- */
 
-/* A level is about to be drawn in: a cell that has nothing of it yet is empty. */
+/* Prepares a level that is about to be drawn in: a cell that has nothing of it yet becomes empty. */
 CAMBER_FN void camber_tile_take_level(camber_tile_state *c, int level, int i) {
     const camber_u64 bit = (camber_u64)1 << i;
     if (c->touched[level] & bit)
@@ -204,8 +207,8 @@ CAMBER_FN void camber_tile_look(camber_tile_state *c, int level, int i) {
         c->done |= (camber_u64)1 << i;
 }
 
-/* The share of light that a level lets through of a vector. is_new: it has nothing of the cell yet, and stores nothing.
- */
+/* Returns the fraction of light that a level lets through in a vector. is_new: the level has nothing of the cell yet,
+ * and nothing is stored. */
 CAMBER_FN camber_real camber_tile_through(const camber_tile_state *c, int level, int i, int v, int is_new) {
     return is_new ? CAMBER_REAL(1.0f) : c->level[level][i][3][v];
 }
@@ -215,7 +218,7 @@ CAMBER_FN void camber_tile_add(camber_real *stored, camber_real more, int is_new
     *stored = is_new ? more : *stored + more;
 }
 
-/* Puts what the brush has gathered of a vector under what its level has. */
+/* Composites what the brush has accumulated in a vector under what its level has. */
 CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, int v, int is_new) {
     camber_real area = 1.0f - c->brush[i][v];
     if (c->now.mode == CAMBER_BRUSH_UNION)
@@ -252,7 +255,7 @@ CAMBER_FN void camber_tile_close_brush(camber_tile_state *c) {
     c->brushed = c->filled = c->whole = 0;
 }
 
-/* The area that a layer or group covers of a vector's pixels. */
+/* Returns the area of a vector's pixels that a layer or group covers. */
 CAMBER_FN camber_real camber_tile_covered(const camber_tile_state *c, int level, int i, int v) {
 #if CAMBER_HAS_MASKS
     if (level == CAMBER_LAYER && c->now.mode == CAMBER_BRUSH_MASKED)
@@ -261,7 +264,7 @@ CAMBER_FN camber_real camber_tile_covered(const camber_tile_state *c, int level,
     return 1.0f - c->level[level][i][3][v];
 }
 
-/* Puts a layer or a group under what the level below has. */
+/* Composites a layer or a group under what the level below has. */
 CAMBER_FN void camber_tile_close_level(camber_tile_state *c, int level, float opacity) {
     const int below = level == CAMBER_LAYER && c->is_open[CAMBER_GROUP] ? CAMBER_GROUP : CAMBER_PICTURE;
     for (camber_u64 left = c->touched[level]; left; left &= left - 1) {
@@ -279,7 +282,8 @@ CAMBER_FN void camber_tile_close_level(camber_tile_state *c, int level, float op
     c->is_open[level] = 0;
 }
 
-/* Closes the brush, and the layer and group that the next brush does not belong to. Opens those that it does. */
+/* Closes the brush, and the layer and group if the next brush does not belong to them. Opens those that it belongs to.
+ */
 CAMBER_FN void camber_tile_change_brush(camber_tile_state *c, camber_brush next) {
     camber_tile_close_brush(c);
     if (c->is_open[CAMBER_LAYER] && next.layer != c->now.layer)
@@ -291,7 +295,8 @@ CAMBER_FN void camber_tile_change_brush(camber_tile_state *c, camber_brush next)
     c->now = next;
 }
 
-/* Closes all that is open, but for a brush that draws straight into the picture: camber_tile_pixels closes that. */
+/* Closes everything that is open, except a brush that draws directly into the picture, which camber_tile_pixels closes.
+ */
 CAMBER_FN void camber_tile_end(camber_tile_state *c) {
     if (camber_tile_level(c) == CAMBER_PICTURE)
         return;
@@ -305,7 +310,7 @@ CAMBER_FN void camber_tile_end(camber_tile_state *c) {
 /* ---- Colours that change from pixel to pixel ---- */
 
 #if CAMBER_HAS_MASKS
-/* The brush's extension, after the brush. */
+/* Sets the brush's extension. Call it after setting the brush. */
 CAMBER_FN void camber_tile_use_ext(camber_tile_state *c, camber_brush_ext brush_ext) {
     c->brush_ext = brush_ext;
     c->layer_alpha = 1.0f;
@@ -315,7 +320,7 @@ CAMBER_FN void camber_tile_use_ext(camber_tile_state *c, camber_brush_ext brush_
     }
 }
 
-/* Puts such colours of a vector straight under what the level has. The level has been taken. */
+/* Composites such colours of a vector directly under what the level has. The level must have been prepared. */
 CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber_real area, const camber_real *color) {
     const int level = camber_tile_level(c);
     const camber_real through = c->level[level][i][3][v], seen = through * area * c->now.a;
@@ -330,7 +335,7 @@ CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber
     }
 }
 
-/* Counts a segment of such colours that was drawn into a cell; whole: it lies inside the stroke. */
+/* Counts a segment of such colours that was drawn into a cell; whole: the cell is inside the stroke. */
 CAMBER_FN void camber_tile_count_colors(camber_tile_state *c, int i, int whole) {
     const int level = camber_tile_level(c);
     if (++c->blend_count[i] % CAMBER_LOOK_EVERY && !whole)
@@ -346,13 +351,13 @@ CAMBER_FN void camber_tile_count_colors(camber_tile_state *c, int i, int whole) 
 
 /* ---- Pixels ---- */
 
-/* A channel in 0 to 255, rounded. */
+/* Returns a channel from 0 to 255, rounded. */
 CAMBER_FN camber_words camber_channel(camber_real value) {
     const camber_real scaled = value * 255.0f + 0.5f, least = scaled > 0.0f ? scaled : CAMBER_REAL(0.0f);
     return CAMBER_TO_WORDS(least < 255.0f ? least : CAMBER_REAL(255.0f));
 }
 
-/* RGBA8 of premultiplied colours, red in the lowest byte. */
+/* Returns RGBA8 of premultiplied colours, red in the lowest byte. */
 CAMBER_FN camber_words camber_rgba(camber_real r, camber_real g, camber_real b, camber_real a) {
     return camber_channel(r) | camber_channel(g) << 8 | camber_channel(b) << 16 | camber_channel(a) << 24;
 }
@@ -362,7 +367,7 @@ CAMBER_FN int camber_tile_has_pixels(const camber_tile_state *c, int i) {
     return ((c->touched[CAMBER_PICTURE] | c->brushed) >> i & 1u) != 0u;
 }
 
-/* The pixels of a vector, over the background, after camber_tile_end. To be called once for each vector. */
+/* Returns the pixels of a vector, over the background. Call it after camber_tile_end, once for each vector. */
 CAMBER_FN camber_words camber_tile_pixels(camber_tile_state *c, int i, int v, const float *back) {
     if (c->brushed >> i & 1u)
         camber_tile_close_vector(c, CAMBER_PICTURE, i, v, !(c->touched[CAMBER_PICTURE] >> i & 1u));
@@ -372,7 +377,7 @@ CAMBER_FN camber_words camber_tile_pixels(camber_tile_state *c, int i, int v, co
                        c->level[CAMBER_PICTURE][i][2][v] + through * back[2], 1.0f - through + through * back[3]);
 }
 
-/* The pixels of a cell that nothing was drawn in. */
+/* Returns the pixels of a cell that nothing was drawn in. */
 CAMBER_FN camber_words camber_bare_pixels(const float *back) {
     const camber_real none = CAMBER_REAL(0.0f), through = CAMBER_REAL(1.0f);
     return camber_rgba(none + through * back[0], none + through * back[1], none + through * back[2],

@@ -1,10 +1,11 @@
-/* Transposes as many vectors as a vector has lanes: from words of a segment each to segments of a word each. */
+/* Transposes as many vectors as a vector has lanes: from vectors that hold the words of one segment to vectors that
+ * hold one word of all segments. */
 #ifndef CAMBER_TRANSPOSE_CL
 #define CAMBER_TRANSPOSE_CL
 
 #include "segment.h"
 
-/* The lanes of two vectors in turn: of their lower or of their upper halves. */
+/* Returns the lanes of two vectors alternately: those of their lower or of their upper halves. */
 static inline camber_real put_together(camber_real a, camber_real b, int upper) {
 #if CAMBER_LANES == 1
     return upper ? b : a;
@@ -19,7 +20,7 @@ static inline camber_real put_together(camber_real a, camber_real b, int upper) 
 #endif
 }
 
-/* As many perfect shuffles as a lane's number has bits transpose the words. */
+/* Transposes the words, by as many perfect shuffles as a lane's number has bits. */
 static inline void turn_over(camber_real *words) {
 #pragma unroll
     for (int lanes = CAMBER_LANES; lanes > 1; lanes /= 2) {
@@ -35,7 +36,7 @@ static inline void turn_over(camber_real *words) {
     }
 }
 
-/* Four vectors with four words of each lane in turn become four vectors of a word each. */
+/* Turns four vectors, which have four words of each lane in turn, into four vectors of one word each. */
 static inline void turn_fours_over(const camber_words *v, camber_words *words) {
 #if CAMBER_LANES == 1
     for (int k = 0; k < 4; k++)

@@ -23,7 +23,7 @@ struct camber_budget {
 };
 
 /* Changes what a budget allows, which any thread may do. 0: the calls that run fail as soon as they need memory.
- * Inline, because the tool ends a reading so, and libcamber hides its own. */
+ * Inline, because the tool stops reading this way, and libcamber hides its own symbols. */
 static inline void camber_budget_allow(camber_budget *budget, uint64_t most_bytes) {
     atomic_store(&budget->most_bytes, most_bytes);
 }
@@ -40,10 +40,10 @@ struct camber_context {
     camber_spent spent;
     uint64_t next_serial;        /* the next number for polylines; meshes recognize the ones they have uploaded by it */
     const void *gdal;            /* the calls of GDAL's reader, which formats/gdal.c has loaded. NULL: none yet */
-    camber_device_info *devices; /* that camber_device_list has found, looked for once */
+    camber_device_info *devices; /* found by camber_device_list, which looks only once */
     size_t device_count;
-    bool saves_shared; /* cache.c: files are saved for all users of the machine */
-    void *spare;       /* a block for camber_alloc_spare; NULL: none */
+    bool saves_shared; /* cache.c: files are saved to the folder that all users share */
+    void *spare;       /* a freed block for camber_alloc_spare; NULL: none */
 };
 
 /* camber_alloc leaves the memory uncleared, camber_alloc_zero clears it. Both return NULL and log an error if there is
@@ -54,11 +54,13 @@ void *camber_alloc_zero(camber_context *context, size_t count, size_t size_bytes
  * pointer to elements, and capacity counts elements. On failure returns false and keeps the old block. */
 bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t needed, size_t size_bytes);
 void camber_free(camber_context *context, void *block);
-/* For a block that each frame makes anew: one that was freed is kept for the next, if it is large and memory has no
- * bound. Fresh pages cost more than to fill them. The contents are whatever was left. */
+/* Allocates a block that is needed again in each frame: a freed block is kept for the next frame, if it is large and
+ * there is no memory limit, because fresh pages cost more than filling them. The contents are whatever was left there.
+ */
 void *camber_alloc_spare(camber_context *context, size_t count, size_t size_bytes);
 void camber_free_spare(camber_context *context, void *block);
-/* Resizes without logging. block may be NULL. Returns NULL if there is no memory, and keeps the block as it was. */
+/* Resizes a block without logging. block may be NULL. Returns NULL if there is no memory, and keeps the block as it
+ * was. */
 void *camber_resize_quietly(camber_context *context, void *block, size_t size_bytes);
 char *camber_copy_string(camber_context *context, const char *text);
 
@@ -74,7 +76,7 @@ void camber_log_soften(camber_context *context, camber_soft_log *kept);
 void camber_log_restore(camber_context *context, const camber_soft_log *kept);
 void camber_progress(camber_context *context, const char *stage, double fraction);
 
-/* Tells who has named a file: the caller, or a style, whose files must be inside the context's root. */
+/* Says who named a file: the caller, or a style, whose files must be inside the context's root. */
 typedef enum camber_file_naming {
     CAMBER_NAMED_BY_CALLER = 0,
     CAMBER_NAMED_BY_STYLE,
@@ -83,7 +85,7 @@ typedef enum camber_file_naming {
 /* ---- Budget ---- */
 
 void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc);
-/* Counts memory as used, also memory that the allocator does not manage. false: it exceeds the budget; report that by
+/* Counts memory as used, also memory that the allocator does not manage. false: it exceeds the budget; report that with
  * camber_budget_fail. */
 bool camber_budget_take(camber_context *context, uint64_t size_bytes);
 void camber_budget_give(camber_context *context, uint64_t size_bytes);
@@ -93,16 +95,16 @@ camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes);
 camber_status camber_budget_check_drivers(camber_context *context);
 /* Starts counting for a new set of features. */
 void camber_budget_begin(camber_context *context);
-/* Counts tiles. Messages show name. */
+/* Counts tiles. name is used in messages. */
 camber_status camber_budget_take_tiles(camber_context *context, const char *name, uint64_t count);
-/* Counts steps of a database. false: it has used up all that it may take. */
+/* Counts steps of a database. false: it has used up its limit. */
 bool camber_budget_take_steps(camber_context *context, uint64_t count);
 /* Adds the size of a file of tiles that is about to be read; the limit for unpacked bytes grows with it. */
 void camber_budget_open(camber_context *context, uint64_t file_bytes);
-/* Counts bytes that were unpacked from a tile; and tells how many more may be unpacked. */
+/* These count bytes that were unpacked from a tile, and say how many more may be unpacked. */
 camber_status camber_budget_unfold(camber_context *context, const char *name, uint64_t size_bytes);
 uint64_t camber_budget_unfolds(const camber_context *context);
-/* Lets the same tiles be read a second time without counting twice. */
+/* Lets the same tiles be read again without counting them twice. */
 void camber_budget_read_again(camber_context *context);
 
 /* ---- Files ---- */
@@ -118,13 +120,13 @@ camber_status camber_file_open(camber_context *context, const char *path, camber
 /* Makes the same checks for a file that another library will open by its path. */
 camber_status camber_file_check(camber_context *context, const char *path, camber_file_naming naming,
                                 uint64_t *size_bytes);
-/* Logs why a file cannot be read (cause is an errno), and returns the status for it. */
+/* Logs why a file cannot be read (cause is an errno), and returns the status for that. */
 camber_status camber_file_fail(camber_context *context, const char *path, int cause);
-/* Reads a whole file and adds a 0 behind its end. Free *bytes with camber_free. Returns the same as camber_file_open,
- * and CAMBER_ERROR_MEMORY. */
+/* Reads a whole file and appends a 0. Free *bytes with camber_free. Returns the errors of camber_file_open, and
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
                                size_t *size_bytes);
-/* Reads a file of a folder by its name within it, and follows no link on the way from the folder to it. Returns
+/* Reads a file in a folder by its relative name, and follows no link on the way from the folder to it. Returns
  * CAMBER_ERROR_NOT_FOUND without a message. */
 camber_status camber_read_file_below(camber_context *context, const char *folder, const char *name, char **bytes,
                                      size_t *size_bytes);
@@ -153,7 +155,7 @@ static inline uint64_t camber_mix_point(uint64_t hash, const double *point) {
 
 enum { CAMBER_FOLDER_SIZE = 1024 };
 
-/* Whether there is a cache folder of this user. */
+/* Whether this user has a cache folder. */
 bool camber_cache_is_on(const camber_context *context);
 /* Reads a file of the user's cache. Free *bytes with camber_free. false: a miss. */
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
@@ -164,13 +166,13 @@ bool camber_cache_can_save(const camber_context *context);
 /* Writes a temporary file and renames it, so that readers see the whole file or none. */
 bool camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes);
 
-/* Switches saving to the shared folder, if this user may write there, or back. */
+/* Switches saving to the shared folder, if this user may write there, or back to the user's own. */
 void camber_cache_share(camber_context *context, bool wanted);
-/* The folder that files are saved to; makes it if it is missing. false: there is none. */
+/* Writes the folder that files are saved to, and makes it if it is missing. false: there is none. */
 bool camber_cache_folder(const camber_context *context, char folder[CAMBER_FOLDER_SIZE]);
 
-/* Locks a key among all processes that save to the same folder. Negative: no lock could be had within the time, and the
- * process works without one. */
+/* Locks a key among all processes that save to the same folder. A negative result means that the lock was not free in
+ * time, and the process works without it. */
 int camber_cache_lock(camber_context *context, uint64_t key, double longest_ms);
 void camber_cache_unlock(int lock);
 

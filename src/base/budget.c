@@ -1,7 +1,7 @@
 /* Limits what a file can make a run use: memory, tiles, steps of databases, and bytes unpacked from archives. All
- * limits are here, so that a hostile file ends in an error and not in a dead machine. Memory is counted by the
- * allocator; the limit is the caller's, or else three quarters of what the machine, the control group and ulimit leave
- * free. The other counts start anew with each set of features. */
+ * limits are here, so that a hostile file ends in an error and not in a dead machine. The allocator counts memory; the
+ * caller sets the limit, or else it is three quarters of what the machine, the control group and ulimit leave free. The
+ * other counts start again with each set of features. */
 #define _GNU_SOURCE /* RLIMIT_AS */
 
 #include "base/base.h"
@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 static const uint64_t TILES = UINT64_C(1) << 18, STEPS = UINT64_C(1) << 26, STEPS_A_TILE = 4096;
-/* An archive stores a tile that repeats only once: open water takes about 100 bytes a tile. */
+/* An archive stores a tile that repeats only once: open water takes about 100 bytes per tile. */
 static const uint32_t UNFOLD = 32;
 static const uint64_t UNFOLD_BYTES = 4 << 20, UNFOLD_BYTES_A_TILE = 128;
 /* Below this the machine is not asked for its free memory; few runs ever need more. */
@@ -51,7 +51,7 @@ uint64_t camber_budget_get_held_bytes(const camber_budget *budget) {
 
 /* ---- Free memory ---- */
 
-/* Reads the first number in a file, or the first one behind a word at the start of a line. */
+/* Reads the first number in a file, or the first one after a word at the start of a line. */
 static bool read_number(const char *path, const char *word, uint64_t *number) {
     char line[256];
     FILE *file = fopen(path, "re");
@@ -160,8 +160,8 @@ bool camber_budget_has(const camber_context *context, uint64_t size_bytes) {
     return size_bytes <= most && held <= most - size_bytes;
 }
 
-/* PoCL and its compiler end the process when they run out of address space. They were measured to need 0.8 GB on two
- * cores with a cold cache. Each thread takes a stack of 8 MB and a heap of 64 MB. */
+/* PoCL and its compiler end the process when they run out of address space. They needed 0.8 GB on two cores with a cold
+ * cache when this was measured. Each thread takes a stack of 8 MB and a heap of 64 MB. */
 camber_status camber_budget_check_drivers(camber_context *context) {
     const char *asked = getenv("POCL_MAX_PTHREAD_COUNT");
     const long threads = asked ? strtol(asked, NULL, 10) : sysconf(_SC_NPROCESSORS_ONLN);

@@ -1,7 +1,7 @@
 /* Keeps compiled kernels and linked shaders in small files, so that the next run need not compile them. They are in the
  * user's cache folder. Kernels may also be in a folder beside the library, which all users of the machine read:
  * camber_device_warm fills it when camber is installed. A file from there runs as code in the reader's process. So it
- * counts only if nobody but its owner can have written it, and the owner can also write the library. */
+ * is used only if nobody but its owner can have written it, and the owner can also write the library. */
 #define _GNU_SOURCE /* dladdr, F_OFD_SETLK, realpath */
 
 #include "base/base.h"

@@ -2,7 +2,7 @@
 #ifndef CAMBER_BASE_EMBEDDED_H
 #define CAMBER_BASE_EMBEDDED_H
 
-/* The programs of kernels/, each with all that it includes. */
+/* The programs of kernels/, each with everything that it includes. */
 extern const char camber_tessellate_kernels[], camber_cull_kernels[], camber_arc_length_kernels[];
 extern const unsigned long camber_tessellate_kernels_size, camber_cull_kernels_size, camber_arc_length_kernels_size;
 extern const char camber_offset_kernels[], camber_raster_kernels[];

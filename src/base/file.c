@@ -1,5 +1,5 @@
-/* Opens and reads the files that camber is given or that a style names. Before a file is read it is checked: it must be
- * a regular file, not the output, and if a style names it, inside the context's root. */
+/* Opens and reads the files that camber is given or that a style names. It checks a file before reading it: the file
+ * must be a regular file, not the output, and, if a style names it, inside the context's root. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "base/base.h"
@@ -77,7 +77,8 @@ static camber_status check_access(camber_context *context, const char *path, con
                        path);
 }
 
-/* Comes before the look whether the file exists: a style learns nothing about files outside the root. */
+/* This check comes before the check whether the file exists, so that a style learns nothing about files outside the
+ * root. */
 static camber_status check_root(camber_context *context, const char *path, camber_file_naming naming) {
     if (naming == CAMBER_NAMED_BY_CALLER || camber_file_is_reached(context, path))
         return CAMBER_OK;
@@ -131,8 +132,7 @@ static camber_status read_bytes(camber_context *context, int file, const char *p
     return got < 0 ? camber_file_fail(context, path, errno) : CAMBER_OK;
 }
 
-/* Reads an open file, and closes it. One that grows while it is read is read up to the size that it had when it was
- * opened. */
+/* Reads an open file and closes it. If it grows meanwhile, it is read up to the size that it had when it was opened. */
 static camber_status read_all(camber_context *context, const char *path, int file, uint64_t size, char **bytes,
                               size_t *size_bytes) {
     size_t done = 0;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Opens a file for reading and describes it: the caller may refuse a device or a pipe by what about says. Opening a
+/* Opens a file for reading and describes it: the caller can refuse a device or a pipe by looking at *about. Opening a
  * pipe without a writer does not wait, and about describes the opened file, so that nobody can swap it in between.
  * Returns a descriptor, or -1 with errno. */
 static inline int camber_open_file(const char *path, struct stat *about) {
@@ -21,9 +21,9 @@ static inline int camber_open_file(const char *path, struct stat *about) {
     return -1;
 }
 
-/* Opens a file of a folder, by its name within it: parts with slashes between them. The folder's own path may have
- * links, and the name may not: whoever fills a folder that somebody else serves cannot lead to other files. Otherwise
- * as camber_open_file; errno is ELOOP for a link. */
+/* Opens a file in a folder by its relative name, whose components have slashes between them. The folder's own path may
+ * contain links, but the name may not, so that whoever fills a folder that somebody else serves cannot make it lead to
+ * other files. Otherwise it works like camber_open_file; errno is ELOOP for a link. */
 static inline int camber_open_file_below(const char *folder, const char *name, struct stat *about) {
     int opened = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     for (bool is_last = false; opened >= 0 && !is_last;) {
@@ -42,7 +42,7 @@ static inline int camber_open_file_below(const char *folder, const char *name, s
             errno = ENAMETOOLONG;
         }
         int cause = errno;
-        /* The system says ENOTDIR of a link in place of a folder. */
+        /* The system reports ENOTDIR for a link in place of a folder. */
         if (opened < 0 && cause == ENOTDIR && fstatat(above, part, &found, AT_SYMLINK_NOFOLLOW) == 0 &&
             S_ISLNK(found.st_mode))
             cause = ELOOP;

@@ -1,10 +1,8 @@
 /* A camera that looks at the plane of the map at an angle, as MapLibre's does. It turns about the centre of the
- * picture, where one px of the plane is one px of the picture, and its field of view is given from the picture's bottom
- * to its top.
+ * picture, where one px of the plane is one px of the picture. Its field of view is the vertical one.
  *
  *     x, y   px of the plane, from the centre, y down          seen_x = x / depth
- *     depth  1 - fall * y: 1 in the middle, more behind it     seen_y = cosine * y / depth
- */
+ *     depth  1 - fall * y: 1 in the middle, more behind it     seen_y = cosine * y / depth */
 #ifndef CAMBER_BASE_PERSPECTIVE_H
 #define CAMBER_BASE_PERSPECTIVE_H
 
@@ -16,8 +14,8 @@
 
 typedef struct camber_perspective {
     double cosine, fall;
-    double nearest, farthest; /* depth at the picture's bottom, and the depth past which nothing is drawn */
-    double far_y;             /* y of the farthest depth in the picture, px from its centre: below 0 */
+    double nearest, farthest; /* depth at the picture's bottom, and the depth beyond which nothing is drawn */
+    double far_y;             /* y of the farthest depth in the picture, in px from its centre; negative */
 } camber_perspective;
 
 static inline double camber_perspective_depth(const camber_perspective *p, double seen_y) {
@@ -37,7 +35,7 @@ static inline camber_perspective camber_perspective_of(double pitch_deg, double 
     return p;
 }
 
-/* Counts the scanlines at the top of the picture that stay empty, because their middles are past the far plane. */
+/* Counts the scanlines at the top of the picture that stay empty because their middles are beyond the far plane. */
 static inline uint32_t camber_perspective_horizon(const camber_perspective *p, uint32_t height_px) {
     const double row = floor(0.5 * height_px + p->far_y + 0.5);
     return row > 0.0 ? (uint32_t)row : 0;

@@ -1,10 +1,10 @@
-/* The stages that run on the device: the one table of their names, and the times that they take. */
+/* The stages that run on the device: the only table of their names, and the times that they take. */
 #ifndef CAMBER_BASE_STAGES_H
 #define CAMBER_BASE_STAGES_H
 
 #include "camber.h"
 
-/* In the order in which they run. Each is named after its kernel. */
+/* The stages in the order in which they run. Each is named after its kernel. */
 typedef enum camber_stage_id {
     CAMBER_STAGE_CULL_COUNT,
     CAMBER_STAGE_CULL_EMIT,

@@ -1,14 +1,14 @@
-/* Frames that OpenCL draws: the list becomes a scene, which the rasterizer draws one area after the other; their pixels
- * are handed over as rows. */
+/* Draws frames in OpenCL: the list becomes a scene, which the rasterizer draws one area (a rectangle of the picture)
+ * after another; their pixels are handed over as rows. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
 #include <string.h>
 
-/* Largest sizes of an area: the counts of its tiles and its pixels are what its memory goes by. */
+/* Largest sizes of an area: its memory depends on its number of tiles and of pixels. */
 enum { AREA_PX = 16 * 1024 * 1024, AREA_SIDE_PX = CAMBER_TILE_PX * CAMBER_TILES_MAX };
 
-/* The area in the top left corner of the picture, as large as it can be: whole rows where they fit. */
+/* Returns the area in the top left corner of the picture, as large as it can be: whole rows if they fit. */
 static camber_raster_area first_area(const camber_renderer *renderer, const camber_frame *frame) {
     const camber_device *device = renderer->share.device;
     uint32_t side = AREA_SIDE_PX;
@@ -24,15 +24,16 @@ static camber_raster_area first_area(const camber_renderer *renderer, const camb
     return (camber_raster_area){.width = width, .height = frame->height < rows ? frame->height : rows};
 }
 
-/* Where the areas of a frame go. */
+/* Where the areas of a frame are written. */
 typedef struct destination {
     camber_rows_fn *rows;
     void *user;
-    camber_area_fn *draw; /* called in place of drawing. NULL: the rasterizer draws */
-    uint8_t *place; /* of the picture, into which kernels write. NULL: they write into a buffer of the rasterizer */
-    uint8_t *rgba;  /* rows of the picture, put together of several areas. NULL: an area's own rows are handed over */
+    camber_area_fn *draw; /* called instead of drawing. NULL: the rasterizer draws */
+    /* the picture, if kernels write into it in place. NULL: they write into a buffer of the rasterizer */
+    uint8_t *place;
+    uint8_t *rgba; /* rows of the picture, assembled from several areas. NULL: an area's own rows are handed over */
     uint32_t width;
-    double user_ms; /* that the user took with an area, which is no part of reading back */
+    double user_ms; /* time that the caller's callback took, which does not count as reading back */
 } destination;
 
 /* Copies the area into rows of the picture, or hands it over as it is. */
@@ -53,7 +54,7 @@ static camber_status take_area(camber_renderer *renderer, const camber_raster_ar
     return status;
 }
 
-/* Draws an area, as wide as the picture, in its place. */
+/* Draws an area that is as wide as the picture in place. */
 static camber_status draw_in_place(camber_renderer *renderer, const camber_raster_scene *scene,
                                    const camber_raster_area *area, const destination *to) {
     const camber_device *device = renderer->share.device;
@@ -64,10 +65,10 @@ static camber_status draw_in_place(camber_renderer *renderer, const camber_raste
     if (status == CAMBER_OK)
         status = camber_raster_draw_into(renderer->raster, scene, area, buffer);
     if (status == CAMBER_OK)
-        status = camber_raster_map(renderer->raster, &pixels); /* after which the host sees what kernels wrote */
+        status = camber_raster_map(renderer->raster, &pixels); /* after this the host sees what kernels wrote */
     if (status == CAMBER_OK)
         camber_raster_unmap(renderer->raster, pixels);
-    camber_device_settle(device); /* the memory is the caller's alone again */
+    camber_device_settle(device); /* afterwards only the caller uses the memory */
     camber_buffer_release(device, &buffer);
     return status;
 }
@@ -83,7 +84,7 @@ static void add_times(const camber_renderer *renderer, camber_frame_stats *stats
     camber_stage_times_add(&stats->times, CAMBER_STAGE_RASTERIZE, times.rasterize_ms);
 }
 
-/* Draws areas from left to right, of which area is the first. */
+/* Draws areas from left to right, starting with area. */
 static camber_status draw_across(camber_renderer *renderer, const camber_raster_scene *scene, camber_raster_area area,
                                  destination *to, camber_frame_stats *stats) {
     const uint32_t widest = area.width;
@@ -148,7 +149,7 @@ camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *fr
     return render_to(renderer, frame, &to, stats);
 }
 
-/* Whether kernels can write a picture where it is wanted: whole tiles, without gaps, in memory that they reach. */
+/* Whether kernels can write a picture in place: in whole tiles, without gaps, in memory that they reach. */
 static bool can_be_in_place(const camber_renderer *renderer, const camber_frame *frame, const camber_place *place) {
     return renderer->share.device->host_memory && first_area(renderer, frame).width == frame->width &&
            frame->width % CAMBER_TILE_PX == 0 && frame->height % CAMBER_TILE_PX == 0 &&

@@ -1,13 +1,13 @@
-/* Makes the rasterizer's scene of a draw list. A command becomes an input (polylines of a mesh), and a table with a row
- * for each of its mesh's rows. A row names a brush: its colour, its layer and group, and, beside it, its features.
- * Areas take the next brush wherever their fill changes.
+/* Makes the rasterizer's scene from a draw list. A command becomes an input (polylines of a mesh), and a table with a
+ * row for each of its mesh's rows. A row refers to a brush: its colour, its layer and group, and, in a second table,
+ * its features. Polygons take the next brush wherever their fill changes.
  *
- * Fills that lie below all lines become part of the background, and an opaque fill hides all inputs below it. */
+ * Fills below all lines become part of the background, and an opaque fill hides all inputs below it. */
 #include "draw/draw_cl.h"
 
 #include <string.h>
 
-/* How far back a brush of the same colour is looked for. */
+/* How far back to look for a brush of the same colour. */
 enum { BRUSHES_BACK = 16 };
 
 void camber_cl_tables_free(camber_cl_tables *t) {
@@ -20,7 +20,7 @@ void camber_cl_tables_free(camber_cl_tables *t) {
     camber_free(t->context, t->rows);
 }
 
-/* Gives the number of a brush: that of an equal one from brush first on, or of a new one. */
+/* Returns the number of a brush: that of an equal one from brush first on, or of a new one. */
 static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_brush *brush,
                                const camber_brush_ext *brush_ext, uint32_t *number) {
     for (size_t i = t->brush_count; i > first && i + BRUSHES_BACK > t->brush_count; i--)
@@ -85,7 +85,7 @@ static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_comm
     return brush;
 }
 
-/* Gives the words of a fill's image in the side table, where each is once. They are never the table's first. */
+/* Returns the position of the words of a fill's image in the side table, which has each once. It is never 0. */
 static camber_status use_fill_image(camber_cl_tables *t, const camber_draw_list *list, int32_t fill, uint32_t *words) {
     bool is_opaque;
     camber_status status = CAMBER_OK;
@@ -99,7 +99,7 @@ static camber_status use_fill_image(camber_cl_tables *t, const camber_draw_list 
     return status;
 }
 
-/* Adds the brush of a span of areas. No other span has it, so that its areas come together alone. */
+/* Adds the brush of a span of areas. No other span has it, so that its polygons are united only with each other. */
 static camber_status add_area_brush(camber_cl_tables *t, const camber_draw_list *list,
                                     const camber_draw_command *command, int32_t fill, uint32_t *number) {
     const camber_fill_paint *paint = list->fills + fill;
@@ -118,7 +118,7 @@ static camber_status add_area_brush(camber_cl_tables *t, const camber_draw_list 
     return status == CAMBER_OK ? use_brush(t, t->brush_count, &brush, &brush_ext, number) : status;
 }
 
-/* Adds the brushes of a command of areas, which follow each other, and where one takes over from the other. */
+/* Adds the consecutive brushes of a command of polygons, and the positions at which one takes over from another. */
 static camber_status add_area_brushes(camber_cl_tables *t, const camber_draw_list *list,
                                       const camber_draw_command *command, uint32_t *first) {
     const camber_area_span *spans = list->spans + command->first_span;
@@ -134,7 +134,7 @@ static camber_status add_area_brushes(camber_cl_tables *t, const camber_draw_lis
     return status;
 }
 
-/* Adds the table of a command of areas. */
+/* Adds the table of a command of polygons. */
 static camber_status add_area_rows(camber_cl_tables *t, const camber_draw_list *list,
                                    const camber_draw_command *command) {
     const size_t count = command->mesh->row_count;
@@ -154,7 +154,7 @@ static camber_status add_area_rows(camber_cl_tables *t, const camber_draw_list *
     return status;
 }
 
-/* Adds the table of a command, whose brushes are found from first_brush on. */
+/* Adds the table of a command. Its brushes are looked for from first_brush on. */
 static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const size_t count = command->mesh->row_count, first_brush = t->brush_count;
     const bool is_united = command->composite == CAMBER_COMPOSITE_UNION;
@@ -223,7 +223,7 @@ static camber_status add_fill_input(camber_cl_tables *t, const camber_brush *bru
     return CAMBER_OK;
 }
 
-/* Nothing that lies below is seen. */
+/* Removes everything below, which an opaque fill hides. */
 static void hide_runs(camber_cl_tables *t) {
     t->input_count = 0;
     t->is_rich = false;
@@ -263,7 +263,7 @@ static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *l
     const camber_brush_ext no_more = {0};
     uint32_t number;
     camber_status status =
-        use_brush(t, 0, &no_brush, &no_more, &number); /* there is one, also where nothing is drawn */
+        use_brush(t, 0, &no_brush, &no_more, &number); /* there has to be one, even if nothing is drawn */
     for (size_t i = 0; i < list->command_count && status == CAMBER_OK; i++) {
         const camber_draw_command *command = list->commands + i;
         status = command->mesh ? add_lines(t, list, command) : add_fill(t, list, &command->fill);

@@ -1,4 +1,4 @@
-/* Reads the results of each kernel that draws, or of the CPU twin in its place, so that proofs can compare them. */
+/* Reads the results of each drawing kernel, or of the CPU twin instead, so that validation can compare them. */
 #include "camber_proof.h"
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"

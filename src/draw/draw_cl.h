@@ -1,9 +1,10 @@
-/* Drawing a list in OpenCL: it becomes a scene of the rasterizer, which draws it one area after the other.
+/* Draws a list in OpenCL: it becomes a scene of the rasterizer, which draws it one area (a rectangle of the picture)
+ * after another.
  *
  *     cl_frame.c   areas of a frame, and their pixels
  *     cl_scene.c   the list's commands as a scene: tables of rows, and brushes
  *     cl_images.c  images in the side table
- *     cl_stages.c  results of each kernel, for proofs */
+ *     cl_stages.c  results of each kernel, for validation */
 #ifndef CAMBER_DRAW_DRAW_CL_H
 #define CAMBER_DRAW_DRAW_CL_H
 
@@ -13,12 +14,12 @@
 /* ---- cl_frame.c ---- */
 
 struct camber_place;
-/* Draws a frame, whose list the renderer has, and hands over its rows. */
+/* Draws a frame, whose list is in the renderer, and hands over its rows. */
 camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
 camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, struct camber_place *place,
                                     camber_frame_stats *stats);
-/* Calls draw for each area of a frame from the top down, in place of drawing it. */
+/* Calls draw for each area of a frame, from the top down, instead of drawing it. */
 typedef camber_status camber_area_fn(camber_renderer *renderer, const camber_raster_scene *scene,
                                      const camber_raster_area *area, void *user);
 camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
@@ -38,12 +39,12 @@ typedef struct camber_cl_images {
     camber_side_table *table;
     camber_cl_image *held;
     size_t count, capacity;
-    size_t last_words; /* texel of the side table with the words that were added last. 0: none yet */
-    double nearest;    /* px of the picture that a px of the plane takes at most */
+    size_t last_words; /* texel of the side table with the last added words. 0: none yet */
+    double nearest;    /* the most px of the picture that one px of the plane takes */
 } camber_cl_images;
 
-/* Add the image of a line, of a fill, to the side table. *words is the texel there that a brush names. Return
- * CAMBER_ERROR_LIMIT where the table is full, CAMBER_ERROR_MEMORY. */
+/* These add the image of a line, or of a fill, to the side table. *words is the texel there that a brush refers to.
+ * They return CAMBER_ERROR_LIMIT (the table is full), CAMBER_ERROR_MEMORY. */
 camber_status camber_cl_images_add_line(camber_cl_images *images, const camber_image_use *use, uint32_t *words);
 camber_status camber_cl_images_add_fill(camber_cl_images *images, const camber_draw_list *list,
                                         const camber_fill_paint *fill, uint32_t *words, bool *is_opaque);
@@ -58,18 +59,18 @@ typedef struct camber_cl_tables {
     camber_brush *brushes;
     camber_brush_ext *brush_ext; /* as many as brushes */
     camber_raster_input *inputs;
-    size_t *changes; /* of brushes of areas: polylines */
+    size_t *changes; /* polylines at which the brush of polygons changes */
     size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity,
         change_count, change_capacity;
-    uint32_t *fill_images; /* of the list's fills, in the side table. 0: not there. NULL: none is */
+    uint32_t *fill_images; /* position of each fill's image in the side table. 0: not there. NULL: there are none */
     bool is_rich;          /* a brush has features */
     camber_cl_images images;
     uint32_t layers;     /* so far */
-    float background[4]; /* premultiplied: what lies below the first input */
-    float sky[4];        /* premultiplied: what is seen where nothing but colours is drawn */
+    float background[4]; /* premultiplied: the colour below the first input */
+    float sky[4];        /* premultiplied: the colour above the horizon, where only colours are drawn */
 } camber_cl_tables;
 
-/* Makes the scene of a frame's list. What it made must be freed on failure too. */
+/* Makes the scene of a frame's list. The tables must be freed after a failure too. */
 camber_status camber_cl_tables_make(camber_draw_list *list, const camber_frame *frame, camber_cl_tables *tables);
 void camber_cl_tables_free(camber_cl_tables *tables);
 

@@ -1,12 +1,12 @@
-/* Drawing a list in GL: draw calls of polylines, layers and groups that are flattened, fills, and counts of overdraw.
+/* Draws a list in GL: draw calls for polylines, layers and groups that are flattened, fills, and counts of overdraw.
  *
- *     gl_frame.c     areas of a frame, one after the other, waited for and read back
+ *     gl_frame.c     areas (rectangles) of a frame, one after another, waited for and read back
  *     gl_commands.c  the list's commands in one area
- *     gl_areas.c     areas, which kernels fill
- *     gl_batch.c     polylines in as few draw calls as the driver takes them in
- *     gl_rows.c      the row texture: what the stroke shader knows of rows
+ *     gl_areas.c     polygons, which kernels fill
+ *     gl_batch.c     polylines, in as few draw calls as the driver allows
+ *     gl_rows.c      the row texture, from which the stroke shader reads rows
  *     gl_atlas.c     the texture of images
- *     gl_targets.c   what is drawn into
+ *     gl_targets.c   textures to draw into
  *     gl_overdraw.c  how often pixels are covered */
 #ifndef CAMBER_DRAW_DRAW_GL_H
 #define CAMBER_DRAW_DRAW_GL_H
@@ -16,11 +16,11 @@
 
 /* ---- State ---- */
 
-/* A texture to draw into, of the size of an area. */
+/* A texture to draw into, with the size of an area. */
 typedef struct camber_target {
     GLuint texture, framebuffer;
-    GLuint stencil; /* of the counts only */
-    GLuint alphas;  /* of the masked layer only: the alpha in its texture is how much of a pixel is covered */
+    GLuint stencil; /* only for counting */
+    GLuint alphas;  /* only for the masked layer, whose texture has the coverage of a pixel as its alpha */
     GLsizei width, height;
 } camber_target;
 
@@ -35,18 +35,18 @@ enum {
     CAMBER_TARGETS
 };
 
-/* The row texture: for each command that waits to be drawn a table with the rows of its mesh, then the side table. */
+/* The row texture: one table for each waiting command, with the rows of its mesh, and then the side table. */
 typedef struct camber_row_texture {
     GLuint texture; /* 0: none yet */
     GLsizei height; /* texels */
-    float *texels;  /* 4 floats a texel */
+    float *texels;  /* 4 floats per texel */
     size_t capacity;
 } camber_row_texture;
 
 /* Polylines that wait to be drawn. */
 typedef struct camber_batch_range {
     size_t first, end; /* polylines */
-    size_t table;      /* of the row texture */
+    size_t table;      /* table of the row texture */
 } camber_batch_range;
 
 typedef struct camber_batch {
@@ -55,14 +55,14 @@ typedef struct camber_batch {
     unsigned features; /* CAMBER_FEATURE_* of its commands */
     camber_batch_range *ranges;
     size_t range_count, range_capacity;
-    GLint *firsts; /* of the strips of a draw call */
+    GLint *firsts; /* first vertices of the strips of a draw call */
     GLsizei *counts;
     size_t call_count, first_capacity, count_capacity;
 } camber_batch;
 
 /* An image in the atlas. */
 typedef struct camber_atlas_image {
-    uint64_t hash; /* of what it shows */
+    uint64_t hash; /* hash of its pixels */
     camber_image_size size;
     GLint x, y; /* of its first texel */
 } camber_atlas_image;
@@ -73,8 +73,8 @@ typedef struct camber_atlas {
     GLsizei height;
     camber_atlas_image *images;
     size_t count, capacity;
-    GLint shelf_x, shelf_y, shelf_height; /* where the next one goes */
-    uint64_t *hashes;                     /* of the frame's images, by their number. 0: not known yet */
+    GLint shelf_x, shelf_y, shelf_height; /* where the next image goes */
+    uint64_t *hashes;                     /* hashes of the frame's images, by their number. 0: not known yet */
     size_t hash_count, hash_capacity;
 } camber_atlas;
 
@@ -91,7 +91,7 @@ typedef struct camber_gl_drawing {
 /* An area of the picture that is drawn at once. */
 typedef struct camber_gl_area {
     uint32_t x, y, width, height; /* in the picture, px */
-    int target;                   /* that commands are drawn into */
+    int target;                   /* target that commands are drawn into */
     camber_coverage coverage;
     float thinnest_px; /* width of the thinnest line of the frame */
     camber_plane_view view;
@@ -100,14 +100,15 @@ typedef struct camber_gl_area {
 
 /* ---- gl_frame.c ---- */
 
-/* Frees all that GL draws with. is_current: the GL context is; else GL's own objects go with it. */
+/* Frees everything that GL draws with. is_current: the GL context is current; else its objects are freed with the
+ * context. */
 void camber_gl_release(camber_renderer *renderer, bool is_current);
-/* Logs what GL reports; CAMBER_OK where it reports nothing. */
+/* Logs the errors that GL reports; CAMBER_OK if there are none. */
 camber_status camber_gl_check(camber_renderer *renderer, const char *what);
 /* Draws a frame, whose list the renderer has, and hands over its rows, which may be NULL. */
 camber_status camber_gl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
-/* Draws all of a frame, whose list the renderer has, as one area into a target. */
+/* Draws a whole frame, whose list is in the renderer, as one area into a target. */
 camber_status camber_gl_draw_frame(camber_renderer *renderer, const camber_frame *frame, int target);
 
 /* ---- gl_commands.c ---- */
@@ -116,24 +117,26 @@ camber_status camber_gl_draw_commands(camber_renderer *renderer, const camber_gl
 
 /* ---- gl_areas.c ---- */
 
-/* Draws commands of areas into the layer of colours, on nothing. The layer is bound, as large as the area. */
+/* Draws commands of polygons into the layer of colours, on a transparent background. The layer is bound, and as large
+ * as the area. */
 camber_status camber_gl_fill_layer(camber_renderer *renderer, const camber_draw_command *first,
                                    const camber_draw_command *end, const camber_gl_area *area);
 
 /* ---- gl_batch.c ---- */
 
-/* Lets the polylines of a command wait, and draws those that wait already where they cannot share a draw call. */
+/* Queues the polylines of a command. If they cannot share a draw call with those already queued, draws the latter
+ * first. */
 camber_status camber_batch_add(camber_renderer *renderer, const camber_draw_command *command,
                                const camber_gl_area *area);
-/* Puts all images of a command into the atlas. If others have to go for it, draws what waits first. Returns
- * CAMBER_ERROR_LIMIT if they do not fit at once. */
+/* Puts all images of a command into the atlas. If others have to be evicted for that, draws everything that is queued
+ * first. Returns CAMBER_ERROR_LIMIT if the images do not fit together. */
 camber_status camber_batch_hold_images(camber_renderer *renderer, const camber_draw_command *command,
                                        const camber_gl_area *area);
-/* Draws all that wait. variant is added to the shader's. */
+/* Draws everything that is queued. variant is added to the shader's. */
 camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_gl_area *area);
-/* Forgets all that wait. */
+/* Drops everything that is queued. */
 void camber_batch_clear(camber_renderer *renderer);
-/* The stroke shader of a mesh for lines of this width at least, with variant's bits added. */
+/* Returns the stroke shader of a mesh for lines of at least this width, with variant's bits added. */
 camber_status camber_gl_stroke_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
                                       unsigned variant, const camber_shader **shader);
 /* Uses a shader, with its uniforms set for an area and a mesh that has one table. */
@@ -141,48 +144,49 @@ void camber_gl_use_shader(camber_renderer *renderer, const camber_shader *shader
                           const camber_gl_area *area);
 /* Binds a part's records and indices, and the row texture. */
 void camber_gl_bind_part(camber_renderer *renderer, camber_mesh_part *part);
-/* Draws indices of the part that is bound. */
+/* Draws indices of the bound part. */
 void camber_gl_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count);
-/* From here on draws only rows of the picture before the far plane. */
+/* From here on only those rows of the picture are drawn that are nearer than the far plane. */
 void camber_gl_hide_horizon(camber_renderer *renderer, const camber_gl_area *area);
 
 /* ---- gl_rows.c ---- */
 
-/* Whether the row texture can hold so many rows and so many texels of the side table. */
+/* Whether the row texture can hold that many rows and that many texels of the side table. */
 bool camber_rows_fit(const camber_renderer *renderer, size_t row_count, size_t side_texels);
-/* Makes room for them. Returns CAMBER_ERROR_LIMIT where that cannot be. */
+/* Makes room for them. Returns CAMBER_ERROR_LIMIT if that is not possible. */
 camber_status camber_rows_reserve(camber_renderer *renderer, size_t row_count, size_t side_texels);
-/* Writes a command's table, for which there is room. */
+/* Writes a command's table, for which there must be room. */
 camber_status camber_rows_write(camber_renderer *renderer, const camber_draw_command *command, size_t table);
-/* Puts the side table behind the rows, and uploads all. */
+/* Appends the side table to the rows, and uploads everything. */
 camber_status camber_rows_upload(camber_renderer *renderer, size_t row_count, size_t side_texels);
-/* Uploads one table of a mesh that has widths alone. Rows past the paints are not drawn. */
+/* Uploads one table of a mesh that has only widths. Rows past the paints are not drawn. */
 camber_status camber_rows_upload_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
                                         size_t paint_count);
 
 /* ---- gl_atlas.c ---- */
 
-/* Forgets the images of the frame before, which the caller may have changed. Returns CAMBER_ERROR_MEMORY. */
+/* Forgets the images of the previous frame, which the caller may have changed. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_atlas_begin(camber_renderer *renderer);
-/* Puts all images of a command into the atlas. *is_full: others have to go first, which camber_atlas_renew does. */
+/* Puts all images of a command into the atlas. *is_full: others have to be evicted first, which camber_atlas_renew
+ * does. */
 camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command, bool *is_full);
-/* Empties the atlas, and puts all images of a command into it. Returns CAMBER_ERROR_LIMIT if they do not fit at once.
+/* Empties the atlas, and puts all images of a command into it. Returns CAMBER_ERROR_LIMIT if they do not fit together.
  */
 camber_status camber_atlas_renew(camber_renderer *renderer, const camber_draw_command *command);
-/* Gives the rectangle of an image that the atlas holds: its corner and its size, in texture coordinates. */
+/* Returns the rectangle of an image that the atlas holds: its corner and its size, in texture coordinates. */
 camber_status camber_atlas_find(camber_renderer *renderer, const camber_image_use *use, float rect[4]);
 void camber_atlas_bind(camber_renderer *renderer);
 void camber_atlas_release(camber_renderer *renderer, bool is_current);
 
 /* ---- gl_targets.c ---- */
 
-/* Binds a target of this size; what it holds is not defined. The viewport reaches past each of its sides by
- * camber_target_guard, the scissor does not: a software driver clips a batch of triangles one by one where a single
- * vertex lies outside the viewport. */
+/* Binds a target of this size; its content is undefined. The viewport extends beyond each of its sides by
+ * camber_target_guard, but the scissor does not: a software driver clips all triangles of a batch one by one if a
+ * single vertex is outside the viewport. */
 camber_status camber_target_bind(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
-/* px; axis: 0 for the width, 1 for the height. */
+/* In px; axis: 0 for the width, 1 for the height. */
 GLsizei camber_target_guard(const camber_renderer *renderer, int axis, GLsizei side);
-/* Makes a caller's texture the given target, until it is taken back. */
+/* Makes a caller's texture the target CAMBER_TARGET_GIVEN, until it is taken back. */
 camber_status camber_target_give(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height);
 void camber_target_take_back(camber_renderer *renderer);
 void camber_targets_release(camber_renderer *renderer);

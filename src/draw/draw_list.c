@@ -1,16 +1,17 @@
-/* Makes the draw list of a frame. It alone reads passes and paints.
+/* Makes the draw list of a frame. Only this file reads passes and paints.
  *
- * A pass becomes rows, which are its paints with what they name put into the side table, and commands. Polylines whose
- * rows have one alpha and follow each other make a span; a span becomes a command. A translucent span needs a layer, so
- * that a pixel is covered once however often lines cross it. A layer costs as much as all of its pixels. Where a pass
- * would need more than LAYERS_MAX of them, its lines are taken out of order, one command an alpha; and where it has
- * more than ALPHAS_MAX alphas, one masked layer has all lines, each with its own.
+ * A pass becomes rows and commands. Rows are its paints, with the dashes and ramps that they refer to put into the side
+ * table. Consecutive polylines whose rows have the same alpha make a span; a span becomes a command. A translucent span
+ * needs a layer, so that a pixel is covered once however often lines cross it. The cost of a layer is that of all its
+ * pixels. If a pass would need more than LAYERS_MAX of them, its lines are drawn out of order, with one command per
+ * alpha; and if it has more than ALPHAS_MAX alphas, one masked layer has all lines, each with its own alpha.
  *
- * Areas that follow each other make a span, too, which needs no layer: the rasterizer takes all rings of one fill at
- * once. It changes the fill as often as they do, in the order of the areas. Where areas and lines of a pass alternate
- * more than AREAS_MAX times, the areas lie below.
+ * Consecutive polygons also make a span, which needs no layer: the rasterizer takes all rings of one fill at once, and
+ * changes the fill whenever they do, in the order of the polygons. If polygons and lines of a pass alternate more than
+ * AREAS_MAX times, all polygons are drawn below the lines.
  *
- * A pass with an opacity is put onto the picture as a whole: by the opacity of its one layer, or as a group. */
+ * A pass with an opacity is composited onto the picture as a whole: with the opacity of its only layer, or as a group.
+ */
 #include "draw/draw_list.h"
 
 #include "base/perspective.h"
@@ -21,12 +22,12 @@
 
 enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16, AREAS_MAX = 64 };
 
-/* Past all lines' ends, in shares of their length. */
+/* Beyond the ends of all lines, in fractions of their length. */
 static const float FAR_BEYOND = 1e9f;
 
 /* ---- Checks ---- */
 
-/* Dashes, ramps, images and trims go by lengths along the line. */
+/* Checks a pass. Dashes, ramps, images and trims need arc lengths. */
 static camber_status check_pass(camber_context *context, const camber_pass *pass) {
     assert(pass->paint_count == 0 || pass->paints);
     if (pass->kind != CAMBER_PASS_LINES)
@@ -62,11 +63,11 @@ static camber_status check_frame(camber_context *context, const camber_frame *fr
 typedef struct row_maker {
     camber_draw_list *list;
     const camber_pass *pass;
-    const camber_ramp *ramp; /* the last one that was looked at, and whether it has translucent colours */
+    const camber_ramp *ramp; /* the ramp that was checked last, and whether it has translucent colours */
     bool is_translucent;
 } row_maker;
 
-/* *number is that of the use, which may be the last one again. */
+/* Adds a use of an image, unless it equals the last one. *number is the number of the use. */
 static camber_status add_image_use(camber_draw_list *list, const camber_image_use *use, size_t *number) {
     const camber_image_use *last = list->use_count ? list->image_uses + list->use_count - 1 : NULL;
     if (last && last->number == use->number && last->width_px == use->width_px && last->height_px == use->height_px &&
@@ -156,7 +157,7 @@ static camber_status make_fill(camber_draw_list *list, const camber_fill *fill, 
     return made->has_image ? set_fill_image(list, fill, made) : CAMBER_OK;
 }
 
-/* The row of an area, with a fill of its own. */
+/* Makes the row of a polygon, with a fill of its own. */
 static camber_status make_area_row(camber_draw_list *list, const camber_paint *paint, camber_row_paint *row) {
     if (!camber_grow(list->context, &list->fills, &list->fill_capacity, list->fill_count + 1, sizeof *list->fills))
         return CAMBER_ERROR_MEMORY;
@@ -221,11 +222,11 @@ typedef struct pass_lines {
 
 typedef struct span {
     size_t first, end; /* polylines */
-    float alpha;       /* of its rows that are drawn. 0: there is none; 1 where overlaps accumulate */
+    float alpha;       /* alpha of its rows that are drawn. 0: there are none; 1 if overlaps accumulate */
     bool one_alpha;    /* polylines of other alphas within it are not drawn */
     bool is_layered, is_masked, is_one_color;
     bool is_begun; /* one of its rows is drawn */
-    bool is_area;  /* its areas are drawn, each with its fill; else its lines */
+    bool is_area;  /* its polygons are drawn, each with its fill; else its lines */
     camber_color color;
     unsigned features;
 } span;
@@ -262,7 +263,7 @@ static const camber_row_paint *row_of(const pass_lines *lines, size_t polyline) 
     return lines->rows + lines->mesh->polyline_rows[polyline];
 }
 
-/* The longest span from a polyline on. Polylines that are not drawn may be in any. */
+/* Returns the longest span that begins at a polyline. Polylines that are not drawn may be in any span. */
 static span find_span(const pass_lines *lines, size_t first) {
     const bool accumulates = lines->overlap == CAMBER_OVERLAP_ACCUMULATE;
     span s = begin_span(first, first);
@@ -275,13 +276,13 @@ static span find_span(const pass_lines *lines, size_t first) {
             break;
         add_to_span(lines, row, &s);
         if (lines->mesh->row_count == 1)
-            s.end = lines->end - 1; /* all are alike */
+            s.end = lines->end - 1; /* all are the same */
     }
     end_span(lines, &s);
     return s;
 }
 
-/* All polylines of one alpha. */
+/* Returns all polylines with the same alpha as one span. */
 static span pick_alpha(const pass_lines *lines, float alpha) {
     span s = begin_span(lines->first, lines->end);
     s.one_alpha = true;
@@ -294,14 +295,14 @@ static span pick_alpha(const pass_lines *lines, float alpha) {
     return s;
 }
 
-/* All areas. */
+/* Returns all polygons as one span. */
 static span pick_areas(const pass_lines *lines) {
     span s = begin_span(lines->first, lines->end);
     s.is_area = true;
     return s;
 }
 
-/* All polylines, each with its own alpha, in one masked layer. */
+/* Returns all polylines, each with its own alpha, as one masked layer. */
 static span mask_all(const pass_lines *lines) {
     span s = begin_span(lines->first, lines->end);
     for (size_t i = lines->first; i < lines->end; i++)
@@ -327,7 +328,7 @@ static bool fades(const camber_pass *pass) {
     return pass->opacity > 0.0f && pass->opacity < 1.0f;
 }
 
-/* A fill's opacity is in its colour: it needs no layer. */
+/* Adds a fill. Its opacity is in its colour, so it needs no layer. */
 static camber_status add_fill(camber_draw_list *list, const camber_pass *pass) {
     camber_draw_command command = {0};
     const float alpha = pass->fill.color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
@@ -347,7 +348,7 @@ static camber_composite composite_of(const span *s) {
         return CAMBER_COMPOSITE_MASKED;
     if (!s->is_one_color)
         return CAMBER_COMPOSITE_COLORS;
-    /* The union is of strokes with one edge on each side. */
+    /* Only strokes with one edge on each side can be united. */
     return s->features ? CAMBER_COMPOSITE_COVERAGE : CAMBER_COMPOSITE_UNION;
 }
 
@@ -364,7 +365,7 @@ static bool is_same_fill(const camber_draw_list *list, int32_t a, int32_t b) {
     return a == b || memcmp(list->fills + a, list->fills + b, sizeof *list->fills) == 0;
 }
 
-/* Lists where the fill of the span's areas changes, its first area among these. */
+/* Lists where the fill of the span's polygons changes, including its first polygon. */
 static camber_status list_fills(const command_maker *m, const span *s) {
     camber_draw_list *list = m->list;
     int32_t fill = CAMBER_NO_FILL;
@@ -380,12 +381,12 @@ static camber_status list_fills(const command_maker *m, const span *s) {
         }
         fill = row->fill;
         if (m->lines->mesh->row_count == 1)
-            break; /* all are alike */
+            break; /* all are the same */
     }
     return CAMBER_OK;
 }
 
-/* Adds a span. is_whole: it has all of its pass, whose opacity one layer, or one fill, may take then. */
+/* Adds a span. is_whole: it is its whole pass, so that its only layer or fill can take the pass's opacity. */
 static camber_status add_span(command_maker *m, span s, bool is_whole) {
     const size_t first_span = m->list->span_count;
     float opacity = 1.0f;
@@ -421,7 +422,7 @@ static camber_status add_span(command_maker *m, span s, bool is_whole) {
     return add_command(m->list, &command);
 }
 
-/* Whether the spans from the pass's first one on are more layers than a pass may have, or more spans of areas. */
+/* Whether the pass has more layers, or more spans of polygons, than it may have. */
 static bool has_many_spans(const pass_lines *lines, const span *first) {
     span s = *first;
     size_t layers = s.is_layered && s.alpha > 0.0f, areas = s.is_area;
@@ -442,7 +443,7 @@ static camber_status add_in_order(command_maker *m, span s) {
     return status;
 }
 
-/* Gives the alphas of a pass, ascending, and how many; ALPHAS_MAX + 1: there are more than that. */
+/* Lists the alphas of a pass, ascending, and returns how many; ALPHAS_MAX + 1: there are more than ALPHAS_MAX. */
 static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
     size_t count = 0;
     for (size_t i = lines->first; i < lines->end; i++) {
@@ -464,7 +465,7 @@ static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
     return count;
 }
 
-/* Areas come first, in their order, and then lines, the faintest first. */
+/* Adds polygons first, in their order, and then lines, the faintest first. */
 static camber_status add_by_alpha(command_maker *m) {
     float alphas[ALPHAS_MAX];
     const size_t count = list_alphas(m->lines, alphas);
@@ -508,7 +509,7 @@ static float thinnest_of(const camber_frame *frame) {
     return thinnest_px;
 }
 
-/* The pitch of the camera that the meshes were tessellated for, where there was one; else the frame's own. */
+/* Finds the pitch: that of the camera that the meshes were tessellated for, if there was one; else the frame's own. */
 static camber_status find_pitch(camber_context *context, const camber_frame *frame, double *pitch_deg) {
     double pitch = frame->pitch_deg;
     bool found = pitch > 0.0;

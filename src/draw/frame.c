@@ -1,4 +1,4 @@
-/* Frames: each is resolved into the renderer's list, which GL or OpenCL draws. */
+/* Draws frames: each is resolved into the renderer's list, which GL or OpenCL draws. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
@@ -15,7 +15,7 @@ camber_status camber_renderer_resolve(camber_renderer *renderer, const camber_fr
     return camber_draw_list_build(&renderer->list, frame);
 }
 
-/* place: where all rows go. NULL: wherever rows takes them. */
+/* Draws a frame. place: memory that all rows go to. NULL: they are passed to rows. */
 static camber_status render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                             camber_place *place, camber_frame_stats *stats) {
     camber_frame_stats made;

@@ -1,16 +1,16 @@
-/* Areas in a frame that GL draws. Shaders draw lines; what lies inside of rings the kernels find (kernels/area.h).
+/* Fills polygons in a frame that GL draws. Shaders draw lines; kernels compute what is inside rings (kernels/area.h).
  *
- * Input: commands of areas that follow each other. Output: their picture, drawn in OpenCL on nothing, put over the
- * target as a layer. So both ways of drawing have the same areas, to the rounding of that layer. */
+ * Input: consecutive commands of polygons. Output: their picture, drawn in OpenCL on a transparent background and
+ * composited onto the target as a layer. So GL and OpenCL have the same polygons, up to the rounding of that layer. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
-/* No side of a block is longer, px: the rasterizer takes as much at once, and so much before it. */
+/* The longest side of a block, in px: the rasterizer takes that much at once, and that much before it. */
 enum { BLOCK_PX = CAMBER_TILE_PX * (CAMBER_TILES_MAX / 2) };
 
 /* ---- Blocks of the area ---- */
 
-/* Copies the block that was drawn last into the layer's texture. left and top: px of it before the area. */
+/* Copies the last drawn block into the layer's texture. left and top are the px of the block before the area. */
 static camber_status upload(camber_renderer *renderer, const camber_raster_area *block, const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const uint32_t left = block->x < area->x ? area->x - block->x : 0,
@@ -21,7 +21,7 @@ static camber_status upload(camber_renderer *renderer, const camber_raster_area 
         return status;
     const uint8_t *first = pixels.rgba + top * pixels.row_bytes + 4 * (size_t)left;
     GLuint staging = 0;
-    if (!renderer->share.surface->info.software) { /* in half the time, as the texture is laid out by the GPU */
+    if (!renderer->share.surface->info.software) { /* takes half the time, because the GPU lays the texture out */
         gl->GenBuffers(1, &staging);
         gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, staging);
         gl->BufferData(GL_PIXEL_UNPACK_BUFFER, (GLsizeiptr)(pixels.row_bytes * block->height), pixels.rgba,
@@ -56,7 +56,7 @@ static camber_status draw_blocks(camber_renderer *renderer, const camber_raster_
 
 /* ---- Commands ---- */
 
-/* The commands as a list of their own, whose images lie in a side table that GL does not read. */
+/* Makes a list of its own from the commands, whose images are in a side table that GL does not read. */
 static camber_status make_list(const camber_draw_list *from, const camber_draw_command *first, size_t count,
                                camber_draw_list *list) {
     *list = *from;
@@ -68,7 +68,7 @@ static camber_status make_list(const camber_draw_list *from, const camber_draw_c
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < count; i++) {
         list->commands[i] = first[i];
-        list->commands[i].group = 0; /* GL gathers the group that they belong to */
+        list->commands[i].group = 0; /* GL composites the group that they belong to */
     }
     return CAMBER_OK;
 }

@@ -1,6 +1,6 @@
-/* The atlas: images that lines and fills are drawn with, side by side in one texture. Images stay from frame to frame,
- * and are found again by a hash of what they show. Where there is no room for all images of a command, the atlas is
- * emptied, and made larger if it can be. */
+/* The atlas: images that lines and fills are drawn with, side by side in one texture. Images are kept from frame to
+ * frame, and found again by a hash of their pixels. If there is no room for all images of a command, the atlas is
+ * emptied, and enlarged if possible. */
 #include "draw/renderer.h"
 
 #include <assert.h>
@@ -32,7 +32,7 @@ static GLsizei largest_height(const camber_renderer *renderer) {
     return side < LAST_HEIGHT ? (GLsizei)side : LAST_HEIGHT;
 }
 
-/* Empties the atlas, and makes its texture larger where that can be. */
+/* Empties the atlas, and enlarges its texture if possible. */
 static camber_status empty_atlas(camber_renderer *renderer) {
     camber_atlas *atlas = &renderer->gl.atlas;
     const camber_gl *gl = &renderer->share.surface->gl;
@@ -75,7 +75,7 @@ static bool take_room(camber_atlas *atlas, camber_atlas_image *placed) {
 
 /* ---- Images ---- */
 
-/* Pointers may come again with other images behind them, so the hash is of what an image shows. */
+/* The same pointer may later refer to another image, so the hash covers the pixels. */
 static uint64_t hash_of(const camber_image *image) {
     uint64_t hash = camber_hash(CAMBER_HASH_START, &image->width, sizeof image->width);
     for (uint32_t y = 0; y < image->height; y++)
@@ -123,7 +123,7 @@ static camber_status add(camber_renderer *renderer, const camber_image *image, c
     return status;
 }
 
-/* Gives the rectangle of an image, which is added if the atlas does not have it. */
+/* Returns the rectangle of an image, after adding it if the atlas does not have it. */
 static camber_status find_or_add(camber_renderer *renderer, const camber_image_use *use, float rect[4], bool *is_full) {
     camber_atlas *atlas = &renderer->gl.atlas;
     const camber_image_size size = camber_image_texels(use, renderer->list.view.nearest);

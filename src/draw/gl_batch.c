@@ -1,7 +1,7 @@
-/* Draws polylines in as few draw calls as the driver takes them in.
+/* Draws polylines in as few draw calls as the driver allows.
  *
- * Commands of one mesh wait together as long as nothing has to be drawn between them. Each has a table in the row
- * texture, and a vertex must know its table. The numbers of a strip's vertices say it, in the bits above those that the
+ * Commands of one mesh are queued together as long as nothing has to be drawn between them. Each has a table in the row
+ * texture, and a vertex must know its table. For strips, the vertex number says it, in the bits above those that the
  * mesh needs. Kite and fan have their indices in the mesh, so a uniform says it, and each command takes a call. */
 #include "draw/renderer.h"
 #include "vertices/vertices.h"
@@ -14,17 +14,18 @@ _Static_assert((int)CAMBER_VARIANT_GAP == (int)CAMBER_FEATURE_GAP * CAMBER_VARIA
                    (int)CAMBER_VARIANT_MASK == 2 * (int)CAMBER_VARIANT_PATTERN,
                "features and variants are the same bits, and variants that are no features lie behind them");
 
-/* Rows of all tables of a call. More would take more memory than another call costs. */
+/* The most rows of all tables of a call. More would take more memory than another call is worth. */
 enum { ROWS_MAX = 1 << 20 };
 
-/* A segment that is seen at an angle is two triangles. */
+/* In a pitched view a segment is two triangles. */
 enum { RECORD_VERTICES = 6 };
 
 camber_status camber_gl_stroke_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
                                       unsigned variant, const camber_shader **shader) {
     if (variant & CAMBER_VARIANT_PITCHED)
-        thinnest_px = 0.0f; /* far away all are */
-    /* A pixel reaches sqrt(1/2) px along any normal; stroke.vert says where a tip ends: past where the cap does. */
+        thinnest_px = 0.0f; /* far away all lines are thin */
+    /* A pixel reaches sqrt(1/2) px along any normal; stroke.vert says where a tip ends, which is beyond the end of the
+     * cap. */
     const bool thin = thinnest_px < CAMBER_DIAGONAL,
                tips = thin || (mesh->round_caps && thinnest_px < 2.0f * CAMBER_TIPS_PX);
     const bool joins = mesh->mesh_info.method != CAMBER_METHOD_FAN || variant & CAMBER_VARIANT_PITCHED;
@@ -41,7 +42,7 @@ void camber_gl_use_shader(camber_renderer *renderer, const camber_shader *shader
     const GLfloat x = (GLfloat)area->x, y = (GLfloat)area->y, w = (GLfloat)area->width, h = (GLfloat)area->height;
     const GLfloat guard_x = (GLfloat)camber_target_guard(renderer, 0, (GLsizei)area->width),
                   guard_y = (GLfloat)camber_target_guard(renderer, 1, (GLsizei)area->height);
-    /* Triangles of a strip that wind the other way lie between the two records of a tight join. */
+    /* Triangles of a strip that wind the other way are between the two records of a tight join. */
     (mesh->mesh_info.strips && !area->view.pitched ? gl->Enable : gl->Disable)(GL_CULL_FACE);
     gl->UseProgram(shader->program);
     gl->Uniform2f(shader->origin, x, y);
@@ -74,13 +75,14 @@ void camber_gl_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, 
         gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
 }
 
-/* The vertices of a part as it is drawn: a strip's, or in a pitched view six a record, whatever the method. */
+/* Returns the number of vertices of a part as it is drawn: those of the strip, or in a pitched view six per record,
+ * whatever the method. */
 static size_t vertex_count(const camber_mesh *mesh, const camber_mesh_part *part, bool pitched) {
     const size_t records = mesh->mesh_info.strips ? part->index_count / 2 : part->slot_count;
     return pitched ? RECORD_VERTICES * records : part->index_count;
 }
 
-/* How many bits the number of a vertex within its part takes. 31: no bit is left for tables. */
+/* Returns how many bits the number of a vertex within its part takes. 31: no bit is left for tables. */
 static unsigned vertex_bits(const camber_mesh *mesh, bool pitched) {
     size_t most = 0;
     for (size_t i = 0; i < mesh->part_count; i++) {
@@ -97,12 +99,12 @@ static bool has_numbered_tables(const camber_mesh *mesh, const camber_gl_area *a
     return mesh->mesh_info.strips || area->view.pitched;
 }
 
-/* Texels of the side table that a command with such features needs: all or none. */
+/* Returns how many texels of the side table a command with such features needs: all or none. */
 static size_t side_texels(const camber_renderer *renderer, unsigned features) {
     return features & (CAMBER_FEATURE_DASH | CAMBER_FEATURE_RAMP) ? renderer->list.side_table.count : 0;
 }
 
-/* Whether another command can wait with those that wait already. */
+/* Whether another command can be queued with those already queued. */
 static bool has_room(const camber_renderer *renderer, const camber_draw_command *command, const camber_gl_area *area) {
     const camber_batch *batch = &renderer->gl.batch;
     const camber_mesh *mesh = command->mesh;
@@ -120,7 +122,7 @@ camber_status camber_batch_hold_images(camber_renderer *renderer, const camber_d
     camber_status status = camber_atlas_hold(renderer, command, &is_full);
     if (status != CAMBER_OK || !is_full)
         return status;
-    status = camber_batch_draw(renderer, 0, area); /* it needs images that may go now */
+    status = camber_batch_draw(renderer, 0, area); /* it needs images that may be evicted now */
     return status == CAMBER_OK ? camber_atlas_renew(renderer, command) : status;
 }
 
@@ -157,7 +159,7 @@ void camber_batch_clear(camber_renderer *renderer) {
 
 /* ---- Draw calls ---- */
 
-/* Draws the strips that are listed; in a pitched view they are triangles. */
+/* Draws the listed strips; in a pitched view they are triangles. */
 static void draw_strips(camber_renderer *renderer, const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     camber_batch *batch = &renderer->gl.batch;
@@ -185,7 +187,7 @@ static camber_status list_strip(camber_renderer *renderer, GLint first, GLsizei 
     return CAMBER_OK;
 }
 
-/* Gives the first index of a polyline, or in a pitched view its first vertex. */
+/* Returns the first index of a polyline, or in a pitched view its first vertex. */
 static camber_status first_of(camber_slot_starts *starts, size_t polyline, bool pitched, uint64_t *first) {
     size_t record = 0;
     if (!pitched)
@@ -195,7 +197,7 @@ static camber_status first_of(camber_slot_starts *starts, size_t polyline, bool 
     return status;
 }
 
-/* Lists or draws the polylines of a range that lie in a part, which is bound. */
+/* Lists or draws those polylines of a range that are in the bound part. */
 static camber_status draw_part(camber_renderer *renderer, camber_slot_starts *starts, camber_batch_range range,
                                const camber_shader *shader, const camber_gl_area *area) {
     /* GL's counts are signed 32-bit numbers. Longer strips are cut between polylines. */
@@ -230,7 +232,7 @@ static camber_status draw_part(camber_renderer *renderer, camber_slot_starts *st
 static camber_status draw_ranges(camber_renderer *renderer, const camber_shader *shader, const camber_gl_area *area) {
     const camber_batch *batch = &renderer->gl.batch;
     camber_mesh *mesh = batch->mesh;
-    camber_slot_starts starts = {0}; /* of the part that is bound */
+    camber_slot_starts starts = {0}; /* for the bound part */
     camber_status status = CAMBER_OK;
     for (size_t r = 0; r < batch->range_count; r++)
         for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK; i++) {
@@ -242,7 +244,7 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
             if (range.first >= range.end || part->index_count == 0)
                 continue;
             if (part != starts.finder.part) {
-                draw_strips(renderer, area); /* their part is bound, and may have to go */
+                draw_strips(renderer, area); /* their part is bound, and may have to be evicted */
                 camber_slot_starts_unmap(&starts);
                 status = camber_part_ensure_output(mesh, part);
                 if (status != CAMBER_OK)

@@ -1,13 +1,13 @@
-/* Draws the commands of a list into one area. Straight ones go onto the target, and wait in a batch as long as they
- * can. The lines of others are gathered in a layer, which a shader flattens onto the target. The commands of a group
- * are drawn into a target of their own, which is then put onto the area's as a whole. */
+/* Draws the commands of a list into one area. Straight ones go directly onto the target, and are queued in a batch as
+ * long as possible. The lines of others are drawn into a layer, which a shader flattens onto the target. The commands
+ * of a group are drawn into a target of their own, which is then composited onto the area's target as a whole. */
 #include "draw/renderer.h"
 
 #include <math.h>
 
 /* ---- Layers ---- */
 
-/* The kind of layer a command needs. Without half float targets there is no union. */
+/* Returns the kind of layer that a command needs. Without half-float targets there is no union. */
 static camber_flatten_kind kind_of(const camber_renderer *renderer, const camber_draw_command *command) {
     switch (command->composite) {
     case CAMBER_COMPOSITE_COVERAGE: return CAMBER_FLATTEN_COVERAGE;
@@ -21,8 +21,9 @@ static camber_flatten_kind kind_of(const camber_renderer *renderer, const camber
     return CAMBER_FLATTEN_COLORS;
 }
 
-/* How the fragments of a layer come together. Of the union's four channels the first three add up, and the last gathers
- * one over the other. One channel has no alpha of its own to blend by: a + b - ab is ONE, ONE_MINUS_SRC_COLOR. */
+/* Sets how the fragments of a layer are blended. In the union's four channels, the first three add up, and the last
+ * accumulates coverage, one fragment over another. A single channel has no alpha to blend by: a + b - ab is ONE,
+ * ONE_MINUS_SRC_COLOR. */
 static void set_blending(const camber_gl *gl, camber_flatten_kind kind) {
     if (kind == CAMBER_FLATTEN_UNION)
         gl->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -30,8 +31,8 @@ static void set_blending(const camber_gl *gl, camber_flatten_kind kind) {
         gl->BlendFunc(GL_ONE, kind == CAMBER_FLATTEN_COVERAGE ? GL_ONE_MINUS_SRC_COLOR : GL_ONE_MINUS_SRC_ALPHA);
 }
 
-/* Puts a layer over the area's target. layer: a target; below 0: a fill. color is premultiplied; of a layer that has
- * its own colours it is the opacity four times. */
+/* Composites a layer onto the area's target. layer: a target; below 0: a fill. color is premultiplied; for a layer with
+ * its own colours it is the opacity in all four channels. */
 static camber_status flatten(camber_renderer *renderer, int layer, camber_flatten_kind kind, const float color[4],
                              const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
@@ -98,7 +99,7 @@ static camber_status draw_layered(camber_renderer *renderer, const camber_draw_c
 
 /* ---- Fills ---- */
 
-/* Sets the uniforms of copies of an image side by side. */
+/* Sets the uniforms for copies of an image side by side. */
 static camber_status set_images(camber_renderer *renderer, const camber_shader *shader, const camber_fill_paint *fill,
                                 const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
@@ -125,7 +126,7 @@ static camber_status set_images(camber_renderer *renderer, const camber_shader *
     return CAMBER_OK;
 }
 
-/* A colour is everywhere. Images lie in the plane, and past the far plane there are none. */
+/* Draws a fill. A colour covers everything. Images are in the plane, and there are none beyond the far plane. */
 static camber_status draw_fill(camber_renderer *renderer, const camber_draw_command *command,
                                const camber_gl_area *area) {
     const camber_fill_paint *fill = &command->fill;
@@ -145,11 +146,11 @@ static camber_status draw_fill(camber_renderer *renderer, const camber_draw_comm
 
 /* ---- Areas ---- */
 
-/* Draws commands of areas that follow each other. */
+/* Draws consecutive commands of polygons. */
 static camber_status draw_areas(camber_renderer *renderer, const camber_draw_command *first,
                                 const camber_draw_command *end, const camber_gl_area *area) {
     const float whole[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-    camber_status status = camber_batch_draw(renderer, 0, area); /* it lies below */
+    camber_status status = camber_batch_draw(renderer, 0, area); /* it is below */
     if (status == CAMBER_OK)
         status = camber_target_bind(renderer, CAMBER_TARGET_LAYER, (GLsizei)area->width, (GLsizei)area->height);
     if (status == CAMBER_OK)
@@ -163,13 +164,13 @@ static camber_status draw_command(camber_renderer *renderer, const camber_draw_c
                                   const camber_gl_area *area) {
     if (command->mesh && command->composite == CAMBER_COMPOSITE_STRAIGHT)
         return camber_batch_add(renderer, command, area);
-    const camber_status status = camber_batch_draw(renderer, 0, area); /* it lies below */
+    const camber_status status = camber_batch_draw(renderer, 0, area); /* it is below */
     if (status != CAMBER_OK)
         return status;
     return command->mesh ? draw_layered(renderer, command, area) : draw_fill(renderer, command, area);
 }
 
-/* Draws commands that go onto one target. */
+/* Draws commands that go onto the same target. */
 static camber_status draw_commands(camber_renderer *renderer, const camber_draw_command *first,
                                    const camber_draw_command *end, const camber_gl_area *area) {
     camber_status status = CAMBER_OK;

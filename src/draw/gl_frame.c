@@ -1,4 +1,4 @@
-/* Frames that GL draws: areas of the picture, drawn one after the other, waited for, and read back as rows. */
+/* Draws frames in GL: rectangles (areas) of the picture, drawn one after another, waited for, and read back as rows. */
 #include "draw/renderer.h"
 
 enum { AREA_PX = 16 * 1024 * 1024 };
@@ -21,7 +21,7 @@ void camber_gl_release(camber_renderer *renderer, bool is_current) {
     camber_free(context, drawing->rows.texels);
 }
 
-/* The area of this size in the top left corner of the picture. */
+/* Returns the area of this size in the top left corner of the picture. */
 static camber_gl_area make_area(const camber_renderer *renderer, const camber_frame *frame, uint32_t width,
                                 uint32_t height, size_t *draw_calls) {
     return (camber_gl_area){.width = width,
@@ -33,8 +33,8 @@ static camber_gl_area make_area(const camber_renderer *renderer, const camber_fr
                             .draw_calls = draw_calls};
 }
 
-/* The first area of a frame, as large as it can be: whole rows where the target reaches, and no more memory than
- * needed. */
+/* Returns the first area of a frame, as large as possible: whole rows if the target is wide enough, and no more memory
+ * than needed. */
 static camber_gl_area first_area(const camber_renderer *renderer, const camber_frame *frame, size_t *draw_calls) {
     uint32_t side = renderer->share.surface->info.largest_target_px;
     if (frame->largest_area_px && frame->largest_area_px < side)
@@ -54,18 +54,18 @@ static camber_status draw_area(camber_renderer *renderer, const camber_frame *fr
     if (status != CAMBER_OK)
         return status;
     gl->Enable(GL_BLEND);
-    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); /* but where layers are gathered */
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); /* except while drawing into layers */
     gl->Disable(GL_DITHER);
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);
-    camber_batch_clear(renderer); /* of a frame that failed */
+    camber_batch_clear(renderer); /* left over from a frame that failed */
     status = camber_atlas_begin(renderer);
     if (status == CAMBER_OK)
         status = camber_gl_draw_commands(renderer, area);
     return status == CAMBER_OK ? camber_gl_check(renderer, "drawing") : status;
 }
 
-/* Reads an area into rows of the picture, which is so wide. */
+/* Reads an area into rows of the picture, which is width px wide. */
 static camber_status read_area(camber_renderer *renderer, const camber_gl_area *area, uint8_t *rgba, uint32_t width) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_status status =
@@ -88,7 +88,7 @@ camber_status camber_gl_draw_frame(camber_renderer *renderer, const camber_frame
     return draw_area(renderer, frame, &area);
 }
 
-/* Draws areas from left to right, of which area is the first, and reads them into rgba, which may be NULL. */
+/* Draws areas from left to right, starting with area, and reads them into rgba, which may be NULL. */
 static camber_status draw_across(camber_renderer *renderer, const camber_frame *frame, camber_gl_area area,
                                  uint8_t *rgba, camber_frame_stats *stats) {
     const uint32_t widest = area.width, width = frame->width;
@@ -136,6 +136,6 @@ camber_status camber_gl_render(camber_renderer *renderer, const camber_frame *fr
     if (status == CAMBER_OK)
         renderer->share.frames_done = renderer->share.frames_begun;
     else
-        camber_surface_forget_errors(renderer->share.surface); /* the next frame's are its own */
+        camber_surface_forget_errors(renderer->share.surface); /* the next frame must only see its own */
     return status;
 }

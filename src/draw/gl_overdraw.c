@@ -1,10 +1,10 @@
 /* Counts overdraw on the GPU: all fragments, and the pixels that a range of indices covers once and more than once.
  *
- * Every fragment adds 1 of 255 to an 8-bit channel, which stays at 255 when it is full. Where a pixel shows 255, too
- * much was drawn before the counts were read, and it is drawn again in smaller steps. So no count is lost, and no
+ * Every fragment adds 1 of 255 to an 8-bit channel, which stays at 255 when it is full. If a pixel shows 255, too much
+ * was drawn before the counts were read, and the same is drawn again in smaller steps. So no count is lost, and no
  * extension is needed.
  *
- * A range takes two draw calls that go by the stencil, which is 0 before:
+ * A range takes two draw calls, which use the stencil; it is 0 before them:
  *   cover    where it is 0, adds 1 to the drawn pixels; everywhere, a fragment with coverage adds 1 to it
  *   repeat   where it is 2 or more, adds 1 to the repeated pixels; everywhere, back to 0
  * so that only the first fragment of a pixel passes. */
@@ -18,8 +18,8 @@ enum {
     SIDE_MAX_PX = 65535,
     AREA_SIDE_PX = 2048,
     FULL = 255,            /* a channel */
-    INDICES_MAX = 3 << 28, /* of a draw call: it fits a signed 32-bit number, has whole triangles, and is even */
-    INDICES_LEAST = 252,   /* the same, and no pixel is full after them */
+    INDICES_MAX = 3 << 28, /* for a draw call: fits into a signed 32-bit number, has whole triangles, and is even */
+    INDICES_LEAST = 252,   /* the same, and no pixel can be full after so few */
     COVERED = 0,
     EVERY = 1, /* the channels that stroke.frag and count.frag add to */
 };
@@ -27,15 +27,15 @@ enum {
 typedef struct counting {
     camber_renderer *renderer;
     const camber_overdraw_desc *desc;
-    const camber_index_range *ranges; /* each is counted by itself */
+    const camber_index_range *ranges; /* each is counted separately */
     size_t range_count;
     const camber_index_range
-        *drawn; /* the same indices for counts of all ranges together: one range, where it is the whole mesh */
+        *drawn; /* the same indices, to count all ranges together; a single range if it is the whole mesh */
     size_t drawn_count;
     const camber_shader *raster, *every;
     camber_gl_area area;
     const camber_mesh_part *bound; /* NULL: none */
-    camber_status status;          /* of binding one */
+    camber_status status;          /* status of binding a part */
     uint8_t *pixels;               /* RGBA8 of an area */
     camber_overdraw sum;
 } counting;
@@ -46,7 +46,7 @@ static const camber_gl *gl_of(const counting *c) {
 
 /* ---- Ranges ---- */
 
-/* Indices that the next triangle of a strip has in common with the one before. */
+/* Returns how many indices the next triangle of a strip shares with the previous one. */
 static uint64_t shared_indices(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 2 : 0;
 }
@@ -63,7 +63,7 @@ static camber_mesh_part *part_of(const camber_mesh *mesh, uint64_t index) {
     return mesh->parts + low;
 }
 
-/* A draw call for as much of a range as lies in one part and is not too long. */
+/* Issues a draw call for as much of a range as is in one part and is not too long. */
 static void draw_range(counting *c, camber_index_range range) {
     camber_mesh *mesh = c->desc->mesh;
     const uint64_t shared = shared_indices(mesh);
@@ -80,7 +80,7 @@ static void draw_range(counting *c, camber_index_range range) {
         }
         c->bound = part;
         camber_gl_draw_indices(c->renderer, mesh, first, count);
-        const uint64_t done = count < left ? count - shared : count; /* no triangle lies in two parts */
+        const uint64_t done = count < left ? count - shared : count; /* no triangle is in two parts */
         range.first_index += done;
         range.index_count -= done;
     }
@@ -101,7 +101,7 @@ static camber_status check_ranges(const counting *c) {
     return CAMBER_OK;
 }
 
-/* The ranges of the polylines that are drawn, and all of them as one. */
+/* Lists the ranges of the polylines that are drawn, and all of them as one. */
 static camber_status list_polylines(counting *c, camber_index_range **list) {
     camber_mesh *mesh = c->desc->mesh;
     camber_index_range *ranges =
@@ -133,13 +133,14 @@ static camber_status list_polylines(counting *c, camber_index_range **list) {
 
 /* ---- Fragments ---- */
 
-/* A position in the ranges that are drawn: an index within one of them. */
+/* A position in the drawn ranges: an index within one of them. */
 typedef struct cursor {
     size_t range;
     uint64_t index;
 } cursor;
 
-/* Draws the triangles that end with one of the next indices, and gives where it stopped. indices: at most so many. */
+/* Draws the triangles that end with one of the next indices, and returns where it stopped. It draws at most that many
+ * indices. */
 static cursor draw_some(counting *c, cursor at, uint64_t indices) {
     const uint64_t shared = shared_indices(c->desc->mesh);
     while (at.range < c->drawn_count && indices > 0) {
@@ -155,7 +156,7 @@ static cursor draw_some(counting *c, cursor at, uint64_t indices) {
     return at;
 }
 
-/* Reads the counts of an area back: the sums of both channels, and the highest of either. */
+/* Reads the counts of an area back: the sums of both channels, and the highest value in either. */
 static camber_status read_counts(counting *c, uint64_t sums[2], int *highest) {
     const size_t count = (size_t)c->area.width * c->area.height;
     gl_of(c)->ReadPixels(0, 0, (GLsizei)c->area.width, (GLsizei)c->area.height, GL_RGBA, GL_UNSIGNED_BYTE, c->pixels);
@@ -262,7 +263,7 @@ static camber_status count_area(counting *c) {
         camber_target_bind(c->renderer, CAMBER_TARGET_COUNTS, (GLsizei)c->area.width, (GLsizei)c->area.height);
     if (status != CAMBER_OK)
         return status;
-    c->bound = NULL; /* the target's texture has taken the rows' place */
+    c->bound = NULL; /* the target's texture is now bound in place of the rows */
     camber_gl_use_shader(c->renderer, c->raster, c->desc->mesh, &c->area);
     camber_gl_use_shader(c->renderer, c->every, c->desc->mesh, &c->area);
     status = count_fragments(c);
@@ -338,7 +339,7 @@ camber_status camber_renderer_count_overdraw(camber_renderer *renderer, const ca
         status = camber_surface_make_current(renderer->share.surface);
         if (status != CAMBER_OK)
             return status;
-        renderer->share.frames_begun++; /* what it draws with is awaited before it changes */
+        renderer->share.frames_begun++; /* what it draws with must not change before it is done */
         status = prepare(&c, &list);
         if (status == CAMBER_OK)
             status = count_areas(&c);

@@ -1,5 +1,5 @@
-/* The row texture: a table for each command that waits to be drawn, in which every row of its mesh has
- * CAMBER_ROW_TEXELS texels, and behind the tables the side table. stroke.vert says what each texel is. */
+/* The row texture: one table for each queued command, in which every row of its mesh has CAMBER_ROW_TEXELS texels, and
+ * after the tables the side table. stroke.vert says what is in each texel. */
 #include "draw/renderer.h"
 
 #include <string.h>

@@ -15,7 +15,7 @@ static void release(const camber_gl *gl, camber_target *target) {
     *target = (camber_target){0};
 }
 
-/* Whether GL takes the target that is bound. */
+/* Checks whether GL accepts the bound target. */
 static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsizei height) {
     const GLenum complete = renderer->share.surface->gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
     char what[64];
@@ -28,7 +28,7 @@ static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsi
     return status;
 }
 
-/* Not every driver takes stencil without depth, which nobody needs. */
+/* Adds a stencil. Not every driver accepts stencil without depth, although depth is not needed. */
 static void add_stencil(const camber_gl *gl, camber_target *target, GLsizei width, GLsizei height) {
     gl->GenRenderbuffers(1, &target->stencil);
     gl->BindRenderbuffer(GL_RENDERBUFFER, target->stencil);

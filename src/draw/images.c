@@ -1,5 +1,5 @@
-/* Images that lines and fills are drawn with. The host averages each to about the size that it is drawn in, and adds a
- * border of what lies beyond its edges, so that no filter reaches into a neighbour. */
+/* Prepares images that lines and fills are drawn with. The host averages each to about the size at which it is drawn,
+ * and adds a border with what is beyond its edges, so that no filter reaches into a neighbour. */
 #include "draw/images.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ void camber_image_set_free(camber_image_set *set) {
     camber_free(set->context, set->images);
 }
 
-/* The slot that has the image, or the free one that it goes to. */
+/* Returns the slot that has the image, or the free one that it goes to. */
 static uint32_t *find_slot(const camber_image_set *set, const camber_image *image) {
     size_t at = (size_t)camber_hash(CAMBER_HASH_START, &image, sizeof image) & (set->slot_count - 1);
     while (set->slots[at] && set->images[set->slots[at] - 1] != image)
@@ -53,7 +53,7 @@ static bool is_valid(const camber_image *image) {
 }
 
 camber_status camber_image_set_add(camber_image_set *set, const camber_image *image, size_t *number) {
-    /* Rows that follow each other mostly have the same image. */
+    /* Consecutive rows usually have the same image. */
     if (set->count && set->images[set->count - 1] == image) {
         *number = set->count - 1;
         return CAMBER_OK;
@@ -92,8 +92,8 @@ camber_image_use camber_image_use_on_line(const camber_image *image, size_t numb
     return (camber_image_use){image, number, fmin(fmax(px, 1e-3), 1e9), stroke_px, false};
 }
 
-/* The texels of a side that is drawn so long: all pixels of the image, unless they are far finer than those of the
- * picture. Sizes go in steps of sqrt(2), so that a zoom does not fill the texture. */
+/* Returns the texels for a side that is drawn at this length: all pixels of the image, unless they are far finer than
+ * those of the picture. Sizes go in steps of sqrt(2), so that zooming does not fill the texture. */
 static uint32_t texels_for(uint32_t side_px, double drawn_px) {
     const double most = (double)(side_px < CAMBER_IMAGE_TEXELS_MAX ? side_px : CAMBER_IMAGE_TEXELS_MAX),
                  step = 1.4142135623730951;
@@ -114,7 +114,7 @@ const uint8_t *camber_image_row(const camber_image *image, uint32_t y) {
     return image->rgba + y * (image->stride_bytes ? image->stride_bytes : 4 * (size_t)image->width);
 }
 
-/* Averages the px of a row that fall on each texel, by their share. */
+/* Averages the px of a row that fall on each texel, weighted by their share of it. */
 static void shrink_row(const camber_image *image, uint32_t y, float *texels, uint32_t count) {
     const uint8_t *row = camber_image_row(image, y);
     const double share = (double)image->width / count;
@@ -129,7 +129,7 @@ static void shrink_row(const camber_image *image, uint32_t y, float *texels, uin
     }
 }
 
-/* Averages down the columns as well, one row of texels after the other. line and sums have room for a row each. */
+/* Averages down the columns as well, one row of texels after another. line and sums have room for a row each. */
 static void shrink(const camber_image *image, const camber_image_size *size, float *line, float *sums,
                    uint8_t *texels) {
     const size_t floats = 4 * (size_t)size->width, stride = floats + 8;
@@ -153,7 +153,7 @@ static void shrink(const camber_image *image, const camber_image_size *size, flo
     }
 }
 
-/* Beyond an edge lies the opposite edge; above and below an image that is not tiled, the same edge. */
+/* Adds a border: beyond an edge is the opposite edge; above and below an image that is not tiled, the same edge. */
 static void add_border(const camber_image_size *size, uint8_t *texels) {
     const size_t width = size->width, height = size->height, stride = 4 * (width + 2);
     for (size_t y = 1; y <= height; y++) {

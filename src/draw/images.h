@@ -1,4 +1,4 @@
-/* The texels of images, for the size that they have in the picture. */
+/* The texels of images, at the size that they have in the picture. */
 #ifndef CAMBER_DRAW_IMAGES_H
 #define CAMBER_DRAW_IMAGES_H
 
@@ -10,20 +10,20 @@ enum { CAMBER_IMAGE_TEXELS_MAX = 2046 }; /* a side */
 /* An image at the size that a row or a fill draws it in. */
 typedef struct camber_image_use {
     const camber_image *image;  /* of the caller */
-    size_t number;              /* of the image among all of the frame */
+    size_t number;              /* number of the image among all images of the frame */
     double width_px, height_px; /* 0: one texel, the image's mean */
-    bool tiled;                 /* follows upon itself downwards too; else only to the right */
+    bool tiled;                 /* it repeats downwards too; else only to the right */
 } camber_image_use;
 
 typedef struct camber_image_size {
     uint32_t width, height; /* texels */
-    bool tiled;             /* beyond its upper edge lies its lower one */
+    bool tiled;             /* beyond its upper edge is its lower one */
 } camber_image_size;
 
 /* The images of a frame, each once, numbered in the order in which they are added. */
 typedef struct camber_image_set {
     camber_context *context;
-    const camber_image **images; /* count, of the caller */
+    const camber_image **images; /* count of them, owned by the caller */
     size_t count, capacity;
     uint32_t *slots;   /* numbers + 1, hashed by pointer; 0: free */
     size_t slot_count; /* a power of two, above 2 * count */
@@ -31,18 +31,19 @@ typedef struct camber_image_set {
 
 void camber_image_set_clear(camber_image_set *set);
 void camber_image_set_free(camber_image_set *set);
-/* Gives the number of an image, which is added unless the set has it. Returns CAMBER_ERROR_ARGUMENT where it is none
- * that camber.h allows, CAMBER_ERROR_MEMORY. */
+/* Gets the number of an image, after adding it if the set does not have it. Returns CAMBER_ERROR_ARGUMENT (camber.h
+ * does not allow the image), CAMBER_ERROR_MEMORY. */
 camber_status camber_image_set_add(camber_image_set *set, const camber_image *image, size_t *number);
 
-/* The use of an image by a line that is so wide, over a length of line (0: as the image's shape has it). */
+/* Returns the use of an image by a line of this width, over a length of line (0: the length that keeps the image's
+ * aspect ratio). */
 camber_image_use camber_image_use_on_line(const camber_image *image, size_t number, double stroke_px, double length_px);
-/* The use of an image by a fill, over so many px (0: as many as the image has). */
+/* Returns the use of an image by a fill, over this size in px (0: the image's own). */
 camber_image_use camber_image_use_in_fill(const camber_image *image, size_t number, double width_px, double height_px);
-/* The use of an image as its mean colour. */
+/* Returns the use of an image as its mean colour. */
 camber_image_use camber_image_use_as_mean(const camber_image *image, size_t number);
 
-/* nearest: px of the picture that a px of the plane takes at most. */
+/* Returns the size in texels for a use. nearest: the most px of the picture that one px of the plane takes. */
 camber_image_size camber_image_texels(const camber_image_use *use, double nearest);
 /* Writes RGBA8 with one texel more on each side. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_image_shrink(camber_context *context, const camber_image *image, camber_image_size size,

@@ -1,4 +1,4 @@
-/* Renderers: opening and closing them, and the buffers of the meshes that they draw. */
+/* Creates and destroys renderers, and makes the buffers of the meshes that they draw. */
 #include "draw/renderer.h"
 #include "vertices/vertices.h"
 
@@ -9,7 +9,7 @@
 static void close_gl(camber_renderer *renderer) {
     const bool is_current = camber_surface_try_current(renderer->share.surface);
     if (!is_current)
-        renderer->pixels.gl_name = 0; /* it goes with its context */
+        renderer->pixels.gl_name = 0; /* it is freed with its context */
     if (renderer->path)
         renderer->path->ops.release(&renderer->share, &renderer->pixels);
     camber_gl_release(renderer, is_current);
@@ -109,7 +109,7 @@ static void current_release(void *user, camber_shared_buffer *buffer) {
     if (!buffer->buffer && !buffer->gl_name)
         return;
     if (!camber_surface_try_current(renderer->share.surface))
-        buffer->gl_name = 0; /* it goes with its context */
+        buffer->gl_name = 0; /* it is freed with its context */
     renderer->path->ops.release(&renderer->share, buffer);
 }
 

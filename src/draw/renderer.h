@@ -1,7 +1,7 @@
-/* A renderer and its frames, whichever way it draws them.
+/* A renderer and its frames, whether it draws in GL or in OpenCL.
  *
  * A frame becomes a draw list (draw_list.h). GL draws it with shaders (draw_gl.h), OpenCL with the rasterizer
- * (draw_cl.h), one area of the picture after the other. */
+ * (draw_cl.h), one area (a rectangle of the picture) after another. */
 #ifndef CAMBER_DRAW_RENDERER_H
 #define CAMBER_DRAW_RENDERER_H
 
@@ -10,24 +10,24 @@
 #include "gl/share.h"
 #include "residency/mesh.h"
 
-/* Memory of a caller that a picture goes to. */
+/* The caller's memory that a picture is written to. */
 typedef struct camber_place {
     uint8_t *rgba;
     size_t row_bytes, stride_bytes;
 } camber_place;
 
-/* A camber_rows_fn that copies rows to a place. */
+/* A camber_rows_fn that copies rows to such memory. */
 bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
 struct camber_renderer {
     camber_share share;
-    const camber_share_path *path; /* NULL: without a surface */
-    camber_draw_list list;         /* of the frame that is being drawn */
-    /* Draws in OpenCL; GL only brings its pixels into textures then. NULL: GL draws. */
+    const camber_share_path *path; /* NULL: there is no surface */
+    camber_draw_list list;         /* list of the current frame */
+    /* Draws in OpenCL; GL then only brings its pixels into textures. NULL: GL draws. */
     struct camber_raster *raster;
-    struct camber_raster *areas; /* fills areas where GL draws the rest. NULL: none so far */
-    camber_shared_buffer pixels; /* that the rasterizer writes and GL reads */
-    camber_gl_drawing gl;        /* what GL draws with. Without a surface nothing */
+    struct camber_raster *areas; /* fills polygons if GL draws the rest. NULL: not needed so far */
+    camber_shared_buffer pixels; /* pixels that the rasterizer writes and GL reads */
+    camber_gl_drawing gl;        /* what GL draws with. Empty without a surface */
 };
 
 /* Checks a frame and resolves it into the renderer's list. */

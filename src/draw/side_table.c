@@ -1,4 +1,4 @@
-/* Fills the side table of a frame with dashes and with the stops of ramps, each once. */
+/* Fills the side table of a frame with dashes and the stops of ramps, each once. */
 #include "draw/side_table.h"
 
 #include <float.h>
@@ -39,7 +39,7 @@ static camber_status add_texels(camber_side_table *table, size_t texels, uint32_
 
 /* ---- Dashes: a texel each, from where to where it goes, px ---- */
 
-/* In the dash's own unit. */
+/* Returns the period in the dash's own unit. */
 static double period_of(const camber_dash *dash) {
     double sum = 0.0;
     for (size_t i = 0; i < dash->count; i++)
@@ -57,7 +57,8 @@ static bool is_dash(const camber_dash *dash) {
     return period > 0.0 && period <= (double)FLT_MAX;
 }
 
-/* Dashes of a period, and one more before and behind. An odd count of lengths is gone through twice. */
+/* Returns the dashes of a period, plus one before and one after. A list with an odd count of lengths is repeated twice.
+ */
 static size_t texels_of(const camber_dash *dash) {
     return (dash->count % 2 ? dash->count : dash->count / 2) + 2;
 }
@@ -68,7 +69,7 @@ static float *put_dash(float *texel, double from, double to) {
     return texel + 4;
 }
 
-/* A period's last dash stands before it once more and its first one behind it, so that the shader need not look
+/* Writes a period. Its last dash is repeated before it, and its first one after it, so that the shader need not wrap
  * around. */
 static void put_period(const camber_dash *dash, double unit_px, double period_px, float *texel) {
     const size_t lengths = dash->count * (dash->count % 2 ? 2 : 1);
@@ -122,7 +123,8 @@ static bool is_ramp(const camber_ramp *ramp) {
     return true;
 }
 
-/* NULL: the table does not have it. Looks from the end, since rows that follow each other mostly have the same. */
+/* Finds a ramp; NULL: the table does not have it. Searches from the end, because consecutive rows usually have the
+ * same. */
 static const camber_side_ramp *find_ramp(const camber_side_table *table, const camber_ramp *ramp) {
     for (size_t i = table->ramp_count; i-- > 0;)
         if (table->ramps[i].ramp == ramp)

@@ -1,6 +1,6 @@
-/* Draws frames into textures of the caller's. GL draws straight into the texture. OpenCL draws into a buffer that GL
- * shares, from which GL copies. A frame that lies over what the texture holds, or upside down, is drawn into a target
- * first and then put onto the texture. */
+/* Draws frames into the caller's textures. GL draws directly into the texture. OpenCL draws into a buffer shared with
+ * GL, from which GL copies. A frame that is drawn over the texture's content, or upside down, is drawn into a target
+ * first and then composited onto the texture. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
@@ -26,7 +26,7 @@ static camber_status check_texture(camber_renderer *renderer, const camber_frame
     GLint width = 0, height = 0, format = 0;
     if (texture->ready)
         gl->WaitSync((GLsync)texture->ready, 0, GL_TIMEOUT_IGNORED);
-    gl->BindTexture(GL_TEXTURE_2D, 0); /* whose size is 0: of a name that is not taken */
+    gl->BindTexture(GL_TEXTURE_2D, 0); /* its size is 0, as for a name that is not in use */
     gl->BindTexture(GL_TEXTURE_2D, texture->name);
     gl->GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
     gl->GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &height);
@@ -46,7 +46,7 @@ static camber_status check_texture(camber_renderer *renderer, const camber_frame
 
 /* ---- Areas that OpenCL draws ---- */
 
-/* Copies an area from the buffer into the texture that is bound. */
+/* Copies an area from the buffer into the bound texture. */
 static camber_status upload(camber_renderer *renderer, const camber_raster_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, renderer->pixels.gl_name);
@@ -73,10 +73,10 @@ static camber_status draw_area(camber_renderer *renderer, const camber_raster_sc
         return status;
     status = camber_raster_draw_into(renderer->raster, scene, area, pixels->buffer);
     camber_soft_log kept = {0};
-    const bool told = status != CAMBER_OK; /* another error would be a second message */
+    const bool told = status != CAMBER_OK; /* logging another error would give a second message */
     if (told)
         camber_log_soften(renderer->share.device->context, &kept);
-    /* Where memory was short, meshes of another surface may have let buffers go. */
+    /* If memory was short, meshes of another surface may have released buffers, which made its context current. */
     camber_status finished = camber_surface_make_current(renderer->share.surface);
     if (finished == CAMBER_OK)
         finished = ops->finish(&renderer->share, pixels, 1, !told);
@@ -165,6 +165,6 @@ camber_status camber_renderer_render_texture(camber_renderer *renderer, const ca
     if (status == CAMBER_OK)
         end(renderer, drawn);
     else
-        camber_surface_forget_errors(renderer->share.surface); /* the next frame's are its own */
+        camber_surface_forget_errors(renderer->share.surface); /* the next frame must only see its own */
     return status;
 }

@@ -1,12 +1,12 @@
-/* The GL that camber calls, loaded at run time: EGL's and OSMesa's libraries both export gl* symbols, so none is
- * linked. */
+/* The GL functions that camber calls, loaded at run time: the libraries of EGL and of OSMesa both export gl* symbols,
+ * so neither is linked. */
 #ifndef CAMBER_GL_GL_H
 #define CAMBER_GL_GL_H
 
 #include "base/base.h"
 
 #include <GLES3/gl32.h>
-/* Needs it first. */
+/* It needs the header above. */
 #include <GLES2/gl2ext.h>
 
 #define CAMBER_GL_FUNCTIONS(X)                                                                                         \
@@ -85,7 +85,7 @@
     X(void, DrawBuffers, (GLsizei, const GLenum *))                                                                    \
     X(GLenum, CheckFramebufferStatus, (GLenum))
 
-/* In the driver's extensions, not in every one. */
+/* Extensions that not every driver has. */
 typedef void camber_gl_buffer_storage_fn(GLenum target, GLsizeiptr size, const void *data, GLbitfield flags);
 typedef GLenum camber_gl_reset_status_fn(void);
 typedef void camber_gl_multi_draw_arrays_fn(GLenum mode, const GLint *first, const GLsizei *count, GLsizei draw_count);

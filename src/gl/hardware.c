@@ -1,5 +1,5 @@
-/* Guesses whether GL can be hardware here, from the files through which drivers reach GPUs. Opening GL, only to learn
- * that it is a software rasterizer, costs more than many a picture does. */
+/* Guesses whether GL can be hardware here, from the files through which drivers reach GPUs. Opening GL only to learn
+ * that it is a software rasterizer can cost more than drawing the picture. */
 #include "gl/surface.h"
 
 #include <dirent.h>
@@ -13,7 +13,7 @@ static bool can_open(const char *folder, const char *name) {
     return length > 0 && (size_t)length < sizeof path && access(path, R_OK | W_OK) == 0;
 }
 
-/* Mesa's drivers go through render nodes, and draw in software where they may not open one. */
+/* Whether there is a render node. Mesa's drivers use render nodes, and draw in software if they may not open one. */
 static bool has_render_node(const char *folder) {
     char path[512];
     bool found = false;
@@ -27,7 +27,7 @@ static bool has_render_node(const char *folder) {
 }
 
 bool camber_hardware_in(const char *folder) {
-    /* Drivers that have files of their own: NVIDIA's on PCs and boards, Windows' GPUs in WSL, Mali, Adreno, PowerVR,
+    /* Drivers with device files of their own: NVIDIA on PCs and boards, Windows GPUs in WSL, Mali, Adreno, PowerVR,
      * Vivante. */
     static const char *const names[] = {"nvidiactl", "nvhost-gpu", "dxg", "mali0", "kgsl-3d0", "pvrsrvkm", "galcore"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)

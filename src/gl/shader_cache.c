@@ -1,5 +1,5 @@
-/* Keeps linked shader programs in the user's cache folder, in the driver's own format. Mesa keeps what its compiler
- * made too, but reads the sources first; other drivers keep nothing. */
+/* Keeps linked shader programs in the user's cache folder, in the driver's own format. Mesa also caches what its
+ * compiler made, but reads the sources first; other drivers cache nothing. */
 #include "gl/shader_cache.h"
 
 #include <stdio.h>
@@ -7,7 +7,8 @@
 
 /* A file begins with this head; the driver's bytes follow. */
 typedef struct linked_head {
-    uint64_t hash; /* of the key, the format and the bytes: it finds files that are torn or another program's */
+    /* covers the key, the format and the bytes, to detect files that are incomplete or of another program */
+    uint64_t hash;
     GLenum format;
     uint32_t unused;
 } linked_head;
@@ -51,7 +52,8 @@ bool camber_shader_cache_load(camber_surface *surface, uint64_t key, GLuint prog
         if (head.hash == hash_bytes(key, head.format, bytes + sizeof head, size)) {
             gl->ProgramBinary(program, head.format, bytes + sizeof head, (GLsizei)size);
             gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
-            camber_surface_forget_errors(surface); /* bytes of another version: the caller builds the program anew */
+            /* the bytes are of another version: the caller builds the program again */
+            camber_surface_forget_errors(surface);
         }
     }
     camber_free(surface->context, bytes);
@@ -67,7 +69,7 @@ void camber_shader_cache_save(camber_surface *surface, uint64_t key, GLuint prog
     if (!keeps_programs(gl) || !camber_cache_is_on(context))
         return;
     gl->GetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size);
-    /* Where no memory is left the file is not saved, and nothing fails. */
+    /* If there is no memory left, the file is not saved, which is not an error. */
     char *bytes = size > 0 ? camber_resize_quietly(context, NULL, sizeof head + (size_t)size) : NULL;
     if (bytes) {
         gl->GetProgramBinary(program, size, &written, &head.format, bytes + sizeof head);

@@ -4,9 +4,9 @@
 
 #include "gl/surface.h"
 
-/* A key is a hash of the driver's name and version and of all sources. */
+/* Returns the key: a hash of the driver's name and version and of all sources. */
 uint64_t camber_shader_cache_key(const camber_surface *surface, const char *const *sources, size_t count);
-/* Fills a program. Returns false where the folder does not have it, or the driver does not accept it any more. */
+/* Fills a program. Returns false if the folder does not have it, or if the driver no longer accepts it. */
 bool camber_shader_cache_load(camber_surface *surface, uint64_t key, GLuint program);
 void camber_shader_cache_save(camber_surface *surface, uint64_t key, GLuint program);
 

@@ -1,7 +1,7 @@
 /* Builds shader programs from the sources that are embedded in the library, or loads them from the cache folder.
  *
- * A variant of the stroke shader is the same source behind other #defines. A surface keeps the latest
- * CAMBER_STROKE_SHADERS_MAX of them, one flatten shader a kind and one count shader a method. */
+ * A variant of the stroke shader is the same source with other #defines before it. A surface keeps the latest
+ * CAMBER_STROKE_SHADERS_MAX of them, one flatten shader per kind and one count shader per method. */
 #include "gl/shaders.h"
 
 #include "base/embedded.h"
@@ -11,7 +11,7 @@
 
 enum { LOG_SIZE = 2048 };
 
-/* Reports a step that failed. Where GL has an error of its own, that says more than the step's log. */
+/* Reports a step that failed. If GL reports an error of its own, that says more than the step's log. */
 static camber_status fail_step(camber_surface *surface, const char *step, const char *log) {
     const camber_status status = camber_surface_check(surface, "shaders");
     if (status != CAMBER_OK)
@@ -110,7 +110,7 @@ camber_status camber_shaders_stroke(camber_shaders *shaders, unsigned variant, c
     camber_shader *wanted = shaders->strokes;
     while (wanted < shaders->strokes + CAMBER_STROKE_SHADERS_MAX && wanted->program && wanted->variant != variant)
         wanted++;
-    if (wanted == shaders->strokes + CAMBER_STROKE_SHADERS_MAX) { /* the oldest goes */
+    if (wanted == shaders->strokes + CAMBER_STROKE_SHADERS_MAX) { /* the oldest is replaced */
         wanted = shaders->strokes + shaders->strokes_built % CAMBER_STROKE_SHADERS_MAX;
         gl->DeleteProgram(wanted->program);
         wanted->program = 0;

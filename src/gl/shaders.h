@@ -1,10 +1,10 @@
-/* The shader programs of a surface. Each is built when it is first used, or loaded from the cache folder. */
+/* The shader programs of a surface. Each is built, or loaded from the cache folder, when it is first used. */
 #ifndef CAMBER_GL_SHADERS_H
 #define CAMBER_GL_SHADERS_H
 
 #include "gl/surface.h"
 
-/* Variants of the stroke shader, as bits. A frame pays only for what it has. */
+/* Variants of the stroke shader, as bits. A frame pays only for what it uses. */
 enum {
     CAMBER_VARIANT_LINEAR = 1, /* coverage is a ramp across the edge, not the exact area */
     CAMBER_VARIANT_SHARP_JOINS = 2,
@@ -20,7 +20,7 @@ enum {
     CAMBER_VARIANT_TRIM = 1024,     /* some strokes are drawn in part */
     CAMBER_VARIANT_RAMP = 2048,     /* some strokes change their colour along them */
     CAMBER_VARIANT_PATTERN = 4096,  /* some strokes are drawn with images */
-    CAMBER_VARIANT_MASK = 8192,     /* writes colours that may be translucent, and their alphas beside them */
+    CAMBER_VARIANT_MASK = 8192,     /* writes colours that may be translucent, and their alphas to a second target */
     CAMBER_VARIANT_PITCHED = 16384, /* the plane of the lines is seen at an angle */
     CAMBER_VARIANT_METHOD = 32768,  /* times camber_method */
     CAMBER_METHODS = 3,
@@ -29,16 +29,16 @@ enum {
 
 enum {
     CAMBER_ROW_TEXELS = 7,              /* texels of a row in the row texture; stroke.vert says what is in each */
-    CAMBER_ROW_TEXTURE_WIDTH_PX = 2048, /* as the shaders have it */
+    CAMBER_ROW_TEXTURE_WIDTH_PX = 2048, /* the same as in the shaders */
 };
 
-/* Texture units of the shaders' samplers. All that are not listed are at unit 0. */
+/* Texture units of the shaders' samplers. All samplers that are not listed are at unit 0. */
 enum { CAMBER_RECORDS_UNIT = 1, CAMBER_ALPHAS_UNIT = 2, CAMBER_ATLAS_UNIT = 3 };
 
-/* The flatten shader puts one of these onto the picture. */
+/* The flatten shader composites one of these onto the picture. */
 typedef enum camber_flatten_kind {
     CAMBER_FLATTEN_COLORS,
-    CAMBER_FLATTEN_COVERAGE, /* a layer with one channel, gathered one line over the other */
+    CAMBER_FLATTEN_COVERAGE, /* a layer with one channel of accumulated coverage */
     CAMBER_FLATTEN_UNION,    /* a layer with four sums, from which the shader makes the union */
     CAMBER_FLATTEN_MASKED,   /* a layer of colours, and a second one of their alphas */
     CAMBER_FLATTEN_FILL,     /* no layer: one colour everywhere */
@@ -50,9 +50,9 @@ typedef enum camber_flatten_kind {
 /* A program and its uniforms' locations. */
 typedef struct camber_shader {
     GLuint program;   /* 0: not built yet */
-    unsigned variant; /* of a stroke shader */
+    unsigned variant; /* variant of a stroke shader */
     GLint origin, corner, scale, layer_color, table, table_rows, stride, side_table, eye;
-    GLint image_rect, mean, first, axis_x, axis_y; /* of a fill with images */
+    GLint image_rect, mean, first, axis_x, axis_y; /* uniforms of a fill with images */
 } camber_shader;
 
 typedef struct camber_shaders {
@@ -63,8 +63,8 @@ typedef struct camber_shaders {
     camber_shader counts[CAMBER_METHODS]; /* they count every fragment */
 } camber_shaders;
 
-/* Each returns a program that stays built until another of its kind is asked for. The surface's context is current.
- * Returns CAMBER_ERROR_DEVICE where a shader does not build. */
+/* Each returns a program, which stays built until another of its kind is requested. The surface's context must be
+ * current. They return CAMBER_ERROR_DEVICE (a shader does not build). */
 camber_status camber_shaders_stroke(camber_shaders *shaders, unsigned variant, const camber_shader **shader);
 camber_status camber_shaders_flatten(camber_shaders *shaders, camber_flatten_kind kind, const camber_shader **shader);
 camber_status camber_shaders_count(camber_shaders *shaders, camber_method method, const camber_shader **shader);

@@ -1,4 +1,4 @@
-/* Choosing a sharing path by trying it. */
+/* Chooses a sharing path by trying it. */
 #include "gl/share.h"
 
 #include <stdio.h>
@@ -31,8 +31,8 @@ void camber_share_await(camber_share *share, const camber_shared_buffer *outputs
 
 enum { PROBE_BYTES = 4096 };
 
-/* Whether GL reads this word from a buffer. GL makes a copy first, since a map of the buffer itself may be the very
- * memory that OpenCL wrote. */
+/* Whether GL reads this word from a buffer. GL copies the buffer first, because a mapping of the buffer itself may be
+ * the very memory that OpenCL wrote. */
 static bool gl_sees(const camber_gl *gl, GLuint buffer, uint32_t word) {
     GLuint copy = 0;
     gl->GenBuffers(1, &copy);
@@ -95,7 +95,7 @@ camber_status camber_share_choose(camber_share *share, camber_sharing wanted, co
         if (wanted != CAMBER_SHARING_AUTO && wanted != paths[i]->sharing)
             continue;
         camber_soft_log kept;
-        camber_log_soften(context, &kept); /* of a path that does not work, one line tells */
+        camber_log_soften(context, &kept); /* one log line per path that does not work is enough */
         status = try_path(share, paths[i]);
         camber_log_restore(context, &kept);
         if (status == CAMBER_OK) {

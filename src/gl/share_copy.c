@@ -1,4 +1,4 @@
-/* A copy through host memory, which works between any OpenCL and any GL. */
+/* The sharing path that copies through host memory, which works between any OpenCL and any GL. */
 #include "gl/share.h"
 
 static bool is_possible(const camber_share *share) {

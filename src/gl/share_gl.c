@@ -1,4 +1,4 @@
-/* cl_khr_gl_sharing: the GL buffer is the OpenCL output. */
+/* The sharing path cl_khr_gl_sharing: the OpenCL output is the GL buffer. */
 #include "gl/share.h"
 
 static bool is_possible(const camber_share *share) {

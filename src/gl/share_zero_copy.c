@@ -1,5 +1,5 @@
-/* Zero copy on the CPU: a persistent, coherent map of the GL buffer is page-aligned host memory, and an OpenCL buffer
- * on that memory lets the kernels write straight into it. */
+/* The zero-copy sharing path, on the CPU: a persistent, coherent mapping of the GL buffer is page-aligned host memory,
+ * and an OpenCL buffer on that memory lets the kernels write straight into it. */
 #include "gl/share.h"
 
 static bool is_possible(const camber_share *share) {
@@ -36,7 +36,8 @@ static camber_status begin(void *user, camber_shared_buffer *outputs, size_t cou
     return CAMBER_OK;
 }
 
-/* OpenCL promises what it wrote to host memory only to a map of it; on the devices at hand it costs nothing. */
+/* OpenCL guarantees that host memory has what it wrote only after mapping the buffer; on the devices tried this costs
+ * nothing. */
 static camber_status finish(void *user, camber_shared_buffer *outputs, size_t count, bool written) {
     const camber_share *share = user;
     for (size_t i = 0; i < count && written; i++) {

@@ -21,7 +21,7 @@ static bool is_software(const char *renderer) {
            strstr(renderer, "SwiftShader") || strstr(renderer, "Software");
 }
 
-/* A function under the first of its names whose extension is there; NULL where none is. */
+/* A function, loaded under the first of its names whose extension exists; NULL if there is none. */
 typedef struct optional_name {
     const char *extension, *function;
 } optional_name;
@@ -33,7 +33,7 @@ static camber_function *load_optional(camber_surface *surface, const optional_na
     return NULL;
 }
 
-/* GLES has them since 3.2, desktop GL, which OSMesa gives, since 3.1. */
+/* GLES has texture buffers since 3.2, and desktop GL, which OSMesa provides, since 3.1. */
 static camber_function *load_texture_buffers(camber_surface *surface) {
     static const optional_name extensions[] = {{"GL_EXT_texture_buffer", "glTexBufferEXT"},
                                                {"GL_OES_texture_buffer", "glTexBufferOES"}};
@@ -79,7 +79,7 @@ static camber_status load_gl(camber_surface *surface) {
                        surface->name, version ? version : "its GL");
 }
 
-/* ES of 3.2 has them, and desktop GL, which OSMesa gives, since 3.0. */
+/* GLES has them since 3.2, and desktop GL, which OSMesa provides, since 3.0. */
 static bool has_half_float_targets(const camber_gl *gl) {
     const char *version = (const char *)gl->GetString(GL_VERSION);
     return has_extension(gl, "GL_EXT_color_buffer_half_float") || has_extension(gl, "GL_EXT_color_buffer_float") ||
@@ -107,7 +107,7 @@ static void describe(camber_surface *surface) {
     surface->half_float_targets = has_half_float_targets(gl);
     GLint texels = 0;
     gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-    surface->records_max = texels > 0 ? (uint32_t)texels : 65536; /* what the specification promises */
+    surface->records_max = texels > 0 ? (uint32_t)texels : 65536; /* the minimum that the specification guarantees */
 }
 
 static camber_status open_backend(camber_context *context, const camber_surface_ops *ops,
@@ -131,14 +131,14 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-/* Tries a back end. It is no error that it is not there, as long as another may be. */
+/* Tries a back end. It is not an error if it is missing, as long as another may work. */
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
                                  const camber_surface_desc *desc, camber_surface **surface) {
     camber_soft_log kept;
     camber_log_soften(context, &kept);
     const camber_status status = open_backend(context, ops, desc, surface);
     camber_log_restore(context, &kept);
-    if (status == CAMBER_ERROR_MEMORY) /* no other is tried then */
+    if (status == CAMBER_ERROR_MEMORY) /* then no other is tried */
         return camber_fail(context, status, "out of memory for a GL surface; give it more memory");
     return status;
 }
@@ -204,8 +204,8 @@ camber_status camber_surface_make_current(camber_surface *surface) {
 
 /* ---- Errors that GL reports ---- */
 
-/* The first error since the last look. There may be a flag a part of the driver, and a lost context may report its
- * loss for ever. */
+/* Returns the first error since the last check. Each part of the driver may have a flag of its own, and a lost context
+ * may report its loss for ever. */
 static GLenum take_errors(camber_surface *surface) {
     enum { FLAGS_MAX = 16 };
     const camber_gl *gl = &surface->gl;

@@ -1,4 +1,4 @@
-/* EGL without a display: Mesa's surfaceless platform, else the first device that gives a GLES 3 context. */
+/* EGL without a display: Mesa's surfaceless platform, else the first device that provides a GLES 3 context. */
 #include "gl/surface.h"
 
 #include <EGL/egl.h>
@@ -49,8 +49,8 @@ static camber_function *load(camber_surface *surface, const char *name) {
     return egl->eglGetProcAddress(name);
 }
 
-/* A GLES 3 context that tells of its loss, where there are such; else one that may draw garbage then, or end the
- * process. */
+/* Makes a GLES 3 context that reports its loss, if the driver supports that; else one that may draw garbage after a
+ * loss, or end the process. */
 static EGLContext create_context(const egl_state *egl, EGLConfig config, EGLContext shared) {
     static const EGLint telling[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3,
                                      EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT,
@@ -63,7 +63,7 @@ static EGLContext create_context(const egl_state *egl, EGLConfig config, EGLCont
     return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, shared, plain);
 }
 
-/* A context on a display that is initialised; false leaves nothing behind but the display. */
+/* Makes a context on an initialised display; if it returns false, only the display is left. */
 static bool make_context(egl_state *egl, EGLContext shared) {
     static const EGLint config_wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT_KHR, EGL_SURFACE_TYPE, 0, EGL_NONE};
     EGLConfig config = NULL;
@@ -88,7 +88,7 @@ static bool open_display(egl_state *egl, EGLDisplay display, EGLContext shared) 
     egl->display = display;
     if (make_context(egl, shared))
         return true;
-    egl->display = EGL_NO_DISPLAY; /* not terminated: another surface may be on it */
+    egl->display = EGL_NO_DISPLAY; /* the display is not terminated: another surface may use it */
     return false;
 }
 
@@ -142,7 +142,7 @@ static camber_status create(camber_surface *surface) {
 
 static bool make_current(camber_surface *surface) {
     const egl_state *egl = surface->state;
-    /* Always, not only where another is current: OSMesa replaces the dispatch behind EGL's back. */
+    /* Always, not only if another context is current: OSMesa replaces the dispatch table without EGL noticing. */
     if (egl->eglGetCurrentContext() == egl->context)
         egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     egl->eglBindAPI(EGL_OPENGL_ES_API);
@@ -171,8 +171,8 @@ static void destroy(camber_surface *surface) {
         release(surface);
         egl->eglDestroyContext(egl->display, egl->context);
     }
-    /* The display is the process's, shared with every other surface on it, and the driver's library keeps threads: both
-     * stay, as EGL's own reference is not counted. */
+    /* The display belongs to the process and is shared by all surfaces on it, and the driver's library has running
+     * threads. Both are kept, because EGL does not count references to a display. */
     camber_free(surface->context, egl);
 }
 

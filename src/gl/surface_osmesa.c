@@ -1,10 +1,10 @@
-/* OSMesa: Mesa drawing into memory, with desktop GL's core profile. Gone from newer Mesa, so it comes second. */
+/* OSMesa: Mesa drawing into memory, with desktop GL's core profile. Newer Mesa no longer has it, so it comes second. */
 #include "gl/surface.h"
 
 #include <dlfcn.h>
 #include <string.h>
 
-/* Copied from GL/osmesa.h, which newer systems have no more than the library. */
+/* Copied from GL/osmesa.h, which newer systems lack, like the library. */
 #define OSMESA_FORMAT 0x22
 #define OSMESA_RGBA GL_RGBA
 #define OSMESA_PROFILE 0x33
@@ -20,7 +20,7 @@ typedef struct osmesa_state {
     GLboolean (*make_current)(OSMesaContext context, void *buffer, GLenum type, GLsizei width, GLsizei height);
     camber_function *(*load)(const char *name);
     void (*destroy)(OSMesaContext context);
-    uint32_t pixel; /* OSMesa wants a buffer of its own; camber draws into framebuffer objects */
+    uint32_t pixel; /* OSMesa needs a buffer of its own, but camber draws into framebuffer objects */
 } osmesa_state;
 
 static bool find(void *library, const char *name, void *function) {
@@ -87,7 +87,7 @@ static void destroy(camber_surface *surface) {
         release(surface);
         osmesa->destroy(osmesa->context);
     }
-    /* The library stays: its driver's threads may still be in it. */
+    /* The library stays loaded: its driver's threads may still be running in it. */
     camber_free(surface->context, osmesa);
 }
 

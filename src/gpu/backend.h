@@ -1,5 +1,5 @@
-/* A back end gives a table of functions, and handles that mean something to it alone. OpenCL's folder is opencl/.
- * Another back end is another folder, and its line in the list in find.c. Only files of gpu/ include this. */
+/* A back end provides a table of functions, and handles that only it can interpret. The OpenCL back end is in opencl/.
+ * To add another, make another folder and add a line to the list in find.c. Only files in gpu/ include this header. */
 #ifndef CAMBER_GPU_BACKEND_H
 #define CAMBER_GPU_BACKEND_H
 
@@ -7,7 +7,7 @@
 #include "gpu/launch.h"
 #include "gpu/program.h"
 
-/* A device that a back end has found, and what it opens it by. */
+/* A device that a back end has found, with the handles that it needs to open it. */
 typedef struct camber_found_device {
     const struct camber_gpu_backend *backend;
     void *platform, *id;
@@ -23,22 +23,22 @@ typedef struct camber_failed_call {
 
 struct camber_buffer {
     void *native;
-    size_t counted_bytes; /* of the run's budget */
+    size_t counted_bytes; /* bytes that are counted in the run's budget */
 };
 
 /* Functions that return a status log why they failed. */
 typedef struct camber_gpu_backend {
-    /* Fails if drivers would end the process, when they are first asked. */
+    /* Fails if the drivers would end the process when they are first called. */
     camber_status (*check_process)(camber_context *context);
     /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. */
     size_t (*find)(camber_found_device *found, size_t capacity, camber_failed_call *failed);
-    /* Logs such a call, and returns the status that its code stands for. */
+    /* Logs such a failed call, and returns the status for its error code. */
     camber_status (*fail)(camber_context *context, const camber_failed_call *failed);
     /* Sets device->native and what only the back end knows: rounds_correctly, host_memory, gl_context, and lanes if
      * they are 0. close is called even if this failed. */
     camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl);
     void (*close)(camber_device *device);
-    /* These two fail in silence unless is_told. */
+    /* These two fail without a message unless is_told. */
     camber_status (*finish)(const camber_device *device, bool is_told);
     camber_status (*unmap)(const camber_device *device, void *native, void *bytes, bool is_told);
 
@@ -61,15 +61,15 @@ typedef struct camber_gpu_backend {
     void (*release_kernel)(camber_kernel *kernel);
     camber_status (*launch)(const camber_device *device, const camber_launch *launch, camber_event **event);
     camber_status (*wait)(const camber_device *device, camber_event *event, const char *name);
-    double (*end_event)(camber_event *event); /* returns how long its command ran, ms, and releases it */
+    double (*end_event)(camber_event *event); /* returns how long its command ran, in ms, and releases the event */
 } camber_gpu_backend;
 
 extern const camber_gpu_backend camber_opencl;
 
-/* find.c: fails if drivers would end the process, or would not fit its memory, when they are first asked. */
+/* find.c: fails if the drivers would end the process, or would not fit into its memory, when they are first called. */
 camber_status camber_check_drivers(camber_context *context);
 enum { CAMBER_DEVICES_MAX = 64 };
-/* Returns how many devices were found. *failed takes the last call that failed, if any did. */
+/* Returns how many devices were found. *failed receives the last call that failed, if any did. */
 size_t camber_find_devices(camber_found_device found[CAMBER_DEVICES_MAX], camber_failed_call *failed);
 
 #endif

@@ -17,7 +17,7 @@ typedef enum camber_buffer_kind {
     CAMBER_BUFFER_BORROWED_TO_WRITE,
 } camber_buffer_kind;
 
-/* Bytes of a buffer. */
+/* A range of bytes in a buffer. */
 typedef struct camber_byte_range {
     size_t offset_bytes, size_bytes;
 } camber_byte_range;
@@ -26,7 +26,7 @@ typedef struct camber_byte_range {
  * failure. */
 camber_status camber_buffer_create(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                    const void *bytes, camber_buffer **buffer);
-/* Makes a buffer of GL's into one of the device's, which must have been opened for the GL context. Kernels may use it
+/* Makes a device buffer from a GL buffer. The device must have been opened for the GL context. Kernels may use it
  * between camber_buffers_acquire and camber_buffers_give_back. */
 camber_status camber_buffer_create_of_gl(const camber_device *device, unsigned gl_name, camber_buffer **buffer);
 /* Releases *buffer, which may be NULL, and sets it to NULL. */
@@ -34,8 +34,8 @@ void camber_buffer_release(const camber_device *device, camber_buffer **buffer);
 
 camber_status camber_buffer_write(const camber_device *device, camber_buffer *buffer, size_t offset_bytes,
                                   size_t size_bytes, const void *bytes);
-/* The same without a wait, which takes longer than a short write: the bytes must stay until the device has been waited
- * for. */
+/* The same without waiting, since waiting takes longer than a short write: the bytes must stay valid until the caller
+ * has waited for the device. */
 camber_status camber_buffer_write_later(const camber_device *device, camber_buffer *buffer, size_t offset_bytes,
                                         size_t size_bytes, const void *bytes);
 /* Waits for the device, and reads the buffer's first bytes; none if size_bytes is 0. */
@@ -43,13 +43,13 @@ camber_status camber_buffer_read(const camber_device *device, camber_buffer *buf
 
 typedef enum camber_map_access { CAMBER_MAP_READ, CAMBER_MAP_READ_WRITE } camber_map_access;
 
-/* Waits for the device, and gives the buffer's first bytes as memory of the host, until they are unmapped. bytes: the
+/* Waits for the device, and maps the buffer's first bytes into host memory until they are unmapped. bytes is the
  * address of a pointer of any type. */
 camber_status camber_buffer_map(const camber_device *device, camber_buffer *buffer, camber_map_access access,
                                 size_t size_bytes, void *bytes);
-/* Ends a map that was read; bytes may be NULL. */
+/* Unmaps memory that was only read; bytes may be NULL. */
 void camber_buffer_unmap(const camber_device *device, camber_buffer *buffer, const void *bytes);
-/* Ends a map that was written: kernels see what the host wrote. */
+/* Unmaps memory that was written: kernels then see what the host wrote. */
 camber_status camber_buffer_unmap_written(const camber_device *device, camber_buffer *buffer, void *bytes);
 
 enum { CAMBER_GL_BUFFERS_MAX = 2 };

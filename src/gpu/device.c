@@ -1,8 +1,8 @@
 /* Chooses and opens compute devices.
  *
- * Input: a desc with a word that the device must match and bounds on its memory. Output: a camber_device that a back
- * end has opened, and the sizes that its kernels are built for. Of the devices that match a GPU wins over a CPU, and a
- * CPU over anything else. Programs are made later, when they are first used (program.c). */
+ * Input: a desc with a word that the device must match, and memory limits. Output: a camber_device that a back end has
+ * opened, and the sizes that its kernels are built for. Among matching devices, a GPU is preferred to a CPU, and a CPU
+ * to anything else. Programs are made later, when they are first used (program.c). */
 #include "gpu/backend.h"
 
 #include "kernels/layout.h"
@@ -36,8 +36,8 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
-/* Picks the best device that matches: a GPU, else a CPU, else another; or the number-th of those that match, where
- * number is not 0. */
+/* Picks the best matching device: a GPU, else a CPU, else another. If number is not 0, picks the number-th matching
+ * device. */
 static camber_status choose_device(camber_device *device, const camber_device_desc *desc, camber_found_device *chosen) {
     const char *match = desc->match;
     const uint32_t number = desc->number;
@@ -71,12 +71,12 @@ static camber_status choose_device(camber_device *device, const camber_device_de
     return CAMBER_OK;
 }
 
-/* Below these, a part of a single block and the strokes of a style would not fit. */
+/* With less than this, a part of a single block and the strokes of a style would not fit. */
 enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 /* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
-/* Sets the work-group's size, the lanes and the largest buffer, from the desc's bounds and the device's. */
+/* Sets the work-group size, the lanes and the largest buffer from the limits of the desc and of the device. */
 static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
@@ -106,7 +106,7 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
     return CAMBER_OK;
 }
 
-/* Bounds what meshes may hold. Where the desc gives no bound, a device with memory of its own keeps a quarter of it for
+/* Sets the memory limit for meshes. If the desc gives none, a device with memory of its own keeps a quarter of it for
  * pictures. */
 static void bound_memory(camber_device *device, const camber_device_desc *desc) {
     device->memory_bytes = desc->memory_bytes;

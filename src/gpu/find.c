@@ -1,6 +1,6 @@
 /* Finds the devices of all back ends.
  *
- * Main idea: drivers set themselves up when they are first asked, which must happen once, under a lock, and not in a
+ * Main idea: drivers set themselves up when they are first called. This must happen once, under a lock, and not in a
  * child that was forked afterwards. */
 #include "gpu/backend.h"
 
@@ -12,8 +12,8 @@
 static const camber_gpu_backend *const backends[] = {&camber_opencl};
 enum { BACKENDS = sizeof backends / sizeof *backends };
 
-/* The only lock of the whole process. It guards state of the process: the OpenCL loader and the drivers set themselves
- * up when they are first asked. PoCL (3.1 and 6.0) tells a second thread too early that this is done, and gives it
+/* The only lock for the whole process. It guards global state: the OpenCL loader and the drivers set themselves up when
+ * they are first called. PoCL (3.1 and 6.0) reports too early to a second thread that this is done, and gives it
  * devices without a name. Every use of OpenCL begins with camber_find_devices, so locking here is enough. */
 static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
 

@@ -1,4 +1,4 @@
-/* Starting kernels, and what became of them. */
+/* Starts kernels and waits for them. */
 #include "gpu/backend.h"
 
 camber_status camber_launch_kernel(const camber_device *device, const camber_launch *launch, camber_event **event) {

@@ -1,4 +1,4 @@
-/* The one way to start a kernel: arguments by position, each a buffer or a value, over so many work-items. */
+/* The only way to start a kernel: with arguments by position, each a buffer or a value, and a number of work-items. */
 #ifndef CAMBER_GPU_LAUNCH_H
 #define CAMBER_GPU_LAUNCH_H
 
@@ -20,21 +20,22 @@ typedef struct camber_kernel_arg {
     { .value = &(variable), .value_bytes = sizeof(variable) }
 
 typedef struct camber_launch {
-    const char *name; /* of the stage: errors name it */
+    const char *name; /* name of the stage, for error messages */
     camber_kernel *kernel;
-    const camber_kernel_arg *args; /* all that the kernel has */
+    const camber_kernel_arg *args; /* all arguments of the kernel */
     size_t arg_count;
     size_t work_items; /* rounded up to whole work-groups */
     size_t group_size;
 } camber_launch;
 
-/* Queues the kernel. *event takes its event, which camber_event_end frees; event may be NULL. */
+/* Queues the kernel. *event receives its event, which camber_event_end frees; event may be NULL. */
 camber_status camber_launch_kernel(const camber_device *device, const camber_launch *launch, camber_event **event);
 
-/* Waits for a command; name is that of its stage. An event that is NULL has ended. */
+/* Waits for a command; name is the name of its stage. A NULL event has ended already. */
 camber_status camber_event_wait(const camber_device *device, camber_event *event, const char *name);
 
-/* Adds the time that a command took to ms, once it has been waited for, and releases the event, which may be NULL. */
+/* Adds the time that a command took to *ms and releases the event, which may be NULL. The caller must have waited for
+ * the command. */
 void camber_event_end(const camber_device *device, camber_event *event, double *ms);
 
 #endif

@@ -1,8 +1,8 @@
-/* Counts what is held on a device, and divides its bound. memory.h has the rule. */
+/* Counts the memory that is held on a device, and divides its memory limit as memory.h says. */
 #include "gpu/memory.h"
 
-/* An OpenCL renderer gets a quarter of the bound on meshes. Where that is less than this, it gets this much, and meshes
- * keep their whole bound. */
+/* An OpenCL renderer gets a quarter of the memory limit for meshes. If that is less than this, it gets this much, and
+ * meshes keep their whole limit. */
 static const uint64_t DRAWING_LEAST_BYTES = 4 * 1024 * 1024;
 
 uint64_t camber_device_share(const camber_device *device, unsigned eighths) {

@@ -1,4 +1,4 @@
-/* Which programs there are, of which sources and options each is made, and which kernels it has.
+/* Lists the programs, the sources and options that each is made from, and the kernels that it has.
  *
  * Input: sources embedded in the library. Output: camber_programs, which a device's back end makes when they are first
  * needed, and which the device keeps. */
@@ -114,7 +114,7 @@ static camber_status make_current(camber_device *device, recipe *from, camber_pr
 #define make_current make_program
 #endif
 
-/* Gives a program that the device keeps, and makes it first where it is missing. */
+/* Returns a program that the device keeps, after making it if it is missing. */
 static camber_status ensure_program(camber_device *device, recipe *from, camber_program **kept,
                                     camber_program **program) {
     camber_status status = camber_check_process(device->context);
@@ -169,8 +169,8 @@ camber_status camber_device_network_program(camber_device *device, bool has_arc_
     return ensure_program(device, &from, &device->network_programs[has_arc_length][pitched], program);
 }
 
-/* Makes the n-th of all programs that a device can be asked for; past the last it leaves *program NULL. Those that take
- * longest to compile come first. */
+/* Makes the n-th of all programs that a device can be asked for, or leaves *program NULL past the last. The programs
+ * that take longest to compile come first. */
 static camber_status ensure_nth(camber_device *device, unsigned n, camber_program **program) {
     static const unsigned variants[] = {CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED, CAMBER_RASTER_RICH, 0};
     enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };
@@ -188,7 +188,8 @@ static camber_status ensure_nth(camber_device *device, unsigned n, camber_progra
     return n == METHODS ? camber_device_arc_length_program(device, program) : CAMBER_OK;
 }
 
-/* Programs share, share + shares, share + 2 * shares and so on: several processes can compile at once. */
+/* Builds programs share, share + shares, share + 2 * shares and so on, so that several processes can compile at the
+ * same time. */
 camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warmed *warmed) {
     camber_warmed all = {0};
     camber_status status = CAMBER_OK;

@@ -7,16 +7,16 @@
 /* One program. Only the kernels of its kind are set; the others are NULL. */
 typedef struct camber_program {
     void *native;                          /* the back end's own */
-    camber_kernel *classify, *scan, *emit; /* of a tessellation method */
-    camber_kernel *cull_count, *cull_emit; /* of networks: which points a camera sees */
+    camber_kernel *classify, *scan, *emit; /* kernels of a tessellation method */
+    camber_kernel *cull_count, *cull_emit; /* kernels of networks: which points a camera sees */
     camber_kernel *arc_length_sum, *arc_length_scan;
-    camber_kernel *offset_clip, *offset_count, *offset_emit; /* of lines beside others */
+    camber_kernel *offset_clip, *offset_count, *offset_emit; /* kernels of lines with an offset */
     camber_kernel *setup, *bin_count, *bin_scan, *bin_scatter, *wind, *rasterize;
     bool built; /* compiled from source: no cache had it */
     bool kept;  /* a cache has it by now */
 } camber_program;
 
-/* A back end makes a program of this. */
+/* The source of a program, from which a back end makes it. */
 typedef struct camber_program_source {
     const char *name; /* for people */
     const char *text;
@@ -28,14 +28,14 @@ typedef struct camber_program_source {
 typedef struct camber_program_desc {
     camber_method method;
     bool has_arc_length;
-    bool round_limits; /* a stroke has one. Without them classify is a fifth faster on PoCL */
+    bool round_limits; /* a stroke has a round limit. Without them classify is a fifth faster on PoCL */
 } camber_program_desc;
 
-/* Variants of the rasterizer, as bits: the compiler is given each bit that is set as a macro with the value 1. */
+/* Variants of the rasterizer, as bits: each bit that is set becomes a macro with the value 1. */
 #define CAMBER_RASTER_RICH 1
 #define CAMBER_RASTER_PITCHED 2 /* only together with RICH */
 
-/* Each gives a program that the device owns, and loads or builds it at first use. */
+/* Each returns a program that the device owns, and loads or builds it at first use. */
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
 camber_status camber_device_network_program(camber_device *device, bool has_arc_length, bool pitched,
                                             camber_program **program);

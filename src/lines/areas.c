@@ -1,8 +1,8 @@
-/* Makes polylines of areas: each ring closed, outer rings clockwise as seen and holes the other way.
+/* Makes polylines of areas: every ring closed, outer rings clockwise as seen, holes counter-clockwise.
  *
- * Input: rings of points in px, and which of them belong together. Output: polylines, a ring each, as
- * camber_polylines_create makes them. So windings of neighbours agree: where areas of one colour overlap they add up,
- * and a hole takes away what its own area gave. */
+ * Input: rings of points in px, and which of them belong together. Output: one polyline per ring, as
+ * camber_polylines_create makes them. Thus the winding numbers of neighbours agree: where areas of one colour overlap,
+ * the numbers add up, and a hole subtracts what its own area added. */
 #include "lines/lines.h"
 
 #include <assert.h>

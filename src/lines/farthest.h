@@ -1,4 +1,4 @@
-/* The step of Douglas and Peucker's method (1973) that simplification and importance share. */
+/* The step of the Douglas-Peucker method (1973) that simplification and importance share. */
 #ifndef CAMBER_LINES_FARTHEST_H
 #define CAMBER_LINES_FARTHEST_H
 
@@ -8,10 +8,10 @@
  * spiral made for the worst case costs n log n. The result keeps its tolerance either way. */
 #define CAMBER_FARTHEST_SPLITS 48
 
-/* Returns the point strictly between first and last that lies farthest from the segment between these two, and its
- * squared distance. Returns first where all points lie on the segment.
+/* Returns the point strictly between first and last that is farthest from the segment between these two, and its
+ * squared distance. Returns first if all points are on the segment.
  *
- * The distance of a point beside the segment is that from its line; before a or beyond b, that from the end:
+ * For a point beside the segment, the distance is that to its line; before a or beyond b, the distance to that end:
  *
  *              beside
  *     before a--------b beyond

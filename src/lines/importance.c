@@ -1,9 +1,9 @@
-/* Weighs the points of polylines: importance.h says what the numbers mean.
+/* Computes the importance of the points of polylines; importance.h says what the numbers mean.
  *
- * Each polyline is weighed by itself, as Douglas and Peucker split it: a range of points is split at the point that
- * lies farthest from the segment between its ends. That point's importance is its distance, and at most the importance
- * of the point that split the range before: so a point never stays where one that it depends on has gone. Rounding goes
- * up. Then points with equal coordinates get the largest importance among them. */
+ * Each polyline is treated separately, by the Douglas-Peucker method: a range of points is split at the point that is
+ * farthest from the segment between its ends. That point's importance is its distance, but at most the importance of
+ * the point that split the surrounding range, so that no point is kept if one that it depends on is dropped. Values are
+ * rounded up. Then points with equal coordinates get the largest importance among them. */
 #include "lines/importance.h"
 
 #include "lines/farthest.h"
@@ -19,7 +19,7 @@ typedef struct range {
     unsigned depth;
 } range;
 
-/* The root as a float, never below the distance: so a point farther away than the tolerance is never dropped. */
+/* Returns the square root as a float, rounded up, so that a point farther away than the tolerance is never dropped. */
 static float round_up(double squared) {
     const double distance = sqrt(squared);
     const float nearest = (float)distance;
@@ -54,13 +54,13 @@ static void weigh_range(const double *points, range whole, float *importance) {
     }
 }
 
-/* A ring begins and ends in one point, so that the segment between its ends has no length. It is split at the point
- * farthest from the seam. The point farthest from that line always stays as well, so that an area remains one, however
- * small it is. */
+/* A ring begins and ends at the same point, so that the segment between its ends has no length. It is split at the
+ * point farthest from the seam. The point farthest from the line between these two is always kept as well, so that an
+ * area remains an area, however small it is. */
 static void weigh_ring(const double *points, size_t first, size_t last, float *importance) {
     double largest, before, after;
     const size_t far = camber_farthest(points, first, last, &largest);
-    if (far == first) { /* all points have one position */
+    if (far == first) { /* all points have the same position */
         weigh_range(points, (range){first, last, INFINITY, 0}, importance);
         return;
     }
@@ -86,8 +86,8 @@ static void weigh_polyline(const double *points, size_t first, size_t end, float
 
 /* ---- Shared nodes ---- */
 
-/* Nodes are found share by share of their hashes, so that a table stays this small however many points there are; each
- * share is one more walk over the points. */
+/* Nodes are looked up in several rounds, each for a share of all hashes, so that the table stays this small however
+ * many points there are. Each share costs one more pass over the points. */
 static const size_t MOST_SLOTS = (size_t)1 << 24;
 enum { BATCH = 64 };
 
@@ -95,7 +95,8 @@ typedef struct repeat {
     uint32_t node, point; /* the first point of a node, and a later one at the same position */
 } repeat;
 
-/* A hash table from coordinates to the first point that has them, with open addressing; and the repeats so far. */
+/* A hash table with open addressing, from coordinates to the first point that has them; and the repeated points found
+ * so far. */
 typedef struct node_table {
     uint32_t *slots; /* point + 1, or 0 for a free slot. Their number is a power of two; about half are in use */
     size_t slot_count, used;
@@ -103,7 +104,7 @@ typedef struct node_table {
     size_t repeat_count, repeat_capacity;
 } node_table;
 
-/* Returns the first point with these coordinates: the point itself where it is the first, which is then remembered. */
+/* Returns the first point with these coordinates. If it is the point itself, the table remembers it. */
 static size_t find_node(node_table *table, const double *points, size_t point, uint64_t hash) {
     size_t slot = (size_t)hash & (table->slot_count - 1);
     for (; table->slots[slot]; slot = (slot + 1) & (table->slot_count - 1)) {
@@ -116,7 +117,7 @@ static size_t find_node(node_table *table, const double *points, size_t point, u
     return point;
 }
 
-/* A table that fills up, since the hashes of a share are many more than others', is made anew and twice as large. */
+/* If the table fills up, because its share has more hashes than others, it is rebuilt twice as large. */
 static bool grow_table(camber_context *context, node_table *table, const double *points) {
     if (table->used + BATCH < table->slot_count / 4 * 3)
         return true;
@@ -133,12 +134,13 @@ static bool grow_table(camber_context *context, node_table *table, const double 
     return true;
 }
 
-/* Whether a hash belongs to the share; there are a power of two of them. The table goes by the low bits. */
+/* Whether a hash belongs to the share. The number of shares is a power of two. The table itself uses the low bits. */
 static bool is_of_share(uint64_t hash, size_t share, size_t share_count) {
     return ((size_t)(hash >> 40) & (share_count - 1)) == share;
 }
 
-/* Points of a share, looked up together: their slots lie anywhere in the table, so memory fetches all at once. */
+/* Points of a share that are looked up together: their slots are scattered over the table, so that memory can fetch
+ * them all at the same time. */
 typedef struct node_batch {
     uint32_t points[BATCH];
     uint64_t hashes[BATCH];
@@ -153,7 +155,7 @@ static inline void fetch(const void *at) {
 #endif
 }
 
-/* The first point of a node collects the largest importance. */
+/* Looks up a batch; the first point of each node collects the largest importance. */
 static camber_status look_up(camber_context *context, const double *points, node_batch *batch, node_table *table,
                              float *importance) {
     if (!grow_table(context, table, points) || !camber_grow(context, &table->repeats, &table->repeat_capacity,

@@ -1,4 +1,5 @@
-/* How much each point of a set of polylines matters. Simplifying to any tolerance is then one comparison a point. */
+/* How important each point of a set of polylines is. Simplifying to any tolerance then takes one comparison per point.
+ */
 #ifndef CAMBER_LINES_IMPORTANCE_H
 #define CAMBER_LINES_IMPORTANCE_H
 
@@ -6,12 +7,12 @@
 
 /* importance[i] is the largest tolerance, in the points' unit, that keeps point i: a tolerance T keeps the points
  * whose importance is T or more, and T = 0 keeps all. A polyline's ends have INFINITY. A ring (first point == last
- * point) keeps its seam, and three distinct points where it has an area.
+ * point) keeps its seam, and three distinct points if it has an area.
  *
- * Without shared nodes a tolerance T keeps the points that Douglas and Peucker's method keeps: the original lies within
- * T of the simplified polyline, and the other way round. A node is a place where several points have equal coordinates,
- * bit for bit. All of them get the largest of their importances, so that a node is kept everywhere or nowhere. Points
- * kept for that reason can raise the distance to 2 T.
+ * Without shared nodes a tolerance T keeps the points that the Douglas-Peucker method keeps: the original is within T
+ * of the simplified polyline, and vice versa. A node is a set of points whose coordinates are equal, bit for bit. All
+ * of them get the largest of their importances, so that a node is kept everywhere or nowhere. Points kept for that
+ * reason can raise the distance to 2 T.
  *
  * Polyline i has the points [offsets[i], offsets[i + 1]), polyline_count + 1 entries; points are pairs, and points
  * and importance are indexed by the offsets as they are. Points should be finite. Returns CAMBER_ERROR_MEMORY,

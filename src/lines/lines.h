@@ -5,32 +5,31 @@
 #include "base/base.h"
 #include "kernels/layout.h"
 
-/* A polyline's points stand in consecutive slots. Sentinels stand between them where neighbours need something to look
- * at, and fill up the end:
+/* A polyline's points are in consecutive slots. Sentinels are between polylines where a neighbour needs something to
+ * look at, and they fill up the end:
  *
  *     slot        0         1 ...                                                       slot_count + 1
- *     holds   sentinel | open line | sentinel, ring, sentinel | open line | sentinels to a whole block | sentinel
- */
+ *     holds   sentinel | open line | sentinel, ring, sentinel | open line | sentinels to a whole block | sentinel */
 struct camber_polylines {
     camber_context *context;
-    size_t holders;  /* meshes that hold them, beside the creator */
-    uint64_t serial; /* unique in the context: tells a mesh whether it has these already */
-    /* slot_count + 2 each: a sentinel before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
+    size_t holders;  /* meshes that hold them, not counting the creator */
+    uint64_t serial; /* unique in the context; a mesh recognizes by it whether it already has these polylines */
+    /* slot_count + 2 each, with a sentinel before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
     float *x, *y;
     uint32_t *info;
     size_t slot_count;
-    camber_arc_length
-        *arc_lengths; /* one a slot, where a network knows them. NULL: they are summed up over the points */
+    /* one per slot, if a network knows them. NULL: they are summed up over the points */
+    camber_arc_length *arc_lengths;
     /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading sentinel. */
     uint32_t *first_slots;
     uint32_t *polyline_rows;
     size_t polyline_count;
     uint32_t row_count; /* highest row + 1 */
     camber_polylines_stats stats;
-    void *block; /* has the arrays, but for arc_lengths; NULL: each is a block of its own */
+    void *block; /* the allocation with all arrays except arc_lengths; NULL: each array is its own allocation */
 };
 
-/* Points farther out are invalid: steps of a float are larger than a city block there, px. Views cut long before. */
+/* Points farther out are invalid, in px: float steps are too coarse there. Views clip long before that. */
 #define CAMBER_FARTHEST_PX 1e9f
 
 /* Whether a point can be drawn; false for NaN as well. */
@@ -38,12 +37,12 @@ static inline bool camber_point_is_valid(const float *point) {
     return fabsf(point[0]) <= CAMBER_FARTHEST_PX && fabsf(point[1]) <= CAMBER_FARTHEST_PX;
 }
 
-/* Begins polylines that are put one after the other. slots: room for them, with two sentinels for each ring. */
+/* Begins polylines that are put one after another. slots is the room for them, including two sentinels per ring. */
 camber_status camber_polylines_begin(camber_context *context, size_t slots, size_t polyline_count,
                                      camber_polylines **polylines);
 
-/* Puts a ring of points, whose last may be the first again: an outer ring clockwise as seen, a hole the other way.
- * Invalid points, and those that repeat the one before, are dropped. */
+/* Puts a ring of points, whose last may equal the first: an outer ring is made clockwise as seen, a hole
+ * counter-clockwise. Drops invalid points, and points that repeat the previous one. */
 void camber_polylines_put_ring(camber_polylines *polylines, size_t polyline, const float *points, size_t given,
                                bool is_hole, uint32_t row);
 
@@ -52,7 +51,7 @@ void camber_polylines_end(camber_polylines *polylines);
 /* Adds a holder: the polylines live until each holder has called camber_polylines_destroy. */
 void camber_polylines_hold(camber_polylines *polylines);
 
-/* The polyline that a slot belongs to. */
+/* Returns the polyline that a slot belongs to. */
 size_t camber_polylines_find(const camber_polylines *polylines, size_t slot);
 
 #endif

@@ -1,25 +1,25 @@
 /* Cleans polylines and lays them out in slots, as the kernels read them.
  *
  * Input: points in px, where each polyline begins, rows of the style table. Output: camber_polylines (lines.h). Main
- * idea: everything irregular is settled here, so that kernels need no branch for it. An invalid point (NaN, or too far
- * away) splits its polyline into stretches; in a ring of an area it is left out. A point that repeats the one before is
- * dropped. A ring, whose first point is its last, gets sentinels that continue it past its seam:
+ * idea: everything irregular is dealt with here, so that kernels need no branch for it. An invalid point (NaN, or too
+ * far away) splits its polyline into stretches; in a ring of an area it is left out. A point that repeats the previous
+ * one is dropped. A ring, whose first and last points are equal, gets sentinels that continue it past its seam:
  *
  *     points       A B C D A           the last point is the first again
  *     slots    (D) A B C D A (B)       in brackets: sentinels, so that neighbours are always i - 1 and i + 1
  *
- * Most polylines need none of that. So open ones are put in bundles, all their points at once in loops that compilers
- * vectorise. Only where such a bundle turns out to have an irregular point, its polylines are put one by one. */
+ * Most polylines need none of that. So open ones are put in bundles, all points of a bundle at once, in loops that
+ * compilers vectorise. Only if such a bundle turns out to have an irregular point are its polylines put one by one. */
 #include "lines/lines.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* Points of a bundle: few enough that it stays in the first cache while it is put and looked at. And how far ahead of a
- * ring's points memory is asked for what follows, which mostly is the next ring. */
+/* BUNDLE_POINTS: few enough that a bundle stays in the first-level cache while it is put and checked. AHEAD_POINTS: how
+ * far ahead of a ring's points memory is prefetched, which is usually the next ring. */
 enum { BUNDLE_POINTS = 1024, AHEAD_POINTS = 256 };
 
-/* Points within 1e-9 px count as one. */
+/* Points within 1e-9 px of each other count as the same. */
 static const float REPEATED_PX2 = 1e-18f;
 
 /* Whether b repeats a. */
@@ -28,7 +28,7 @@ static bool is_repeated(const float *a, const float *b) {
     return dx * dx + dy * dy <= REPEATED_PX2;
 }
 
-/* Whether a polyline's last point is its first again. */
+/* Whether a polyline's last point equals its first. */
 static bool is_closed(const float *points, size_t count) {
     const float *last = points + 2 * (count - 1);
     return count > 2 && points[0] == last[0] && points[1] == last[1];
@@ -95,8 +95,10 @@ static void put_stretch(camber_polylines *p, const float *points, size_t count, 
     p->stats.kept_segments += kept_count - 1;
     p->stats.dots += kept_count == 1;
     if (!closes || kept_count < 3)
-        return; /* the leading slot was put for a ring that is none: it stays a sentinel, which draws nothing */
-    /* The last point may have been dropped as a repetition of its neighbour. The ring closes exactly all the same. */
+        /* the leading slot was put for something that turned out not to be a ring: it remains a sentinel, which draws
+         * nothing */
+        return;
+    /* The last point may have been dropped because it repeats its neighbour. The ring still closes exactly. */
     p->x[end] = p->x[first];
     p->y[end] = p->y[first];
     p->info[first] |= CAMBER_POINT_RING;
@@ -132,7 +134,8 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
 
 /* ---- Bundles of open polylines ---- */
 
-/* The end of the bundle of one row that begins with a polyline; the polyline itself where it is empty or closed. */
+/* Returns the end of the bundle, all of one row, that begins with a polyline; returns the polyline itself if it is
+ * empty or closed. */
 static size_t find_bundle_end(const camber_polylines_desc *desc, size_t first) {
     size_t end = first;
     for (; end < desc->polyline_count; end++) {
@@ -145,7 +148,7 @@ static size_t find_bundle_end(const camber_polylines_desc *desc, size_t first) {
     return end;
 }
 
-/* How many of points that were put repeat the one before; SIZE_MAX where one is invalid. */
+/* Returns how many of the points that were put repeat the previous one; SIZE_MAX if one is invalid. */
 static size_t count_repeated(const float *x, const float *y, size_t count) {
     uint32_t invalid = 0, repeated = 0;
     for (size_t i = 0; i < count; i++)
@@ -165,7 +168,7 @@ static void put_coordinates(const float *restrict points, size_t count, float *r
     }
 }
 
-/* How many polylines but the first begin where the one before ends. */
+/* Returns how many polylines, except the first, begin where the previous one ends. */
 static size_t count_joined(const camber_polylines_desc *desc, size_t first, size_t end) {
     size_t count = 0;
     for (size_t i = first + 1; i < end; i++) {
@@ -175,7 +178,7 @@ static size_t count_joined(const camber_polylines_desc *desc, size_t first, size
     return count;
 }
 
-/* Puts the polylines [first, end). false: a point is invalid, or repeats the one before it in its polyline. */
+/* Puts the polylines [first, end). false: a point is invalid, or repeats the previous one of its polyline. */
 static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, size_t first, size_t end) {
     const size_t from = desc->offsets[first], count = desc->offsets[end] - from, slot = p->slot_count + 1;
     put_coordinates(desc->points + 2 * from, count, p->x + slot, p->y + slot);
@@ -212,9 +215,9 @@ static void put_polylines(camber_polylines *p, const camber_polylines_desc *desc
 
 /* ---- Rings of areas ---- */
 
-/* Puts the coordinates of a ring's points, whose x and y lie `step` apart. Returns twice the area that they wind
- * around, clockwise as seen; NAN where one is invalid or repeats the one before. One loop does it all: most rings are
- * short. */
+/* Puts the coordinates of a ring's points, whose values are `step` apart in memory. Returns twice the ring's signed
+ * area, positive if clockwise as seen; NAN if a point is invalid or repeats the previous one. One loop does it all,
+ * because most rings are short. */
 static inline double put_around(const float *from_x, const float *from_y, size_t step, size_t count, float *x,
                                 float *y) {
     uint32_t irregular = 0;
@@ -232,7 +235,7 @@ static inline double put_around(const float *from_x, const float *from_y, size_t
     return irregular ? (double)NAN : area;
 }
 
-/* Drops the points of a ring that are invalid or repeat the one before. Returns how many are left. */
+/* Drops the points of a ring that are invalid or repeat the previous one. Returns how many are left. */
 static size_t drop_irregular(camber_polylines_stats *stats, float *x, float *y, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
@@ -258,7 +261,7 @@ static void turn_over(float *values, size_t count) {
     }
 }
 
-/* Puts what is left of a ring of less than two points. */
+/* Puts what is left of a ring with fewer than two points. */
 static void put_rest(camber_polylines *p, const float *x, const float *y, size_t count, uint32_t row) {
     p->stats.empty_polylines += count == 0;
     if (count == 0)
@@ -305,13 +308,13 @@ void camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float
     info[count] |= CAMBER_POINT_LAST | CAMBER_POINT_RING;
     p->info[sentinel] = info[count + 1] = 0;
     p->slot_count += count + 3;
-    p->stats.points++; /* the first again */
+    p->stats.points++; /* the first point, repeated */
     p->stats.kept_points += count + 1;
     p->stats.kept_segments += count;
     p->stats.rings++;
 }
 
-/* Puts sentinels to the end of the last block, and one behind it. They lie at the origin, so that no kernel meets a
+/* Puts sentinels up to the end of the last block, and one after it. They are at the origin, so that no kernel meets a
  * NaN. */
 static void put_padding(camber_polylines *p) {
     const size_t used = p->slot_count + 1;

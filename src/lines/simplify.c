@@ -1,7 +1,7 @@
-/* Simplifies lines by Douglas and Peucker's method, a line in double coordinates or a set of lines in px.
+/* Simplifies lines by the Douglas-Peucker method: one line in double coordinates, or a set of lines in px.
  *
  * Input: points and a tolerance in their unit. Output: the points that are kept, in order. A range of points is split
- * at the point that lies farthest from the segment between its ends, until all points lie within the tolerance. */
+ * at the point that is farthest from the segment between its ends, until all points are within the tolerance. */
 #include "lines/simplify.h"
 
 #include "base/base.h"
@@ -17,7 +17,7 @@ typedef struct range {
     unsigned depth;
 } range;
 
-/* Marks the points that stay, strictly between the ends of a range. */
+/* Marks the points to keep strictly between the ends of a range. */
 static void mark(const double *points, range whole, double tolerance_squared, unsigned char *keep) {
     /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
      * ranges wait. */
@@ -43,14 +43,14 @@ static void mark(const double *points, range whole, double tolerance_squared, un
     }
 }
 
-/* A ring begins and ends in one point, so that the segment between its ends has no length. It is split first at the
- * point farthest from the seam. If nothing else stays, the point farthest from that line does, so that an area remains
- * one, however small it is. */
+/* A ring begins and ends at the same point, so that the segment between its ends has no length. It is split first at
+ * the point farthest from the seam. If no other point is kept, the point farthest from the line between these two is,
+ * so that an area remains an area, however small it is. */
 static void mark_ring(const double *points, size_t count, double tolerance_squared, unsigned char *keep) {
     double largest;
     const size_t far = camber_farthest(points, 0, count - 1, &largest);
     if (far == 0)
-        return; /* all points have one position */
+        return; /* all points have the same position */
     keep[far] = 1;
     mark(points, (range){0, far, 0}, tolerance_squared, keep);
     mark(points, (range){far, count - 1, 0}, tolerance_squared, keep);
@@ -84,8 +84,8 @@ size_t camber_simplify(double *points, size_t count, double tolerance, unsigned 
     return kept;
 }
 
-/* Simplifies valid points in double. Those that stay are copied from their source, so that no bit changes. Returns how
- * many stay. */
+/* Simplifies valid points in double. Points that are kept are copied from their source, so that no bit changes. Returns
+ * how many are kept. */
 static size_t simplify_stretch(const float *from, size_t count, double tolerance_px, double *points,
                                unsigned char *keep, float *to) {
     for (size_t i = 0; i < 2 * count; i++)
@@ -102,7 +102,7 @@ static size_t simplify_stretch(const float *from, size_t count, double tolerance
     return kept;
 }
 
-/* Simplifies one polyline. Invalid points split it into stretches, and stay, so that cleaning counts them. */
+/* Simplifies one polyline. Invalid points split it into stretches. They are kept, so that cleaning counts them. */
 static uint32_t simplify_line(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
                               float *to) {
     size_t kept = 0, first = 0;

@@ -1,8 +1,8 @@
 /* The CPU twin of cull_count and cull_emit: projects a network on the host, and gives the visible lines as polylines.
  *
  * Input: a network, a camera, strokes. Output: camber_polylines with the slots that the device would make; or lines of
- * points in px. Main idea: it runs the kernels' own walk (kernels/cull.h), but an entry after the other instead of
- * chunk by chunk, as slots do not depend on how points are divided into chunks. */
+ * points in px. Main idea: it runs the kernels' own walk (kernels/cull.h), but entry by entry instead of chunk by
+ * chunk, since slots do not depend on how points are divided into chunks. */
 #include "points/network.h"
 #include "points/rows.h"
 
@@ -17,7 +17,7 @@ camber_walk camber_network_walk(const camber_network *network) {
                          .stretches = network->stretches};
 }
 
-/* The stretch that has a point. */
+/* Finds the stretch that contains a point. */
 static const camber_stretch *find_stretch(const camber_network *network, size_t point) {
     size_t low = 0, high = network->stretch_count;
     while (high - low > 1) {
@@ -32,7 +32,7 @@ static const camber_stretch *find_stretch(const camber_network *network, size_t 
 
 uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
                                     size_t end) {
-    /* The walk counts in 32 bits, so it is given this many points at a time. */
+    /* The walk counts in 32 bits, so it gets this many points at a time. */
     static const size_t POINTS_AT_ONCE = (size_t)1 << 28;
     camber_projection p = *projection;
     uint64_t count = 0;
@@ -65,7 +65,7 @@ static void count_slots(camber_polylines *p) {
     }
 }
 
-/* Makes count slots, padded to whole blocks, and where each entry begins. */
+/* Makes count slots, padded to whole blocks, and the array of where each entry begins. */
 static camber_status make_slots(const camber_network *network, const camber_projection *projection, size_t count,
                                 camber_polylines *p) {
     camber_context *context = network->context;
@@ -149,18 +149,18 @@ static void begin_line(visible_lines *p, size_t entry) {
     p->lines.offsets[p->lines.polyline_count++] = (uint32_t)p->lines.point_count;
 }
 
-/* The last slot of the line that begins with slot first. */
+/* Returns the last slot of the line that begins at slot first. */
 static size_t last_of(const visible_lines *p, size_t first) {
     while (!(p->slots->info[first + 1] & CAMBER_POINT_LAST))
         first++;
     return first;
 }
 
-/* Appends the visible lines of an entry. Where the window cuts a ring, the line over the ring's seam has two halves,
- * the end of which comes first in the slots. It waits at `seam` until its beginning has been appended:
+/* Appends the visible lines of an entry. If the window cuts a ring, the line across the ring's seam consists of two
+ * halves, and its end comes first in the slots. The end waits at `seam` until the beginning has been appended:
  *
  *     slots     S..e   b..S              S: the seam, the ring's first and last point
- *     line      b..S..e                  from b, where the window cuts, over the seam to e */
+ *     line      b..S..e                  from b, where the window cuts, across the seam to e */
 static void append_entry(visible_lines *p, size_t entry) {
     const uint32_t *info = p->slots->info + 1;
     size_t seam = SIZE_MAX, seam_end = 0;

@@ -1,27 +1,27 @@
 /* Makes networks: cleans polylines in world coordinates and stores them as integers.
  *
  * Input: points in double, entries that say which polylines to draw with which rows, and importances. Output: a
- * camber_network. Main idea: positions are counted in steps of the data's box, 2^31 - 2 over its longer side. So the
- * difference of two positions is an exact 32-bit integer, and the device projects relative to a point near the camera
- * without doubles.
+ * camber_network. Main idea: positions are counted in steps of the data's bounding box, 2^31 - 2 along its longer side.
+ * So the difference of two positions is an exact 32-bit integer, and the device projects relative to a point near the
+ * camera without doubles.
  *
  *     1  check the entries, count their points, find their box
  *     2  store the points of each entry, stretch by stretch: an invalid point ends one; repeated points are dropped,
- * and those of too little importance. With arc lengths, sum up how far along its line each point lies */
+ * and those of too little importance. With arc lengths, sum up how far along its line each point is */
 #include "points/network.h"
 
 #include <assert.h>
 #include <math.h>
 
-/* Where all points have one position, or nearly so, a step still needs a length. This one lies far below a pixel at any
+/* If all points have the same position, or nearly so, a step still needs a length. This one is far below a pixel at any
  * zoom, and is a normal float in px at zoom 0, where a world is 512 px. */
 static const double LEAST_EXTENT = 1e-30;
 /* Points farther out are invalid, so that no difference of two coordinates is infinite. */
 static const double FARTHEST = 1e300;
-/* So that 32 bits number the slots: a point may make its own, a ring's sentinel, and an end where the window cuts. An
- * area's may make two more; parts check their sums. */
+/* This many points keep slot numbers within 32 bits: a point may make its own slot, a ring's sentinel, and an end where
+ * the window cuts. A point of an area may make two more; parts check their sums. */
 static const size_t MOST_POINTS = INT32_MAX;
-/* A stretch that is a smaller share of its line says too little about how long the line is. */
+/* A stretch that is a smaller fraction of its line says too little about the line's length. */
 static const double LEAST_PART = 1e-6;
 
 /* ---- Making ---- */
@@ -55,7 +55,7 @@ typedef struct bounds {
     double x0, y0, x1, y1;
 } bounds;
 
-/* An importance that is not a number matters as much as any, and one below 0 as much as 0. */
+/* Whether a point is important enough to be stored. NaN counts as the highest importance, and a negative one as 0. */
 static bool matters(const camber_network_desc *desc, size_t point) {
     return !desc->importance || !(desc->least_importance > 0.0f) || !(desc->importance[point] < desc->least_importance);
 }
@@ -64,8 +64,8 @@ static bool is_place(const camber_network_desc *desc, camber_network_entry entry
     return is_valid(desc->points[2 * point] + entry.shift_x, desc->points[2 * point + 1]);
 }
 
-/* Returns how many points may be stored: those that matter, and the ends. The box has these, and with arc lengths all,
- * so that it is the same where the caller has dropped the others already. */
+/* Returns how many points may be stored: those that are important enough, and the ends. The bounding box includes only
+ * these, so that it is the same if the caller has already dropped the others; with arc lengths it includes all. */
 static size_t add_polyline(const camber_network_desc *desc, camber_network_entry entry, bounds *box) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     size_t stored = 2;
@@ -88,7 +88,7 @@ static size_t add_polyline(const camber_network_desc *desc, camber_network_entry
     return stored;
 }
 
-/* Sets the step and where step 0 lies: at a multiple of a step that was given. */
+/* Sets the step, and the position of step 0: a multiple of the step if the caller gave one. */
 static void choose_step(camber_network *n, double step, const bounds *box) {
     const double extent = fmax(box->x1 - box->x0, box->y1 - box->y0);
     n->x0 = box->x0;
@@ -147,7 +147,7 @@ static double distance(step_point a, step_point b) {
     return hypot((double)b.x - a.x, (double)b.y - a.y);
 }
 
-/* Stores a point, or drops it if it lies on the same step as the one before, which then keeps the larger importance. An
+/* Stores a point, or drops it if it is on the same step as the previous one, which then gets the larger importance. An
  * importance that is NaN counts as infinite. */
 static void store_point(camber_network *n, step_point at, double along, float importance) {
     camber_stretch *stretch = n->stretches + n->stretch_count;
@@ -170,14 +170,14 @@ static void store_point(camber_network *n, step_point at, double along, float im
 }
 
 /* Finds the total length of the line that a stretch with arc lengths is part of, and how far along it the stretch
- * begins. Without progress the stretch is its whole line. With it, progress gives the shares of the line's length at
- * which the stretch begins and ends, as where tiles cut a line:
+ * begins. Without progress the stretch is its whole line. With it, progress gives the fractions of the line's length at
+ * which the stretch begins and ends, for example when tiles cut a line:
  *
  *     line      |--------------------------------|     total
  *     stretch         |-----------|                    length = (progress[1] - progress[0]) * total
  *                progress[0]   progress[1]
  *
- * Shares that make no sense are ignored. */
+ * Fractions that make no sense are ignored. */
 static double measure_stretch(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
                               size_t first, size_t end) {
     const float *progress = desc->progress ? desc->progress + 2 * (size_t)entry.polyline : NULL;
@@ -195,7 +195,7 @@ static double measure_stretch(camber_network *n, const camber_network_desc *desc
     return is_part ? from * total : 0.0;
 }
 
-/* Stores the valid points [first, end) as a stretch. Its ends have infinite importance: they always stay. */
+/* Stores the valid points [first, end) as a stretch. Its ends get infinite importance, so that they are always kept. */
 static void store_stretch(camber_network *n, const camber_network_desc *desc, camber_network_entry entry, size_t first,
                           size_t end, bool may_close) {
     const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);
@@ -235,8 +235,8 @@ static bool grow_stretches(camber_network *n, size_t count, capacities *room) {
            (!n->lengths || camber_grow(n->context, &n->totals, &room->totals, count, sizeof *n->totals));
 }
 
-/* Whether all points of a ring are valid. Those that are not are counted: open pieces of a ring would fill what lies to
- * their right. */
+/* Whether all points of a ring are valid. Counts the invalid ones. A ring with invalid points is left out, because open
+ * pieces of it would fill everything to their right. */
 static bool is_valid_ring(camber_network *n, const camber_network_desc *desc, camber_network_entry entry) {
     size_t invalid = 0;
     for (size_t i = desc->offsets[entry.polyline]; i < desc->offsets[entry.polyline + 1]; i++)

@@ -1,4 +1,4 @@
-/* Networks as kernels read them (network.c), and aiming at them (projection.c). */
+/* Networks as kernels read them (network.c), and aiming a camera at them (projection.c). */
 #ifndef CAMBER_POINTS_NETWORK_H
 #define CAMBER_POINTS_NETWORK_H
 
@@ -8,22 +8,22 @@
 
 #include "camber_proof.h"
 
-/* Steps over the longer side of the box: differences of two of them are 32-bit numbers. */
+/* Steps along the longer side of the bounding box, so that differences of two positions fit into 32 bits. */
 #define CAMBER_NETWORK_STEPS 2147483646.0
 
-/* Polylines in world coordinates. An entry is a polyline and its row. Stretches are what invalid points leave of it. */
+/* Polylines in world coordinates. An entry is a polyline and its row. Invalid points divide it into stretches. */
 struct camber_network {
     camber_context *context;
     size_t holders;  /* the creator, and the meshes that hold it */
-    uint64_t serial; /* unique in the context, as that of polylines */
-    /* Where step 0 lies, and how long a step is, in world coordinates. */
+    uint64_t serial; /* unique in the context, like that of polylines */
+    /* The position of step 0 and the length of a step, in world coordinates. */
     double x0, y0, step;
-    int32_t *x, *y; /* point_count, in 0 to 2^31 - 2 */
+    int32_t *x, *y; /* point_count of them, from 0 to 2^31 - 2 */
     float *importance;
-    float *lengths; /* a point: how far along its line it lies, in steps. NULL: without arc lengths */
-    float *totals;  /* a stretch: how long its whole line is, in steps */
+    float *lengths; /* one per point: how far along its line it is, in steps. NULL: without arc lengths */
+    float *totals;  /* one per stretch: how long its whole line is, in steps */
     size_t point_count;
-    camber_stretch *stretches; /* run_count stretches, and one behind the last */
+    camber_stretch *stretches; /* run_count stretches, and one after the last */
     size_t stretch_count;
     uint32_t *entry_stretches; /* entry_count + 1: the first stretch of each entry */
     uint32_t *entry_rows;
@@ -32,19 +32,20 @@ struct camber_network {
     camber_polylines_stats stats;
 };
 
-/* Checks the camera and makes the projection that the kernels need. The desc's strokes must have been checked. */
+/* Checks the camera and makes the projection that the kernels need. The desc's strokes must already have been checked.
+ */
 camber_status camber_network_aim(const camber_network *network, const camber_camera *camera,
                                  const camber_tessellation_desc *desc, camber_projection *projection);
-/* How many slots the camera makes of the points [begin, end) of the network. The host walks them. */
+/* Returns how many slots the camera makes of the points [begin, end) of the network. The host walks them. */
 uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
                                     size_t end);
-/* How many chunks so many points have. A work-item walks one chunk. */
+/* Returns how many chunks that many points have. A work-item walks one chunk. */
 static inline size_t camber_network_chunk_count(size_t points) {
     return (points + CAMBER_CULL_CHUNK - 1) / CAMBER_CULL_CHUNK;
 }
-/* A walk over the network in host memory. */
+/* Returns a walk over the network in host memory. */
 camber_walk camber_network_walk(const camber_network *network);
-/* The first point of an entry; for the entry behind the last, the number of points. */
+/* Returns the first point of an entry; for the entry after the last, the number of points. */
 static inline size_t camber_network_first_point(const camber_network *network, size_t entry) {
     return network->stretches[network->entry_stretches[entry]].first;
 }

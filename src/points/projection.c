@@ -2,19 +2,18 @@
  *
  * Input: the camera (where it looks, scale, bearing, pitch) and the strokes, whose widths and offsets decide how far
  * from the picture a line still matters. Output: camber_projection, in the network's steps and in px. Main idea:
- * doubles are used here only, once a frame. An origin near the camera is subtracted in integers, so that floats are
+ * doubles are used only here, once per frame. An origin near the camera is subtracted in integers, so that floats are
  * exact enough for what is left.
  *
- *     seen     the box of steps that can reach the picture: stretches whose boxes miss it are skipped
- *     window   the picture and a margin, px: segments are cut there
+ *     seen     the box of steps that can reach the picture; stretches whose boxes do not touch it are skipped
+ *     window   the picture and a margin, in px; segments are cut there
  *
  *          +----------- window --------------+        without pitch, a rectangle
  *          |  margin                         |        with pitch, a trapezoid: far_y is its upper side
  *          |     +------ picture ------+     |
  *          |     |                     |     |             \----- far_y -----/
- *          |     +---------------------+     |              \      .       /     .: where the camera looks at
- *          +---------------------------------+               \-- near_y --/
- */
+ *          |     +---------------------+     |              \      .       /     .: where the camera looks
+ *          +---------------------------------+               \-- near_y --/ */
 #include "base/perspective.h"
 #include "points/network.h"
 
@@ -24,11 +23,12 @@
 
 /* An absurd miter limit must not widen the window so far that nothing is cut. */
 static const double LARGEST_REACH_PX = 65536.0;
-/* How far from a point of an offset line the source line still matters for it, in offsets. The end of an offset segment
- * may lie this reach away from what it hides, and from there the neighbours are searched again: kernels/offset.h. */
+/* How far from a point of an offset line the source line can still affect it, in multiples of the offset. The end of an
+ * offset segment may be this far from the points that it hides, and the neighbours are searched again from there:
+ * kernels/offset.h. */
 static const double LOOKS = 2.0 * (double)CAMBER_OFFSET_REACH + 1.0;
 
-/* Bounds, so that no projected coordinate is infinite. */
+/* Limits that keep projected coordinates finite. */
 static const double LARGEST_STEP_PX = 1e9, FARTHEST_PX = 1e30;
 
 static camber_status check_camera(const camber_network *network, const camber_camera *camera) {
@@ -60,10 +60,10 @@ static camber_status check_camera(const camber_network *network, const camber_ca
     return CAMBER_OK;
 }
 
-/* How far from its line a stroke touches pixels, px. */
+/* Returns how far from its line a stroke touches pixels, in px. */
 static double reach_of(const camber_stroke *stroke) {
     const double half = 0.5 * (double)stroke->width_px;
-    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
+    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner is sqrt(2) away */
     if (stroke->join == CAMBER_JOIN_MITER)
         factor = fmax(factor, stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0);
     if (stroke->join == CAMBER_JOIN_ROUND)
@@ -72,7 +72,7 @@ static double reach_of(const camber_stroke *stroke) {
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
-/* How far from its source line a stroke with an offset runs, px, at corners too. */
+/* Returns how far from its source line a stroke with an offset can be, in px, including at corners. */
 static double offset_of(const camber_stroke *stroke) {
     const double limit = stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0;
     const double far = fabs((double)stroke->offset_px);
@@ -81,8 +81,8 @@ static double offset_of(const camber_stroke *stroke) {
     return fmin(far * (stroke->join == CAMBER_JOIN_MITER ? fmax(limit, 1.1) : 1.1), fmax(far, LARGEST_REACH_PX));
 }
 
-/* A coordinate in steps, moved outwards by `by` steps and bound to 32 bits; by is below 0 for the lower side of a box.
- * Where a double cannot tell, the answer is the farthest step: nothing is skipped. */
+/* Returns a coordinate in steps, moved outwards by `by` steps and clamped to 32 bits; by is negative for the lower side
+ * of a box. If a double is too coarse to decide, returns the farthest step, so that nothing is skipped. */
 static int32_t outwards(double offset, double step, double by) {
     const double steps = floor(offset / step) + by;
     if (isnan(steps))
@@ -90,7 +90,7 @@ static int32_t outwards(double offset, double step, double by) {
     return steps <= (double)INT32_MIN ? INT32_MIN : steps >= (double)INT32_MAX ? INT32_MAX : (int32_t)steps;
 }
 
-/* The step nearest to a coordinate, within the network's box. */
+/* Returns the step nearest to a coordinate, within the network's box. */
 static double origin_of(double offset, double step) {
     const double steps = floor(offset / step + 0.5);
     return !(steps > 0.0) ? 0.0 : steps >= CAMBER_NETWORK_STEPS ? CAMBER_NETWORK_STEPS : steps;
@@ -100,14 +100,14 @@ static double bound_px(double px) {
     return fmin(fmax(px, -FARTHEST_PX), FARTHEST_PX);
 }
 
-/* The trapezoid of the plane that a camera with a pitch sees, px from the point that it looks at: y from far_y to
+/* The trapezoid of the plane that a camera with a pitch sees, in px from the point that it looks at: y from far_y to
  * near_y, and |x| up to side - slope * y. */
 typedef struct trapezoid {
     double side, slope, far_y, near_y;
 } trapezoid;
 
 /* The trapezoid of a camera, grown by reach for strokes that reach into the picture from outside, and by a pixel on
- * each side. A pixel may reach the horizon: the trapezoid ends at twice the depth of the far plane. */
+ * each side. Since a pixel may reach the horizon, the trapezoid ends at twice the depth of the far plane. */
 static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspective *p, double reach) {
     const double half_x = 0.5 * camera->width + 1.0, half_y = 0.5 * camera->height + 1.0, slope = p->fall * half_x;
     const double seen_y = p->far_y - 1.5, near = half_y * camber_perspective_depth(p, half_y) / p->cosine;
@@ -162,7 +162,8 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
         return camber_fail(network->context, CAMBER_ERROR_ARGUMENT,
                            "a mesh with arc lengths of a network without them; create the network with has_arc_length");
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
-    const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0; /* exact, so that lines along an axis stay so */
+    /* exact, so that axis-parallel lines stay axis-parallel */
+    const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0;
     const double cosine = quarters ? round(cos(angle)) : cos(angle), sine = quarters ? round(sin(angle)) : sin(angle);
     const double step = network->step, scale = step * camera->scale_px;
     const double origin_x = origin_of(camera->x - network->x0, step),

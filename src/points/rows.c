@@ -29,7 +29,7 @@ static camber_status check_stroke(camber_context *context, const camber_stroke *
 /* Makes a stroke's row: its reach, and the step of a fan whose chords stay within the tolerance. */
 static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
     const double reach = (double)stroke->width_px / 2 + (double)CAMBER_PAD_PX;
-    /* A chord over the angle a lies up to reach * (1 - cos(a / 2)) inside its arc. */
+    /* A chord over the angle a is up to reach * (1 - cos(a / 2)) inside its arc. */
     const double below = 1 - (double)tolerance_px / reach;
     const double least = 3.14159265358979 / CAMBER_JOIN_TRIANGLES_MAX;
     double step = 2 * acos(below > 0 ? below : 0);

@@ -1,4 +1,4 @@
-/* The kernels' style table: a row for each stroke. */
+/* The kernels' style table: one row per stroke. */
 #ifndef CAMBER_POINTS_ROWS_H
 #define CAMBER_POINTS_ROWS_H
 
@@ -6,7 +6,7 @@
 
 #include "kernels/layout.h"
 
-/* Checks a desc for polylines whose rows are below row_count, and makes the table, which is freed with camber_free. */
+/* Checks a desc for polylines whose rows are below row_count, and makes the table. Free it with camber_free. */
 camber_status camber_rows_create(camber_context *context, uint32_t row_count, const camber_tessellation_desc *desc,
                                  camber_row **rows);
 

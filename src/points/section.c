@@ -9,8 +9,8 @@ void camber_section_release(const camber_device *device, camber_section *section
         camber_buffer_release(device, buffers[i]);
 }
 
-/* Makes a buffer that the kernels read. is_kept: the bytes stay as they are for as long as the buffer lives, so that a
- * device that works in host memory can read them in place. */
+/* Makes a buffer that the kernels read. is_kept: the bytes stay valid and unchanged as long as the buffer lives, so
+ * that a device that uses host memory can borrow them (zero copy). */
 static camber_status upload_array(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
                                   camber_buffer **buffer) {
     const camber_buffer_kind kind = device->host_memory && is_kept ? CAMBER_BUFFER_BORROWED : CAMBER_BUFFER_COPY;
@@ -66,7 +66,7 @@ camber_section camber_section_of(const camber_network *network, size_t first, si
                             .end_point = camber_network_first_point(network, end)};
 }
 
-/* Counts one stretch more than the section has: each ends where the next begins. */
+/* Counts one stretch more than the section has, because each ends where the next begins. */
 static uint64_t bytes_of_stretches(const camber_network *network, const camber_section *section) {
     return ((uint64_t)network->entry_stretches[section->end_entry] - network->entry_stretches[section->first_entry] +
             1) *

@@ -1,11 +1,11 @@
-/* The rasterizer's buffers on the device: how many bytes they hold, and what is written to them and read back. */
+/* The rasterizer's buffers on the device: counts their bytes, writes to them and reads them back. */
 #include "raster/rasterizer.h"
 
 #include "kernels/cells.h"
 
 #include <string.h>
 
-/* The bytes that buffers of a kind may take if memory has no bound. */
+/* The bytes that buffers of each kind may take if there is no memory limit. */
 static const uint64_t MOST_BYTES = 256 * 1024 * 1024;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster) {
@@ -43,7 +43,7 @@ uint32_t camber_raster_slice_count(const camber_raster *raster) {
 
 /* ---- Buffers ---- */
 
-/* Adds up the bytes of all buffers but the picture's. */
+/* Adds up the bytes of all buffers except the picture's. */
 static void count_buffers(camber_raster *raster) {
     uint64_t bytes = 0;
     for (int i = 0; i < BUFFERS; i++)
@@ -102,7 +102,7 @@ camber_status camber_raster_put(camber_raster *raster, int which, const void *by
 
 /* ---- Pixels ---- */
 
-/* The buffer that the last area was drawn into. */
+/* Returns the buffer that the last area was drawn into. */
 static camber_buffer *pixels_of(const camber_raster *raster) {
     return raster->given ? raster->given : raster->buffers[BUFFER_PIXELS];
 }
@@ -119,7 +119,7 @@ camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pix
 
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels) {
     camber_buffer_unmap(raster->device, pixels_of(raster), pixels.rgba);
-    raster->given = NULL; /* it may go now */
+    raster->given = NULL; /* the caller may now free it */
 }
 
 /* ---- Stages, read back ---- */

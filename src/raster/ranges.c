@@ -1,4 +1,4 @@
-/* Lists which slots of which parts are drawn. Device and twin both begin with this list. */
+/* Lists which slots of which parts are drawn. The device and the twin both start from this list. */
 #include "raster/raster.h"
 
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static camber_status add_range(camber_range_list *list, camber_slot_range range)
     return CAMBER_OK;
 }
 
-/* Lists the slots at which the brush changes within a range. polylines: NULL where it does not. */
+/* Lists the slots at which the brush changes within a range. polylines is NULL if it does not. */
 static camber_status add_changes(camber_range_list *list, const camber_slot_range *range, const size_t *polylines) {
     camber_status status = CAMBER_OK;
     if (!polylines)
@@ -33,13 +33,14 @@ static camber_status add_changes(camber_range_list *list, const camber_slot_rang
     return status;
 }
 
-/* Adds the polylines [from, to) of a part. range: what is known of it. polylines: where the brush changes within. */
+/* Adds the polylines [from, to) of a part. range has what is already known of it; polylines says where the brush
+ * changes within it. */
 static camber_status add_polylines(camber_range_list *list, camber_slot_range range, size_t from, size_t to,
                                    const size_t *polylines) {
     camber_mesh_part *part = range.mesh->parts + range.part;
     const bool whole = from == part->first_polyline && to == part->first_polyline + part->polyline_count;
     if (list->finder.part != part) {
-        camber_slot_finder_close(&list->finder); /* its part may have to go */
+        camber_slot_finder_close(&list->finder); /* its part may have to be evicted */
         list->finder = (camber_slot_finder){.mesh = range.mesh, .part = part};
     }
     camber_status status = whole && range.change_count == 0 ? CAMBER_OK : camber_part_ensure_made(range.mesh, part);
@@ -84,7 +85,7 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
     return status;
 }
 
-/* By their part, and each part's in the order in which they are drawn. */
+/* Orders ranges by part, and those of one part by drawing order. */
 static int compare_ranges(const void *left, const void *right) {
     const camber_slot_range *a = left, *b = right;
     const uintptr_t meshes[2] = {(uintptr_t)a->mesh, (uintptr_t)b->mesh};

@@ -1,17 +1,19 @@
-/* The OpenCL rasterizer: it draws the points of meshes by the stages setup -> bin_count -> bin_scan -> bin_scatter ->
- * wind (where there are areas) -> rasterize. The CPU twin makes the same bytes.
+/* The OpenCL rasterizer draws the points of meshes in the stages setup -> bin_count -> bin_scan -> bin_scatter -> wind
+ * (if there are polygons to fill) -> rasterize. The CPU twin makes the same bytes.
  *
- * Input: a scene, which lists polylines of meshes with tables of rows and brushes. Output: the pixels of an area. The
- * kernels are built in variants, so that a plain frame does not pay for features that it lacks:
+ * Input: a scene, which lists polylines of meshes with tables of rows and brushes. Output: the pixels of an area, which
+ * in this file is a rectangle of the picture. The kernels are built in variants, so that a plain frame does not pay for
+ * features that it lacks:
  *
- * - 0: brushes alone.
+ * - 0: only brushes.
  * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
- * float4s that it names. setup writes arc lengths, too. A brush without features gets the same bytes as from the plain
+ *   float4s that it refers to. setup also writes arc lengths. A brush without features gets the same bytes as from the
+ *   plain
  *   variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
- * In kernels a variant is what #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED leave; the twin has all of them and
- * goes by the scene. */
+ * In kernels #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED select a variant; the twin contains all of them, and
+ * the scene selects. */
 #ifndef CAMBER_RASTER_RASTER_H
 #define CAMBER_RASTER_RASTER_H
 
@@ -21,20 +23,21 @@
 #include "camber_proof.h"
 #include "kernels/edge.h"
 
-/* Polylines [first, end) of a mesh, drawn by a table of rows. From each change on, their brush is one further than the
- * row's for that change and for each before it. So areas of many fills are drawn in their order. */
+/* Polylines [first, end) of a mesh, drawn with a table of rows. At each change, the number of the brush goes up by one,
+ * counted from the row's brush. So polygons with many fills are drawn in their order. */
 typedef struct camber_raster_input {
     camber_mesh
         *mesh; /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
     size_t first, end;
-    size_t first_row; /* where the table begins among all rows */
-    bool is_area;     /* the polylines are rings: half widths of rows that are drawn are CAMBER_EDGE_PX */
+    size_t first_row; /* where its table begins among all rows */
+    bool is_area;     /* the polylines are rings to fill: rows that are drawn have a half width of CAMBER_EDGE_PX */
     size_t first_change, change_count; /* of the scene */
 } camber_raster_input;
 
-/* All that is drawn, in drawing order. Brushes of one layer follow each other, and so do those of a group. */
+/* Everything that is drawn, in drawing order. Brushes of one layer are consecutive, and so are those of one group. */
 typedef struct camber_raster_scene {
-    const float *rows; /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number has the bits of a camber_u32 */
+    /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number is stored as the bits of a camber_u32 */
+    const float *rows;
     size_t row_count;
     const camber_brush *brushes; /* at least one */
     size_t brush_count;
@@ -42,31 +45,31 @@ typedef struct camber_raster_scene {
     size_t input_count;
     float background[4]; /* premultiplied */
     bool linear;
-    bool pitched; /* the picture has a pitch: the fields below count */
+    bool pitched; /* the picture has a pitch; the fields below are only valid then */
     camber_eye eye;
     uint32_t horizon;                  /* rows of pixels at the picture's top that show the sky */
     float sky[4];                      /* the sky's colour, premultiplied */
     const camber_brush_ext *brush_ext; /* brush_count of them. NULL: the frame is plain */
     const float *side_table;           /* side_table_count times 4 floats */
     size_t side_table_count;
-    const size_t *changes; /* of brushes: polylines, those of an input ascending */
+    const size_t *changes; /* polylines at which the brush changes, ascending within an input */
 } camber_raster_scene;
 
-/* The variant of the program that draws a scene. */
+/* Returns the variant of the program that draws a scene. */
 unsigned camber_raster_variant(const camber_raster_scene *scene);
 
-/* A rectangle of the picture that is drawn at once, px. x and y are multiples of CAMBER_TILE_PX, and no side is longer
- * than CAMBER_TILES_MAX tiles. */
+/* A rectangle of the picture that is drawn at once, in px. x and y are multiples of CAMBER_TILE_PX, and no side is
+ * longer than CAMBER_TILES_MAX tiles. */
 typedef struct camber_raster_area {
     uint32_t x, y, width, height;
 } camber_raster_area;
 
 typedef struct camber_raster_pixels {
-    const uint8_t *rgba; /* of the area's first pixel */
+    const uint8_t *rgba; /* the area's first pixel */
     size_t row_bytes;
 } camber_raster_pixels;
 
-/* Milliseconds of the last area's kernels on the device's queue. */
+/* Milliseconds that the last area's kernels took on the device's queue. */
 typedef struct camber_raster_times {
     double setup_ms, bin_count_ms, bin_scan_ms, bin_scatter_ms, wind_ms, rasterize_ms;
 } camber_raster_times;
@@ -78,23 +81,24 @@ void camber_raster_destroy(camber_raster *raster);
 /* Draws an area. The scene may be freed afterwards. */
 camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
                                  const camber_raster_area *area);
-/* The same, into a buffer of the caller that holds camber_raster_bytes, and that must live until pixels are unmapped or
+/* The same, into a buffer of the caller. It holds camber_raster_bytes, and must live until pixels are unmapped or
  * something else is drawn. */
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, camber_buffer *pixels);
-/* Maps the pixels of the area that was drawn last, until they are unmapped. */
+/* Maps the pixels of the last drawn area, until they are unmapped. */
 camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels);
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels);
 camber_raster_times camber_raster_get_times(const camber_raster *raster);
-/* The widest area, px, for which a bounded memory can hold the spill of a row of tiles. */
+/* Returns the widest area, in px, for which the memory limit leaves room for the spill of a row of tiles. */
 uint32_t camber_raster_widest(const camber_raster *raster);
-/* How many slices the bands of the area that was drawn last took in all. */
+/* Returns how many slices the bands of the last drawn area took in total. */
 uint32_t camber_raster_slice_count(const camber_raster *raster);
 
 /* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
 
 typedef struct camber_raster_stages {
-    float *segments;    /* segment_count times CAMBER_SEGMENT_WORDS. Of an edge: its ends and its brush, else 0 */
+    /* segment_count times CAMBER_SEGMENT_WORDS. For the edge of a ring only its ends and its brush, else 0 */
+    float *segments;
     float *edges;       /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: none, or shown as segments */
     uint32_t *boxes;    /* segment_count */
     float *arc_lengths; /* segment_count times CAMBER_SEGMENT_ARC_LENGTHS. NULL: a plain scene */
@@ -102,12 +106,13 @@ typedef struct camber_raster_stages {
     size_t segment_count;
     uint32_t *starts; /* list_count + 1 */
     size_t tile_count;
-    size_t list_count; /* tiles; where there are areas, rows of tiles with the edges that cross their tops, too */
-    uint32_t *lists;   /* starts[list_count] */
-    uint8_t *rgba;     /* of the area */
+    /* tiles; if there are polygons, followed by one list per row of tiles, with the edges that cross its top */
+    size_t list_count;
+    uint32_t *lists; /* starts[list_count] */
+    uint8_t *rgba;   /* of the area */
 } camber_raster_stages;
 
-/* Reads the stages of the area that was drawn last: the last slice of its last band. */
+/* Reads the stages of the last drawn area: the last slice of its last band. */
 camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_stages *stages);
 /* Runs the CPU twin on the meshes' points. */
 camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,
@@ -116,7 +121,7 @@ void camber_raster_stages_free(camber_context *context, camber_raster_stages *st
 
 /* ---- Shared by device and twin ---- */
 
-/* Slots of one part that are drawn by one table of rows. */
+/* Slots of one part that are drawn with one table of rows. */
 typedef struct camber_slot_range {
     camber_mesh *mesh; /* NULL: a fill, which has one slot */
     size_t part;
@@ -124,26 +129,26 @@ typedef struct camber_slot_range {
     size_t base;       /* where its segments begin, a multiple of 16 */
     size_t first_row;
     bool is_area;
-    bool among_edges;                  /* there are edges of rings before and behind: see segment.h */
-    size_t first_change, change_count; /* of the list; those of the same part */
-    size_t changes_before;             /* of the same input */
+    bool among_edges;                  /* there are edges of rings before and after it: see segment.h */
+    size_t first_change, change_count; /* in the list; those of the same part */
+    size_t changes_before;             /* changes of the same input before this range */
 } camber_slot_range;
 
 /* The ranges of a scene, and how many segments they take. */
 typedef struct camber_range_list {
     camber_context *context;
     camber_slot_range *ranges;
-    uint32_t *changes; /* of brushes: slots of a part, those of a range ascending */
+    uint32_t *changes; /* slots of a part at which the brush changes, ascending within a range */
     size_t count, capacity, segment_count, change_count, change_capacity;
-    camber_slot_finder finder;   /* of the part that was looked into last */
-    size_t first_edge, end_edge; /* no edge of a ring lies outside these segments; 0 and 0: there are no areas */
+    camber_slot_finder finder;   /* for the part of the last query */
+    size_t first_edge, end_edge; /* all edges of rings are among these segments; 0 and 0: there are no polygons */
 } camber_range_list;
 
-/* The ranges come by their part, those of one part in drawing order. */
+/* Lists the ranges sorted by part, those of one part in drawing order. */
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_range_list *list);
 void camber_raster_free_ranges(camber_range_list *list);
-/* Moves the edges, [first_edge, end_edge) at most, to the segments, and frees what held them. */
+/* Copies the edges, at most [first_edge, end_edge), into the segments, and frees their own array. */
 void camber_raster_stages_show_edges(camber_context *context, camber_raster_stages *stages, size_t first_edge,
                                      size_t end_edge);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_slot_range *range,
@@ -151,7 +156,8 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
 static inline uint32_t camber_raster_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
 }
-/* Pixels from one row of an area's buffer to the next, and the bytes of the buffer, which holds whole tiles. */
+/* These return the pixels from one row of an area's buffer to the next, and the bytes of the buffer, which holds whole
+ * tiles. */
 static inline size_t camber_raster_stride_px(const camber_raster_area *area) {
     return (size_t)camber_raster_tiles(area->width) * CAMBER_TILE_PX;
 }

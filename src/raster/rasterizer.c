@@ -1,8 +1,8 @@
 /* Runs the rasterizer's stages on a device: setup -> bin_count -> bin_scan -> bin_scatter -> rasterize.
  *
- * Input: a scene and an area. Output: the area's pixels in a buffer. An area is drawn band by band, and a band slice by
- * slice, from the last segments to the first. Bands and slices are as large as the buffers for lists and spills allow.
- */
+ * Input: a scene and an area. Output: the area's pixels in a buffer. An area, a rectangle of the picture, is drawn band
+ * by band, and a band slice by slice, from the last segments to the first. Bands and slices are as large as the buffers
+ * for lists and spills allow. */
 #include "raster/rasterizer.h"
 
 #include "kernels/area.h"
@@ -12,11 +12,12 @@
 
 #include <string.h>
 
-/* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A GPU has more chunks, as it
- * wants many work-items. On a CPU a tile with more segments than HEAVY is drawn by as many work-items as it has rows of
- * cells: each walks the list until its row is full. Edges are walked to their end. So where there are any, such a tile
- * must also have more than one in SHARES of what each of the device's processors draws, and be drawn in one slice: its
- * rows share the edges that they spill. */
+/* CHUNK, CHUNKS_MAX: the fewest segments of a chunk, and the most chunks, which are limited because each has a count
+ * for every tile. A GPU has more chunks, because it needs many work-items.
+ * HEAVY: on a CPU, a tile with more segments than this is drawn by as many work-items as it has rows of cells; each
+ * walks the list until its row is full. Edges of rings have to be walked to their end. So if there are any, such a tile
+ * must also have more than one in SHARES of what each of the device's processors draws, and it must be drawn in one
+ * slice, because its rows share the edges that they spill. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 1024, GPU_CHUNKS_MAX = 512, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
@@ -35,7 +36,7 @@ static const char *stage_name(int stage) {
     return camber_stage_name((camber_stage_id)((int)CAMBER_STAGE_SETUP + stage));
 }
 
-/* Waits for all running kernels at once, as each wait costs time. Adds their times up. */
+/* Waits once for all running kernels, because each wait costs time, and adds their times up. */
 static camber_status settle(camber_raster *raster) {
     camber_status status = CAMBER_OK;
     for (size_t i = raster->pending_count; i-- > 0;) {
@@ -48,7 +49,7 @@ static camber_status settle(camber_raster *raster) {
     return status;
 }
 
-/* Starts a stage's kernel for so many jobs: a work-group of one work-item for each, or of one for each cell. */
+/* Starts a stage's kernel for a number of jobs. Each is a work-group of one work-item, or of one work-item per cell. */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
     const size_t a_job = stage == STAGE_RASTERIZE && camber_raster_draws_cells(raster) ? CAMBER_CELLS : 1;
@@ -70,7 +71,7 @@ static bool is_pitched(const camber_raster *raster) {
     return raster->variant & CAMBER_RASTER_PITCHED;
 }
 
-/* Cuts a range to its slots in the slice. The first of them begins a work-item, as the range's first does. */
+/* Cuts a range to its slots in the slice. The first of them begins a work-item, like the first slot of the range. */
 static bool cut_range(const camber_raster *raster, camber_slot_range *range) {
     const size_t from = raster->first_segment, to = from + raster->segment_count, base = range->base;
     const size_t before = from > base ? from - base : 0, past = to > base ? to - base : 0;
@@ -81,7 +82,7 @@ static bool cut_range(const camber_raster *raster, camber_slot_range *range) {
     return range->first < range->end;
 }
 
-/* Starts setup for ranges of one part by so many work-items. part: NULL for fills, which have no points. */
+/* Starts setup for ranges of one part with that many work-items. part is NULL for fills, which have no points. */
 static camber_status set_up(camber_raster *raster, const camber_setup_args *args, uint32_t count, size_t items,
                             const camber_mesh_part *part) {
     const camber_status status = camber_raster_put(raster, BUFFER_SETUPS, args, count * sizeof *args);
@@ -104,7 +105,7 @@ static camber_status set_up(camber_raster *raster, const camber_setup_args *args
                                : status;
 }
 
-/* Makes the segments that ranges of one part have in the slice, all at once, as each launch costs time. */
+/* Makes the segments that ranges of one part have in the slice, all in one launch, because each launch costs time. */
 static camber_status set_up_part(camber_raster *raster, const listed_scene *p, size_t first, size_t end) {
     const size_t an_item = CAMBER_SETUP_SLOTS(raster->device->lanes);
     camber_mesh *mesh = p->list.ranges[first].mesh;
@@ -117,7 +118,7 @@ static camber_status set_up_part(camber_raster *raster, const listed_scene *p, s
         camber_slot_range range = p->list.ranges[i];
         if (!cut_range(raster, &range))
             continue;
-        if (part) /* edges have no joins */
+        if (part) /* edges of rings have no joins */
             status = range.is_area ? camber_part_ensure_made(mesh, part) : camber_part_ensure_points(mesh, part);
         args[count] = camber_raster_setup_args(p->scene, &range, &raster->band);
         args[count++].first_item = (uint32_t)items;
@@ -143,7 +144,7 @@ static camber_status make_segments(camber_raster *raster, const listed_scene *p)
     return status;
 }
 
-/* Finds the segments of the slice outside of which no edge of a ring lies. */
+/* Finds the smallest range of the slice's segments that contains all edges of rings. */
 static void find_edges(const camber_raster *raster, uint32_t *first, uint32_t *count) {
     const size_t slice = raster->first_segment, end = raster->end_edge > slice ? raster->end_edge - slice : 0;
     *first = raster->first_edge > slice ? (uint32_t)(raster->first_edge - slice) : 0;
@@ -187,8 +188,8 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
     return status;
 }
 
-/* Adds the tiles' totals up on the host to where each list begins. *fits is false if the lists are too long and the
- * band or the slice can still be halved. */
+/* Adds the tiles' totals up on the host, which gives where each list begins. *fits is false if the lists are too long
+ * and the band or the slice can still be halved. */
 static camber_status start_lists(camber_raster *raster, bool *fits) {
     const camber_device *device = raster->device;
     const size_t lists = raster->list_count;
@@ -204,7 +205,7 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
         raster->starts[i] = (uint32_t)sum;
         sum += totals[i];
     }
-    /* One more than there are lists, as rasterize looks at the next tile's list, too. */
+    /* One more than there are lists, because rasterize also looks at the next tile's list. */
     raster->starts[lists] = raster->starts[lists + 1] = (uint32_t)sum;
     camber_buffer_unmap(device, raster->buffers[BUFFER_TOTALS], totals);
     const uint64_t crossings = sum - raster->starts[raster->tile_count];
@@ -228,7 +229,7 @@ static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, 
     return run(raster, STAGE_BIN_SCATTER, fill, 7, chunk_count);
 }
 
-/* Finds the windings that edges leave to the right of them. */
+/* Computes the winding numbers that edges cause to the right of them. */
 static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
     if (raster->list_count == raster->tile_count)
         return CAMBER_OK;
@@ -242,19 +243,19 @@ static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
     return status == CAMBER_OK ? run(raster, STAGE_WIND, wind, sizeof wind / sizeof *wind, of.rows) : status;
 }
 
-/* Whether the slice draws anything of a tile: segments of its own, or areas whose edges cross its row of tiles. */
+/* Whether the slice draws anything in a tile: its own segments, or polygons whose edges cross its row of tiles. */
 static bool has_work(const camber_raster *raster, size_t tile) {
     const uint32_t *lists = raster->starts, *rows = lists + raster->tile_count + tile / raster->columns;
     return lists[tile + 1] > lists[tile] || (raster->list_count > raster->tile_count && rows[1] > rows[0]);
 }
 
-/* The most tiles that can be spilled: as many as memory allows, and at least a row of them. */
+/* Returns the most tiles that can be spilled: as many as memory allows, and at least a row of them. */
 static size_t most_spills(const camber_raster *raster, camber_spill_args k) {
     const size_t most = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_SPILLS) / (4 * (uint64_t)k.tile_words));
     return most > raster->columns ? most : raster->columns;
 }
 
-/* No tile of the band has a spill yet. */
+/* Notes that no tile of the band has a spill yet. */
 static camber_status begin_spills(camber_raster *raster) {
     const size_t tiles = raster->tile_count;
     if (!camber_grow(raster->device->context, &raster->spills, &raster->spill_capacity, tiles, sizeof *raster->spills))
@@ -264,9 +265,9 @@ static camber_status begin_spills(camber_raster *raster) {
     return CAMBER_OK;
 }
 
-/* Gives a spill to each tile that the slice is the first to draw; the last spills none. The buffer has room for all
- * that there may be, as it would lose them if it grew. *fits is false if there are too many, which those of one row of
- * tiles never are. */
+/* Gives a spill to each tile that this slice is the first to draw; the last slice spills none. The buffer has room for
+ * as many as there may ever be, because it would lose its contents if it grew. *fits is false if there are too many,
+ * which never happens for one row of tiles. */
 static camber_status place_spills(camber_raster *raster, camber_spill_args k, bool *fits) {
     const size_t most = most_spills(raster, k), tiles = raster->tile_count;
     raster->spills_before = raster->spill_count;
@@ -300,8 +301,8 @@ static void put_job(camber_raster *raster, size_t job, size_t tile, uint32_t row
                                                 : spill;
 }
 
-/* Lists the jobs of tiles that the slice draws; the last draws all. First come heavy tiles, one job for each row of
- * cells, then whole tiles. */
+/* Lists the jobs for the tiles that the slice draws; the last slice draws all tiles. Heavy tiles come first, with one
+ * job per row of cells, and then whole tiles. */
 static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
@@ -400,7 +401,7 @@ static camber_status prepare_rich(camber_raster *raster, const camber_raster_sce
     return status;
 }
 
-/* The buffers that have words for each segment: BUFFER_SEGMENTS and those behind it. */
+/* The buffers that have words for each segment: BUFFER_SEGMENTS and those after it. */
 enum { SEGMENT_BUFFERS = BUFFER_PLANES - BUFFER_SEGMENTS + 1, MOST_SEGMENTS = 1 << 20 };
 typedef struct segment_words {
     size_t of[SEGMENT_BUFFERS], all;
@@ -422,7 +423,8 @@ static size_t segments_at_once(const camber_raster *raster) {
     return fitting < 16 ? 16 : fitting < most ? fitting : most;
 }
 
-/* Makes room for a multiple of 16 segments. Pictures of other kinds have left buffers, and a bound is one of all. */
+/* Makes room for a multiple of 16 segments. Earlier pictures of other kinds may have left buffers, which count against
+ * the same memory limit. */
 static camber_status reserve_segments(camber_raster *raster, size_t segments) {
     const segment_words words = count_segment_words(raster);
     uint64_t all = 0;
@@ -484,8 +486,8 @@ static camber_status draw_slice(camber_raster *raster, const listed_scene *p, ca
     return status == CAMBER_OK ? rasterize_tiles(raster, p->scene, k, heavy, jobs) : status;
 }
 
-/* Draws the band's slices, from the last to the first. If lists or spills of one do not fit, it stops so that the
- * caller halves the band, or halves the slice. */
+/* Draws the band's slices, from the last to the first. If the lists or spills of one do not fit, it either stops, so
+ * that the caller halves the band, or halves the slice. */
 static camber_status draw_band(camber_raster *raster, const listed_scene *p, bool *fits) {
     size_t most = segments_at_once(raster), left = p->list.segment_count;
     camber_spill_args k = plan_spill(raster, p->scene);
@@ -510,8 +512,9 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
     return status;
 }
 
-/* Draws the area's bands, the first of which is all of it. A band whose lists or spills do not fit is halved, and so
- * are those after it. A band of `sure` rows can always be spilled, so want of spills halves none below that. */
+/* Draws the area's bands. The first band is the whole area. A band whose lists or spills do not fit is halved, and so
+ * are those after it. A band of `sure` rows can always be spilled, so a lack of room for spills halves no band below
+ * that. */
 static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     const camber_raster_area *area = &raster->area;
     const uint32_t sure = (uint32_t)(most_spills(raster, plan_spill(raster, p->scene)) / raster->columns);
@@ -555,7 +558,8 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
         status = draw_bands(raster, &p);
     const camber_status settled = settle(raster);
     if (status != CAMBER_OK)
-        camber_device_settle(raster->device); /* the scene may be freed: what was put must have been copied */
+        /* the caller may free the scene, so everything that was put must have been copied */
+        camber_device_settle(raster->device);
     status = status == CAMBER_OK ? settled : status;
     camber_raster_free_ranges(&p.list);
     return status;

@@ -9,8 +9,8 @@ enum {
     BUFFER_BRUSHES,
     BUFFER_BRUSH_EXT,
     BUFFER_SIDE_TABLE,
-    BUFFER_CHANGES, /* of brushes, as slots */
-    BUFFER_SETUPS,  /* of the ranges of a part */
+    BUFFER_CHANGES, /* slots at which the brush changes */
+    BUFFER_SETUPS,  /* arguments of setup for the ranges of a part */
     BUFFER_SEGMENTS,
     BUFFER_EDGES, /* of rings */
     BUFFER_BOXES,
@@ -21,10 +21,10 @@ enum {
     BUFFER_STARTS,
     BUFFER_LISTS,
     BUFFER_CROSSINGS,
-    BUFFER_ENDS, /* of rows' crossings */
+    BUFFER_ENDS, /* ends of the crossings of each row */
     BUFFER_JOBS,
     BUFFER_PIXELS,
-    BUFFER_SPILL, /* of tiles, between slices */
+    BUFFER_SPILL, /* state of tiles between slices */
     BUFFERS
 };
 
@@ -39,24 +39,25 @@ enum { CAMBER_RASTER_PENDING = 32 };
 
 struct camber_raster {
     camber_device *device;
-    camber_program *program; /* of the variant */
-    unsigned variant;        /* of what was drawn last */
+    camber_program *program; /* program of the variant */
+    unsigned variant;        /* variant of the last drawing */
     camber_buffer *buffers[BUFFERS];
     size_t capacities[BUFFERS];
-    camber_setup_args *setups; /* of the slice's ranges. This and the next are in host memory: */
+    camber_setup_args *setups; /* for the slice's ranges. This and the next are in host memory */
     size_t setup_capacity;
     uint32_t *starts, *jobs;
-    uint32_t *spills; /* where among the spills each tile of the band has its own. UINT32_MAX: it has none */
+    uint32_t *spills; /* number of the spill of each tile of the band. UINT32_MAX: it has none */
     size_t start_capacity, job_capacity, spill_capacity;
-    size_t spill_count, spills_before;   /* tiles that have one, and those that had one before the slice */
-    camber_raster_area area;             /* drawn last */
-    camber_raster_area band;             /* the band of the area: whole rows of tiles whose lists and spills fit */
-    camber_buffer *given;                /* the caller's buffer for the pixels; NULL: a buffer of our own */
+    size_t spill_count, spills_before; /* tiles that have a spill, and tiles that had one before the slice */
+    camber_raster_area area;           /* drawn last */
+    /* the current band of the area: whole rows of tiles whose lists and spills fit */
+    camber_raster_area band;
+    camber_buffer *given;                /* the caller's buffer for the pixels; NULL: the rasterizer's own */
     uint32_t columns;                    /* tiles */
     size_t first_segment, segment_count; /* of the slice */
-    size_t first_edge, end_edge;         /* those of camber_range_list */
+    size_t first_edge, end_edge;         /* as in camber_range_list */
     size_t tile_count;
-    size_t list_count; /* of tiles, and behind them of rows of tiles where there are areas */
+    size_t list_count; /* lists of tiles, followed by those of rows of tiles if there are polygons */
     uint32_t slice_count;
     camber_drawing_memory memory;
     camber_raster_pending pending[CAMBER_RASTER_PENDING];
@@ -64,32 +65,32 @@ struct camber_raster {
     double ms[STAGES];
 };
 
-/* Whether a work-item of rasterize draws one cell of a tile, as on GPUs. */
+/* Whether each work-item of rasterize draws one cell of a tile, as on GPUs. */
 static inline bool camber_raster_draws_cells(const camber_raster *raster) {
     return raster->device->lanes == 1;
 }
 
-/* The words that a tile spills of a brush of areas. */
+/* Returns the words that a tile spills for a brush of polygons. */
 static inline uint32_t camber_raster_area_words(const camber_raster *raster) {
     return camber_raster_draws_cells(raster) ? CAMBER_CELL_AREA_WORDS : CAMBER_AREA_WORDS;
 }
 
-/* How many eighths of drawing's memory its buffers may take. A picture of more segments is drawn in slices, from the
- * last one to the first. If lists or spills would take more, a band is halved; if the lists of a single row of tiles
- * do, the slice is halved. Segments are counted in as many chunks as counts have room for. */
+/* How many eighths of the drawing memory each kind of buffer may take. A picture with more segments is drawn in slices,
+ * from the last to the first. If lists or spills would take more, a band is halved; if the lists of a single row of
+ * tiles would, the slice is halved. There are as many chunks of segments as there is room for their counts. */
 typedef enum camber_raster_eighths {
     CAMBER_RASTER_COUNTS = 1,
     CAMBER_RASTER_LISTS = 1,
     CAMBER_RASTER_SPILLS = 2,
     CAMBER_RASTER_SEGMENTS = 4,
 } camber_raster_eighths;
-/* The same in bytes; if memory has no bound, as much as is of use. */
+/* Returns the same in bytes; without a memory limit, as much as is useful. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster, camber_raster_eighths eighths);
 /* Frees a buffer. */
 void camber_raster_drop(camber_raster *raster, int which);
-/* Makes a buffer at least so large. If it grows, its contents are lost. */
+/* Makes a buffer at least that large. If it grows, its contents are lost. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
-/* Writes bytes to a buffer. They must stay until the drawing has been waited for. */
+/* Writes bytes to a buffer. They must stay valid until the caller has waited for the drawing. */
 camber_status camber_raster_put(camber_raster *raster, int which, const void *bytes, size_t size_bytes);
 
 #endif

@@ -1,5 +1,5 @@
 /* The rasterizer's CPU twin: makes the same segments, boxes, lists and pixels as the kernels. It takes one segment,
- * tile and pixel at a time, without chunks and sums. This file makes all but the pixels. */
+ * tile and pixel at a time, without chunks and sums. This file makes everything except the pixels. */
 #include "raster/twin.h"
 
 #include "camber_proof.h"
@@ -10,19 +10,19 @@
 
 /* ---- Segments ---- */
 
-/* A word's index; outside the part, that of its nearest word. */
+/* Returns a word's index; outside the part, the index of the nearest word in it. */
 static size_t word_at(int64_t i, const camber_setup_args *r) {
     const int64_t last = (int64_t)r->slot_count + 1;
     return (size_t)(i < 0 ? 0 : i > last ? last : i);
 }
 
-/* A slot's number; outside the part, that of its nearest slot. */
+/* Returns a slot's number; outside the part, the number of the nearest slot in it. */
 static size_t slot_at(int64_t slot, const camber_setup_args *r) {
     const int64_t last = (int64_t)r->slot_count - 1;
     return (size_t)(slot < 0 ? 0 : slot > last ? last : slot);
 }
 
-/* A point with its join word and its info, as setup reads it. */
+/* A point with its join word and its info, as setup reads them. */
 typedef struct point {
     float x, y;
     uint32_t join, info;
@@ -55,7 +55,7 @@ static three_points points_of(const camber_part_points *part, const camber_setup
     return p;
 }
 
-/* Writes how far along its line a segment lies, by the arc lengths of its two points. */
+/* Writes how far along its line a segment is, from the arc lengths of its two points. */
 static void put_arc_length(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_segment *s,
                            float arc_length[CAMBER_SEGMENT_ARC_LENGTHS]) {
     memset(arc_length, 0, CAMBER_SEGMENT_ARC_LENGTHS * sizeof *arc_length);
@@ -84,7 +84,7 @@ static void put_plane(const camber_segment *s, const camber_plane *p, float *mad
     memcpy(made, words, sizeof words);
 }
 
-/* The brush of the edge that ends in a slot, by that of its row. */
+/* Returns the brush of the edge that ends in a slot, given the brush of its row. */
 static float brush_of(const camber_twin *t, const camber_setup_args *r, int64_t slot, float of_row) {
     const uint32_t *changes = r->change_count ? t->changes + r->first_change : NULL;
     const uint32_t passed = r->changes_before + camber_changes_until(changes, r->change_count, (uint32_t)slot);
@@ -97,7 +97,7 @@ static void put_edge(const camber_segment *s, float brush, float *edges, size_t 
     edges[camber_edge_brush(which)] = brush;
 }
 
-/* Writes the words of the segment, or the edge, that ends in a slot. Its box says whether there is one. */
+/* Writes the words of the segment, or of the edge of a ring, that ends in a slot. Its box says whether there is one. */
 static void put_segment(const camber_twin *t, const camber_part_points *part, const camber_setup_args *r, int64_t slot,
                         size_t segment) {
     const three_points points = points_of(part, r, slot);
@@ -107,7 +107,7 @@ static void put_segment(const camber_twin *t, const camber_part_points *part, co
     const point a = is_dot ? b : points.before;
     const float *row =
         t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.info >> CAMBER_POINT_ROW_SHIFT : 0));
-    const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
+    const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 if there is no pitch */
     camber_segment s;
     bool drawn = ends && row[0] >= 0.0f;
     if (is_edge) {
@@ -161,7 +161,7 @@ static void add_to_list(const camber_twin *t, size_t segment, uint32_t *count, b
     ++*count;
 }
 
-/* The same as each_tile for the rows of tiles whose tops it may cross as the edge of a ring. */
+/* Does the same as each_tile for the rows of tiles whose tops it may cross as the edge of a ring. */
 static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
     if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box) || segment < t->first_edge || segment >= t->end_edge)
@@ -170,7 +170,7 @@ static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, boo
         add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
 }
 
-/* Counts a segment in each tile that it meets, or puts it into their lists. */
+/* Counts a segment in each tile that it touches, or puts it into their lists. */
 static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;

@@ -9,9 +9,9 @@ typedef struct camber_twin {
     const camber_raster_scene *scene;
     const camber_raster_area *area;
     camber_raster_stages *stages;
-    const uint32_t *changes;     /* of brushes: slots */
+    const uint32_t *changes;     /* slots at which the brush changes */
     uint32_t columns, rows;      /* tiles */
-    size_t first_edge, end_edge; /* no edge of a ring lies outside these segments */
+    size_t first_edge, end_edge; /* all edges of rings are among these segments */
 } camber_twin;
 
 /* Whether a segment is the edge of a ring. */
@@ -20,7 +20,7 @@ static inline bool camber_twin_is_edge(const camber_twin *t, size_t segment) {
            camber_bits_of(t->stages->edges[camber_edge_brush(segment)]) != CAMBER_NO_EDGE;
 }
 
-/* Draws the area's tiles from the lists; the second one in a picture with a pitch. */
+/* These draw the area's tiles from the lists; the second one is for a picture with a pitch. */
 camber_status camber_twin_draw(const camber_twin *twin);
 camber_status camber_twin_draw_pitched(const camber_twin *twin);
 

@@ -1,8 +1,7 @@
-/* rasterize of the CPU twin: draws the pixels of an area, tile by tile, from the tiles' lists of segments.
+/* The CPU twin of rasterize: draws the pixels of an area, tile by tile, from the tiles' lists of segments.
  *
  * Input: the segments, lists and brushes of a camber_twin. Output: its area's pixels. The twin only walks: every tile,
- * every segment of its list, every cell, every pixel, one after the other (kernels/draw_cells.h, which GPUs run, too).
- */
+ * every segment of its list, every cell, every pixel, one after another (kernels/draw_cells.h, which GPUs also run). */
 #include "raster/twin.h"
 
 #include "kernels/draw_cells.h"
@@ -18,7 +17,7 @@ static camber_words pixel_of(const camber_twin *t, camber_tile_state *c, uint32_
     return camber_tile_pixels(c, (int)cell, (int)pixel, t->scene->background);
 }
 
-/* Writes the pixels of a tile that lie in the area. */
+/* Writes those pixels of a tile that are in the area. */
 static void write_tile(const camber_twin *t, camber_tile_state *c, uint32_t column, uint32_t row) {
     const uint32_t left = column * CAMBER_TILE_PX, top = row * CAMBER_TILE_PX;
     for (uint32_t y = top; y < top + CAMBER_TILE_PX && y < t->area->height; y++)
@@ -30,7 +29,7 @@ static void write_tile(const camber_twin *t, camber_tile_state *c, uint32_t colu
         }
 }
 
-/* Draws a tile from the crossings of its row, of which there are so many. */
+/* Draws a tile, given the crossings of its row and their number. */
 static void draw_tile(const camber_twin *t, camber_tile_state *c, camber_drawn_tile *d, uint32_t row,
                       camber_u32 crossing_count) {
     const uint32_t column = d->left.column;

@@ -8,7 +8,7 @@
 
 enum { INPUTS = 9, POINT_INPUTS = 3 };
 
-/* Lists a part's input buffers. The first three may be lent by polylines, the last two are there only with arc
+/* Lists a part's input buffers. The first three may be borrowed from polylines; the last two exist only with arc
  * lengths. */
 static void list_input(camber_mesh_part *part, camber_buffer **buffers[INPUTS]) {
     camber_buffer **const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,      &part->offsets,
@@ -25,7 +25,7 @@ static void release_inputs(const camber_device *device, camber_mesh_part *part, 
     part->lent = false;
 }
 
-/* Releases the input buffers that classify reads or writes, and leaves those of source lines. */
+/* Releases the input buffers that classify reads or writes, and keeps those of source lines. */
 static void release_slots(const camber_device *device, camber_mesh_part *part) {
     release_inputs(device, part, INPUTS);
     part->slot_capacity = 0;
@@ -99,7 +99,7 @@ camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *
     if (camber_part_has_input(mesh, part, slots, lent))
         return CAMBER_OK;
     const bool uploaded =
-        part->uploaded && part->source_line.x; /* slots were uploaded to the source lines' buffers, which stay */
+        part->uploaded && part->source_line.x; /* slots were uploaded to the source lines' buffers, which are kept */
     release_slots(device, part);
     part->uploaded = uploaded;
     const size_t blocks = slots / device->block, words = slots + 2;

@@ -1,4 +1,4 @@
-/* How large parts are, and whether the device and their share of memory can hold them. */
+/* Computes how large parts are, and whether the device and their share of memory can hold them. */
 #include "residency/memory.h"
 #include "residency/parts.h"
 
@@ -22,10 +22,10 @@ camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint6
                        polyline, (unsigned long long)size_bytes, (unsigned long long)device->memory_bytes);
 }
 
-/* How much a part, or a range of its polylines, has. */
+/* The size of a part, or of a range of its polylines. */
 typedef struct part_size {
     uint64_t slots, records, indices;
-    uint64_t given; /* source slots, where lines have an offset */
+    uint64_t given; /* source slots, if lines have an offset */
 } part_size;
 
 /* Rounds up to whole blocks. */
@@ -34,18 +34,19 @@ static uint64_t whole_blocks(const camber_mesh *mesh, uint64_t slots) {
     return (slots + block - 1) / block * block;
 }
 
-/* kite and fan have a record for each slot, and their kernel writes whole blocks. */
+/* Returns the bytes of a part's records. Kite and fan have one record per slot, and their kernel writes whole blocks.
+ */
 static uint64_t record_bytes(const camber_mesh *mesh, part_size size) {
     return (mesh->mesh_info.strips ? size.records : whole_blocks(mesh, size.records)) *
            camber_record_bytes(&mesh->mesh_info);
 }
 
 static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
-    return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* no buffer is empty */
+    return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* a buffer may not be empty */
 }
 
-/* The bytes of a part's input, and of the arrays that the host keeps for it. The arrays count double and a little more:
- * camber_grow makes them larger than asked, and never tiny. */
+/* Returns the bytes of a part's input, and of the arrays that the host keeps for it. The arrays count double and a
+ * little more, because camber_grow makes them larger than requested, and never tiny. */
 uint64_t camber_part_slots_bytes(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
     const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CULL_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
@@ -53,7 +54,7 @@ uint64_t camber_part_slots_bytes(const camber_mesh *mesh, const camber_mesh_part
            2 * (16 * (blocks + 1) + 4 * chunks) + 256;
 }
 
-/* The bytes that a part of this size needs, input and output. */
+/* Returns the bytes that a part of this size needs, input and output. */
 static uint64_t needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
     const size_t given = (size_t)whole_blocks(mesh, size.given);
     return (mesh->has_offsets ? camber_source_line_bytes(mesh->mesh_info.has_arc_length, given) : 0) +
@@ -86,10 +87,12 @@ uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_
     return mesh->buffer_copies * lacks;
 }
 
-/* Eighths of the bound for a part of a single polyline, and of several: gpu/memory.h. */
+/* How many eighths of the memory limit a part may take: a part of a single polyline, and one of several (gpu/memory.h).
+ */
 enum { ALONE = 4, TOGETHER = 1 };
 
-/* Whether so many slots are in the part's share of memory; always true for a single polyline, as it cannot be cut. */
+/* Whether that many slots fit into the part's share of memory; always true for a single polyline, since it cannot be
+ * cut. */
 static bool may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
     return part->polyline_count == 1 || needed_bytes(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
                                             camber_device_share(mesh->device, TOGETHER);

@@ -1,23 +1,24 @@
-/* Evicts parts and sections if what meshes hold is bounded (gpu/memory.h).
+/* Evicts parts and sections to keep meshes within the memory limit (gpu/memory.h).
  *
- * Main idea: everything evicted can be made again, parts from their source and sections from host memory. So when bytes
- * are needed, camber_mesh_evict_for goes through this list until they are free, one step at a time, and starts again at
- * the top after each eviction:
+ * Main idea: everything that is evicted can be made again: parts from their source, and sections from host memory. So
+ * when bytes are needed, camber_mesh_evict_for goes through this list until they are free, and starts again at the top
+ * after each eviction:
  *
  *     1  parts of this mesh that hold buffers but no valid output
  *     2  parts, then sections, of the device's other meshes
- *     3  sections of this mesh, but for that of the part that asks
+ *     3  sections of this mesh, except that of the requesting part
  *     4  parts of this mesh with valid output, unless spare_made
  *
- * Within step 4 the victim is the part that will be needed last. A frame goes through the parts in order, then begins
- * again; so after the part that asks (keep) the cycle goes round, and the victim is the last before keep:
+ * Within step 4 the victim is the part that will be needed last. A frame goes through the parts in order, and the next
+ * frame begins again at the first; so counting from the requesting part (keep), the part needed last is the one before
+ * keep:
  *
  *     parts      0   1   2  [3 keep]  4   5
  *     needed     4.  5.  6. now       2.  3.     so part 2 goes first */
 #include "residency/memory.h"
 
-/* Returns the part to evict, among those that hold something: one without valid output, else the one that a cycle
- * through the parts from keep on needs last. NULL: there is none. */
+/* Returns the part to evict among those that hold something: one without valid output, else the one that is needed last
+ * in a cycle through the parts that starts at keep. NULL: there is none. */
 static camber_mesh_part *find_victim(const camber_mesh *mesh, const camber_mesh_part *keep, bool spare_made) {
     const size_t from = keep ? (size_t)(keep - mesh->parts) : 0;
     camber_mesh_part *victim = NULL;
@@ -42,7 +43,7 @@ static bool drop_section(camber_mesh *mesh, const camber_mesh_part *keep) {
     return false;
 }
 
-/* Evicts one part. If it had valid output, the mesh is full. */
+/* Evicts one part. If it had valid output, marks the mesh as full. */
 static bool drop_part(camber_mesh *mesh, const camber_mesh_part *keep, bool spare_made) {
     camber_mesh_part *victim = find_victim(mesh, keep, spare_made);
     if (!victim)
@@ -60,7 +61,7 @@ static bool drop_from_others(const camber_mesh *mesh) {
     return false;
 }
 
-/* Whether so many bytes more would pass the device's bound, or the budget of the whole run. */
+/* Whether that many more bytes would exceed the device's memory limit or the budget of the run. */
 static bool lacks_room(const camber_device *device, uint64_t more_bytes) {
     return device->held_bytes + more_bytes > device->memory_bytes ||
            (device->host_memory && !camber_budget_has(device->context, more_bytes));

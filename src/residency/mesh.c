@@ -1,4 +1,4 @@
-/* Meshes: creating and destroying them. */
+/* Creates and destroys meshes. */
 #include "residency/memory.h"
 #include "residency/parts.h"
 

@@ -1,8 +1,8 @@
 /* Divides a mesh's source into parts.
  *
  * Input: polylines in slots, or sections of a network, and the limits of the device: its largest buffer, and shares of
- * the bound on memory. Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided by their
- * slots, which are known, so that a part's input fits. A part whose points or output turn out too large is halved.
+ * the memory limit. Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided by their slots,
+ * which are known, so that a part's input fits. A part whose points or output turn out too large is halved.
  *
  * A part is cut between polylines only. A single polyline that does not fit is an error that names it. */
 #include "residency/parts.h"
@@ -23,8 +23,8 @@ void camber_mesh_release_parts(camber_mesh *mesh) {
     mesh->part_count = mesh->part_capacity = 0;
 }
 
-/* Makes room for so many parts. Parts past part_count are zero, but for the very first, which keeps its buffers for the
- * next polylines. */
+/* Makes room for that many parts. Parts past part_count are zero, except the very first, which keeps its buffers for
+ * the next polylines. */
 static bool reserve_parts(camber_mesh *mesh, size_t count) {
     const size_t before = mesh->part_capacity;
     if (!camber_grow(mesh->device->context, &mesh->parts, &mesh->part_capacity, count, sizeof *mesh->parts))
@@ -33,7 +33,7 @@ static bool reserve_parts(camber_mesh *mesh, size_t count) {
     return true;
 }
 
-/* Sets which section and which points of a network a part has, from its polylines. */
+/* Sets a part's section and points of a network from its polylines. */
 static void set_points(const camber_mesh *mesh, camber_mesh_part *part) {
     const struct camber_held_network *held = mesh->held;
     part->section = held->section_count - 1;
@@ -58,7 +58,7 @@ static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_
         set_points(mesh, part);
 }
 
-/* Returns the polyline behind the last that fits into a part of so many slots that begins with first. */
+/* Returns the end (exclusive) of the polylines that fit into a part of that many slots that begins with first. */
 static size_t find_part_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
     const uint32_t *slots = mesh->first_slots;
     size_t low = first, high = mesh->polyline_count;
@@ -79,7 +79,8 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
         release_part(mesh, mesh->parts + i);
 }
 
-/* How many slots fit into a part's share of memory, if each makes a record or a little more; at least a block. */
+/* Returns how many slots fit into a part's share of memory if each makes a record or a little more; at least one block.
+ */
 static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
     const uint64_t block_bytes =
@@ -119,7 +120,7 @@ camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, siz
     return CAMBER_OK;
 }
 
-/* Merges a part with the one behind it, which loses its buffers. The slots of both are made anew. */
+/* Merges a part with the next one, which loses its buffers. The slots of both are made again. */
 static void merge_with_next(camber_mesh *mesh, size_t which) {
     camber_mesh_part *part = mesh->parts + which;
     const size_t end = part[1].first_polyline + part[1].polyline_count;
@@ -139,7 +140,7 @@ void camber_mesh_compact_parts(camber_mesh *mesh) {
             camber_part_release_buffers(mesh, mesh->parts + i);
     for (size_t i = 0; i + 1 < mesh->part_count; i++) {
         const camber_mesh_part *part = mesh->parts + i;
-        /* How much the merged part will have is known after the next frame. Only then may it merge again. */
+        /* The size of the merged part is known only after the next frame. It may not merge again before. */
         if (part[0].section == part[1].section && camber_parts_needed_bytes(mesh, part) <= most)
             merge_with_next(mesh, i);
     }

@@ -1,4 +1,4 @@
-/* Makes the buffers of parts large enough, and room for them. */
+/* Makes the buffers of parts large enough, and makes room for them. */
 #include "residency/memory.h"
 #include "residency/parts.h"
 

@@ -1,4 +1,4 @@
-/* Where the slots of polylines are in a part. */
+/* Finds the slots of polylines in a part. */
 #include "residency/parts.h"
 
 camber_projection camber_part_projection(const camber_mesh *mesh, const camber_mesh_part *part) {
@@ -10,12 +10,12 @@ camber_projection camber_part_projection(const camber_mesh *mesh, const camber_m
     return p;
 }
 
-/* How many chunks the points of the projection have. The first and the last may be incomplete. */
+/* Returns how many chunks the points of the projection have. The first and the last may be incomplete. */
 size_t camber_projection_chunks(const camber_projection *p) {
     return camber_network_chunk_count(p->end) - p->begin / CAMBER_CULL_CHUNK;
 }
 
-/* camber_part_given_slot for a network. The host walks the polyline's chunk to count the slots before it. */
+/* Does camber_part_given_slot for a network. The host walks the polyline's chunk to count the slots before it. */
 static size_t network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
     const camber_projection p = camber_part_projection(mesh, part);
     const size_t point = camber_network_first_point(mesh->held->network, polyline);

@@ -1,8 +1,8 @@
 /* The source of a mesh: polylines, or a network with its sections.
  *
  * Input: a source, and the limits of the device. Output: the parts of the mesh, which holds the source as long as parts
- * may have to be made again. Main idea: a section is as many whole entries of a network as fit the device's largest
- * buffer and an eighth of the bound on memory. Parts begin as one a section.
+ * may have to be made again. Main idea: a section is as many whole entries of a network as fit into the device's
+ * largest buffer and an eighth of the memory limit. At first there is one part per section.
  *
  *     entries     | 0 | 1 | 2 | 3 | 4 | 5 | 6 |
  *     sections    |-- 0 ------|-- 1 ----------|
@@ -14,7 +14,7 @@
 
 /* ---- Polylines ---- */
 
-/* Holds the polylines, unless they are held. Only the count of holders changes, not the polylines. */
+/* Holds the polylines, unless the mesh does so already. Only the count of holders changes, not the polylines. */
 static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines) {
     if (!mesh->holds_polylines)
         camber_polylines_hold((camber_polylines *)(uintptr_t)polylines);
@@ -81,14 +81,15 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 
 /* ---- Networks ---- */
 
-/* Whether a section fits the device's buffers and its share of memory. */
+/* Whether a section fits into the device's buffers and its share of memory. */
 static bool section_fits(const camber_mesh *mesh, const camber_section *section) {
     const camber_network *network = mesh->held->network;
     return camber_section_largest_bytes(network, section) <= mesh->device->info.largest_buffer_bytes &&
            camber_section_bytes(network, section, true) <= camber_device_share(mesh->device, 1);
 }
 
-/* Returns the entry behind the last that fits into a section beginning with first; first itself where none does. */
+/* Returns the end (exclusive) of the entries that fit into a section that begins with first; first itself if none does.
+ */
 static size_t find_section_end(const camber_mesh *mesh, size_t first) {
     const camber_network *network = mesh->held->network;
     size_t low = first, high = network->entry_count + 1;
@@ -103,7 +104,7 @@ static size_t find_section_end(const camber_mesh *mesh, size_t first) {
     return low;
 }
 
-/* Fails because an entry alone is too large, and says for which limit. */
+/* Fails because a single entry is too large, and says for which limit. */
 static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
     const camber_network *network = mesh->held->network;
     const camber_section section = camber_section_of(network, entry, entry + 1);
@@ -113,7 +114,7 @@ static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
                                                             : camber_fail_memory(mesh, entry, 4 * all);
 }
 
-/* Divides the entries into sections, and adds a part for each that has points. */
+/* Divides the entries into sections, and adds a part for each section that has points. */
 static camber_status lay_out_sections(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
     const camber_network *network = held->network;

@@ -2,7 +2,7 @@
 #include "residency/memory.h"
 #include "residency/parts.h"
 
-/* Whether the buffers for the upload are complete: with those of arc lengths where these are wanted now. */
+/* Whether the buffers for the upload are complete, including those of arc lengths if these are needed now. */
 static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *part) {
     return !mesh->mesh_info.has_arc_length || (mesh->has_offsets ? part->source_line.arc_lengths : part->arc_lengths);
 }
@@ -12,13 +12,13 @@ void camber_mesh_return_points(camber_mesh *mesh) {
         camber_mesh_part *part = mesh->parts + i;
         if (!part->lent)
             continue;
-        camber_device_settle(mesh->device); /* nothing maps them any more */
+        camber_device_settle(mesh->device); /* then nothing maps them any more */
         part->uploaded = false;
         camber_part_release_points(mesh, part);
     }
 }
 
-/* Lets kernels read the polylines' arrays in place, which begin with the part's sentinel. */
+/* Lets kernels borrow the polylines' arrays (zero copy), which begin with the part's sentinel. */
 static camber_status borrow_points(camber_mesh *mesh, camber_mesh_part *part, size_t words) {
     const camber_polylines *polylines = mesh->polylines;
     const struct {
@@ -52,7 +52,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
         status = borrow_points(mesh, part, words);
     const size_t end = part->first_polyline + part->polyline_count;
     /* The words of a part are the one before its first slot, its slots, and sentinels. The last part takes sentinels
-     * from the polylines' own padding; other parts, and what is still missing, get zeros. */
+     * from the polylines' own padding; other parts, and whatever is still missing, get zeros. */
     size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
     given = given < words ? given : words;
     const struct {
@@ -67,7 +67,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
         if (status == CAMBER_OK && given < words)
             status = camber_buffer_write_later(device, arrays[i].buffer, 4 * given, 4 * (words - given), zeros);
     }
-    /* classify writes a join word for each slot. Those of the sentinels around them are read by neighbours, too. */
+    /* classify writes a join word for each slot. Neighbours also read those of the sentinels around them. */
     if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_buffer_write_later(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK && !mesh->has_offsets)

@@ -1,8 +1,8 @@
-/* Arc lengths: how far along its polyline each point lies, for dashes and other things drawn along lines.
+/* Computes arc lengths: how far along its polyline each point is, for dashes and other things drawn along lines.
  *
  * On a device, arc_length_sum adds up each chunk of points, the host carries the sums from chunk to chunk, and
  * arc_length_scan writes every point's length. The CPU twin goes along each polyline from its first point to its last.
- * Both add up integers (kernels/arc_length.h), so that the order does not matter and they agree bit for bit. */
+ * Both add up integers (kernels/arc_length.h), so that the order does not matter and the two agree bit for bit. */
 #include "stroke/arc_length.h"
 
 #include "kernels/arc_length.h"
@@ -11,8 +11,9 @@
 
 /* ---- Device ---- */
 
-/* Replaces each chunk's two sums by the lengths that its first line has before the chunk, and its last line behind it.
- * A closed sum means that a line begins, or seen from behind ends, in the chunk: past it is another line. */
+/* Replaces each chunk's two sums by the length of its first line before the chunk, and the length of its last line
+ * after it. A closed sum means that a line begins in the chunk (or, counting backwards, ends in it), so that the sum
+ * does not carry past it. */
 static void carry(camber_u64 *sums, size_t chunk_count) {
     camber_u64 before = 0, behind = 0;
     for (size_t i = 0; i < chunk_count; i++) {

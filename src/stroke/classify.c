@@ -1,4 +1,4 @@
-/* Runs kernels over the points of a part, first of them classify, which finds the join word of each. */
+/* Runs kernels over the points of a part, among them classify, which computes the join word of each point. */
 #include "stroke/stroke.h"
 
 camber_status camber_mesh_program(camber_mesh *mesh, camber_method method, camber_program **program) {

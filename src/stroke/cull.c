@@ -1,13 +1,13 @@
 /* Culls a network: makes the slots that a camera sees, on a device, for a part of a mesh.
  *
  * Input: the points of a section and the camera's projection. Output: the part's x, y and info, as if the visible
- * lines had been uploaded as polylines. Main idea: two passes over the same walk (kernels/cull.h), a chunk of points
- * a work-item. The first counts the slots of each chunk; the host adds the counts up; the second writes each chunk's
- * slots where its sum says.
+ * lines had been uploaded as polylines. Main idea: two passes over the same walk (kernels/cull.h), in which each
+ * work-item takes a chunk of points. The first pass counts the slots of each chunk; the host adds the counts up; the
+ * second pass writes each chunk's slots at the position that the sum gives.
  *
  *     chunks        |   0   |   1   |   2   |   3   |
  *     cull_count        5       0       9       4          slots
- *     chunk_bases       0       5       5      14     18   slots before, and all */
+ *     chunk_bases       0       5       5      14     18   slots before, and the total */
 #include "residency/memory.h"
 #include "residency/parts.h"
 #include "stroke/stroke.h"
@@ -21,7 +21,7 @@ static camber_launch over_chunks(const camber_device *device, const camber_proje
                            .group_size = device->block * CAMBER_WALKERS / CAMBER_BLOCK};
 }
 
-/* Makes room for the counts of so many chunks, on host and device. */
+/* Makes room for the counts of that many chunks, on host and device. */
 static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
     struct camber_held_network *held = mesh->held;
     const uint64_t on_host = chunks < part->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 64;
@@ -86,9 +86,9 @@ static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part
 /* Steps, each of which may fail:
  *
  *     1  upload the part's section, unless it is on the device
- *     2  count the slots of each chunk (cull_count); done where the camera sees none
- *     3  check that so many slots fit; if not, *fits is false and the caller cuts the part in two
- *     4  make room for them: as source lines where rows have an offset, else as the slots to classify
+ *     2  count the slots of each chunk (cull_count); stop if the camera sees none
+ *     3  check that the slots fit; if not, *fits is false and the caller cuts the part in two
+ *     4  make room for them: as source lines if rows have an offset, else as the slots to classify
  *     5  write them (cull_emit) */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;

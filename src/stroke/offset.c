@@ -1,12 +1,14 @@
-/* Makes lines that lie beside others: offset_clip -> offset_count -> offset_emit on a device, and the CPU twin.
+/* Makes offset lines, which run beside their source lines: offset_clip -> offset_count -> offset_emit on a device, and
+ * the CPU twin.
  *
  * Input: slots of the source lines and each row's offset. Output: slots of the offset lines, which classify reads as if
- * they had been given. Main idea: how many slots come of a source slot is not known before, so that they are made in
+ * they were the input. Main idea: it is not known in advance how many slots a source slot yields, so they are made in
  * three steps (kernels/offset.h has the geometry):
  *
- *     offset_clip   a slot: how much is left of the offset segment that begins there, and of the arc at its corner
- *     offset_count  a chunk of slots: how many slots come of it; the host adds these counts up
- *     offset_emit   a chunk: writes its slots where the sum says, and for each source slot where its own begin (places)
+ *     offset_clip   per slot: how much is left of the offset segment that begins there, and of the arc at its corner
+ *     offset_count  per chunk of slots: how many slots it yields; the host adds these counts up
+ *     offset_emit   per chunk: writes its slots where the sum says, and for each source slot where its own begin
+ * (places)
  *
  * The twin walks the source lines slot by slot and appends. */
 #include "stroke/offset.h"
@@ -31,7 +33,7 @@ bool camber_desc_has_offsets(const camber_tessellation_desc *desc) {
     return has;
 }
 
-/* Makes the rows' values for the offset kernels: one more than there are strokes, as a buffer may not be empty. */
+/* Makes the rows' values for the offset kernels: one more than there are strokes, since a buffer may not be empty. */
 static camber_status make_offset_rows(camber_context *context, const camber_tessellation_desc *desc,
                                       camber_offset_row **offset_rows) {
     camber_offset_row *made = camber_alloc_zero(context, desc->stroke_count + 1, sizeof *made);
@@ -86,7 +88,7 @@ camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellati
 
 /* ---- Stages ---- */
 
-/* Replaces each chunk's count by the sum of the counts before it, and puts the sum of all behind the last. */
+/* Replaces each chunk's count by the sum of the counts before it, and puts the total after the last. */
 static camber_status scan_counts(const camber_device *device, camber_buffer *counts, size_t chunk_count,
                                  uint64_t *slots) {
     uint64_t sum = 0;
@@ -129,8 +131,8 @@ static camber_status run_emit(camber_mesh *mesh, camber_mesh_part *part, const c
     return camber_launch_kernel(mesh->device, &launch, event);
 }
 
-/* Runs the three stages, with the sum of the counts between the second and the third. It stops where nothing is left of
- * the lines, or where the slots do not fit. An offset line has the arc lengths of its source line, so that a pattern
+/* Runs the three stages, with the sum of the counts between the second and the third. It stops if nothing is left of
+ * the lines, or if the slots do not fit. An offset line has the arc lengths of its source line, so that a pattern
  * beside a road keeps step with the road. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;
@@ -142,7 +144,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     camber_event *events[3] = {NULL, NULL, NULL};
     camber_program *program = NULL;
     uint64_t slots = 0;
-    /* The part's last output is invalid from here on, also where no slot comes out now. */
+    /* The part's last output is invalid from here on, even if there are no slots now. */
     part->slot_count = part->used_slots = part->record_count = part->vertex_count = part->index_count = 0;
     camber_status status = camber_device_offset_program(mesh->device, mesh->mesh_info.has_arc_length, &program);
     if (status == CAMBER_OK)
@@ -186,7 +188,8 @@ static camber_source_line source_line_of(const camber_polylines *polylines, cons
                                 .slots = (camber_u32)polylines->slot_count};
 }
 
-/* Walks all source slots in order and emits the slots of the offset lines; first_slots takes where each line begins. */
+/* Walks all source slots in order and emits the slots of the offset lines; first_slots receives where each line begins.
+ */
 static void emit_polylines(const camber_source_line *source_line, const camber_polylines *from,
                            camber_offset_writer *writer, uint32_t *first_slots) {
     size_t slot = 1;
@@ -200,7 +203,7 @@ static void emit_polylines(const camber_source_line *source_line, const camber_p
         first_slots[from->polyline_count] = writer->at - 1;
 }
 
-/* Counts the slots of the offset lines in 64 bits, as there may be more than 32 bits number. */
+/* Counts the slots of the offset lines in 64 bits, since 32 bits may not be enough. */
 static uint64_t count_slots(const camber_source_line *source_line, const camber_polylines *from) {
     uint64_t count = 0;
     for (size_t slot = 1; slot <= from->first_slots[from->polyline_count]; slot++) {

@@ -1,7 +1,7 @@
 /* Reads the points of a part back to the host. */
 #include "stroke/stroke.h"
 
-/* Reads words of a buffer into an array that is made for them. Does nothing after an earlier failure. */
+/* Reads words of a buffer into a new array. Does nothing after an earlier failure. */
 static void read_words(const camber_mesh *mesh, camber_buffer *buffer, size_t words, void *array,
                        camber_status *status) {
     void **made = array;

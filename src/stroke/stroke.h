@@ -4,27 +4,27 @@
 
 #include "residency/mesh.h"
 
-/* cull.c: makes a part's slots of a network (stages cull_count and cull_emit). Sets *fits to false, and makes none, if
- * they are too many for the device's buffers or the part's share of memory. */
+/* cull.c: makes a part's slots from a network (stages cull_count and cull_emit). If they are too many for the device's
+ * buffers or for the part's share of memory, sets *fits to false and makes none. */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 
-/* classify.c: finds the join words of the part's points, as a method has them. */
+/* classify.c: computes the join words of the part's points for a method. */
 camber_status camber_part_classify(camber_mesh *mesh, camber_mesh_part *part, camber_method method);
-/* Runs a kernel over a part's points, and waits for it: from then on nothing reads arrays of the host that were written
- * to the device later. */
+/* Runs a kernel over a part's points, and waits for it. After that nothing reads host arrays that were queued with
+ * camber_buffer_write_later. */
 camber_status camber_part_run(camber_mesh *mesh, const camber_mesh_part *part, camber_launch launch,
                               camber_stage_id stage);
-/* The program with a method's classify, scan and emit. */
+/* Returns the program with a method's classify, scan and emit. */
 camber_status camber_mesh_program(camber_mesh *mesh, camber_method method, camber_program **program);
 
-/* tessellate.c: makes a part again unless its buffers hold what the mesh is drawn from. part points into mesh->parts.
+/* tessellate.c: makes a part again, unless its buffers hold what the mesh is drawn from. part points into mesh->parts.
  * Other parts may be evicted. */
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
-/* Makes sure, too, that its join words are those of a method. */
+/* Also makes sure that its join words are those of a method. */
 camber_status camber_part_ensure_classified(camber_mesh *mesh, camber_mesh_part *part, camber_method method);
-/* Makes sure, too, that they are those of strips, which the rasterizer reads whatever the method. */
+/* Also makes sure that they are those of strips, which the rasterizer reads whatever the method. */
 camber_status camber_part_ensure_points(camber_mesh *mesh, camber_mesh_part *part);
-/* Fails because a part was made again and has more or less than it had. */
+/* Fails because a part that was made again does not have the size that it had. */
 camber_status camber_part_fail_remade(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots,
                                       size_t records);
 
@@ -32,10 +32,10 @@ camber_status camber_part_fail_remade(const camber_mesh *mesh, const camber_mesh
 typedef struct camber_part_points {
     float *x, *y;
     uint32_t *info, *joins;
-    camber_arc_length *arc_lengths; /* a slot. NULL: the mesh has none */
+    camber_arc_length *arc_lengths; /* one per slot. NULL: the mesh has none */
 } camber_part_points;
 
-/* Makes the part, and reads its points. camber_part_points_free frees them. */
+/* Makes the part if necessary, and reads its points. camber_part_points_free frees them. */
 camber_status camber_part_read_points(camber_mesh *mesh, camber_mesh_part *part, camber_part_points *points);
 void camber_part_points_free(camber_context *context, camber_part_points *points);
 

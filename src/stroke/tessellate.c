@@ -1,16 +1,16 @@
-/* Tessellates a mesh on a device, a part at a time.
+/* Tessellates a mesh on a device, one part at a time.
  *
- * Input: polylines, or a network and a camera; and strokes. Output: each part's points in its buffers, for GL its
- * records and indices, too, and the mesh's counts. Main idea: first the sizes, then the output. So buffers are exact,
- * no kernel needs an atomic, and the same input gives the same bytes.
+ * Input: polylines, or a network and a camera; and strokes. Output: each part's points in its buffers, for GL also its
+ * records and indices, and the mesh's counts. Main idea: sizes are computed first, and then the output. So buffers have
+ * the exact size, no kernel needs an atomic, and the same input gives the same bytes.
  *
  *     slots of the part   uploaded, or the polylines' own; or projected from a network; or made beside source lines
- *        v  classify      a slot: its join word, from its neighbours and its row
+ *        v  classify      per slot: its join word, from its neighbours and its row
  *     points              the rasterizer draws them
  *        |  mesh->output  counts and emits what GL draws (src/vertices/)
  *
- * If memory is bounded and full, the parts that come last are not kept; camber_part_ensure_made makes them when they
- * are needed. */
+ * If memory is limited and full, the last parts are not kept; camber_part_ensure_made makes them when they are needed.
+ */
 #include "kernels/stroke_ends.h"
 #include "points/rows.h"
 #include "residency/memory.h"
@@ -44,7 +44,7 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
                            "%zu strokes take a buffer of %zu bytes, and %s makes none above %llu; merge equal ones",
                            row_count, count * sizeof *rows, device->info.name,
                            (unsigned long long)device->info.largest_buffer_bytes);
-    /* Rows lie on the host and on the device, and camber_grow may make the host's array half as large again. */
+    /* Rows are on the host and on the device, and camber_grow may make the host's array half as large again. */
     const uint64_t size_bytes = count * sizeof *rows * 5 / 2;
     if (size_bytes > camber_device_share(device, 1))
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
@@ -61,11 +61,11 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     return camber_buffer_write_later(device, mesh->rows, 0, count * sizeof *rows, mesh->host_rows);
 }
 
-/* Makes a part's points. *fits is false, and there are none, if they are too many. The steps, each only if the mesh has
- * such a thing:
+/* Makes a part's points. If they are too many, *fits is false and there are none. The steps, each only if the mesh
+ * needs it:
  *
  *     1  slots: project them from the network, or upload them
- *     2  arc lengths of polylines; a network's slots come with theirs
+ *     2  arc lengths of polylines; a network's slots already have theirs
  *     3  offset lines in place of their source lines
  *     4  classify: their join words */
 static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
@@ -88,7 +88,7 @@ static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool
     return status;
 }
 
-/* Keeps what was made of a part, and emits it if the mesh is drawn from its output; unless memory is full. */
+/* Keeps what was made of a part, unless memory is full, and emits it if the mesh is drawn from its output. */
 static camber_status keep_part(camber_mesh *mesh, camber_mesh_part *part) {
     const uint64_t missing = mesh->output ? camber_part_missing_output_bytes(mesh, part) : 0;
     if (!mesh->is_full && !camber_mesh_evict_for(mesh, part, missing, true))
@@ -100,12 +100,12 @@ static camber_status keep_part(camber_mesh *mesh, camber_mesh_part *part) {
     return status;
 }
 
-/* Goes through the parts. i stays where a part is cut, so that the first of the new parts is next.
+/* Goes through the parts. If a part is cut, i stays, so that the first of the new parts is next.
  *
  *     points or output do not fit -> cut the part in two at the middle of its polylines
  *     else                        -> keep it, and its output, unless memory is full
  *
- * Once memory is full, parts are only made and counted. The first ones stay, as they are drawn first. */
+ * Once memory is full, parts are only made and counted. The first ones are kept, because they are drawn first. */
 static camber_status tessellate_parts(camber_mesh *mesh) {
     camber_status status = CAMBER_OK;
     mesh->is_full = false;

@@ -1,17 +1,17 @@
-/* Expands records into vertices and indices on the host, as shaders/stroke.vert does it on the fly.
+/* Expands records into vertices and indices on the host, as shaders/stroke.vert does on the fly.
  *
  * Input: the records of a mesh, and corners (record | which corner) for kite and fan. Output: one camber_vertex for
- * each distinct vertex, and indices that number them. Whatever a device left is not trusted: records and corners that
- * contradict each other give a wrong mesh, which a check finds, but never a read outside of an array.
+ * each distinct vertex, and indices that number them. The device's output is not trusted: records and corners that
+ * contradict each other give a wrong mesh, which a check finds, but never a read outside an array.
  *
  * Strips: a record is a pair of vertices, left and right of its point. A strip begins with a break, and its first
- * record repeats the point for the segment that goes out:
+ * record repeats the point for the outgoing segment:
  *
  *     records     break  start  end   end   break  start  end
  *     vertices           0 1    2 3   4 5          6 7    8 9
  *     indices     R R    0 1    2 3   4 5   R R    6 7    8 9        R: CAMBER_RESTART_INDEX
  *
- * At a tight join the start shares its outer vertex with the end before it: its index is repeated there.
+ * At a tight join the start shares its outer vertex with the end before it, whose index is repeated there.
  *
  * Kite and fan: a record is a point, and triangles name its corners. Only corners that are named become vertices:
  *
@@ -27,7 +27,7 @@
 
 #define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)
 
-/* Makes a vertex of record `at`. Its segment goes out of the point if out is set, else into it; other is the record at
+/* Makes a vertex of record `at`. Its segment leaves the point if out is set, else it enters it; other is the record at
  * the segment's other end. */
 static camber_vertex make_vertex(const camber_record *records, size_t at, size_t other, bool out) {
     const camber_record *p = records + at, *a = records + (out ? at : other), *b = records + (out ? other : at);
@@ -63,7 +63,7 @@ static camber_vertex make_edge(const camber_record *records, size_t at, size_t o
 
 /* ---- Strips ---- */
 
-/* The record behind or before another; the record itself at the ends of the list. */
+/* Returns the record after or before another; the record itself at the ends of the list. */
 static size_t neighbour(size_t record, size_t count, bool behind) {
     if (behind)
         return record + 1 < count ? record + 1 : record;
@@ -78,7 +78,7 @@ static camber_vertex strip_vertex(const camber_record *records, size_t count, si
 }
 
 /* Gives each record two indices: restarts for a break, else its two vertices. A start shares a vertex with the end
- * before it where camber_edge_is_shared says so. */
+ * before it if camber_edge_is_shared says so. */
 static void expand_strip(camber_mesh_data *data) {
     const size_t room = data->info.vertex_count;
     uint32_t count = 0;
@@ -117,20 +117,20 @@ static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index,
     return vertex;
 }
 
-/* Which corners of a record are named by indices, as 128 bits. */
+/* The corners of a record that indices refer to, as 128 bits. */
 typedef struct corner_set {
     uint64_t bits[2];
 } corner_set;
 
-/* How many corners of a set have a smaller number. */
+/* Returns how many corners of a set have a smaller number. */
 static unsigned count_below(const corner_set *set, camber_u32 corner) {
     const uint64_t below = (1ull << (corner & 63u)) - 1u;
     const unsigned low = (unsigned)__builtin_popcountll(set->bits[0] & (corner < 64 ? below : ~0ull));
     return corner < 64 ? low : low + (unsigned)__builtin_popcountll(set->bits[1] & below);
 }
 
-/* Finds which corners each record has, and the number of each record's first vertex. An index that names no record is
- * set to 0. */
+/* Finds which corners each record has, and the number of each record's first vertex. An index without a record is set
+ * to 0. */
 static camber_status find_corners(camber_context *context, camber_mesh_data *data, corner_set **sets,
                                   uint32_t **first_vertices) {
     const size_t records = data->info.record_count;

@@ -17,7 +17,7 @@ void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t p
     const uint32_t kind = camber_join_kind(join);
     info->undrawn_dots +=
         kind == CAMBER_KIND_SENTINEL && (point & (CAMBER_POINT_REAL | CAMBER_POINT_AREA)) == CAMBER_POINT_REAL;
-    /* A ring's seam is one join, though two points have its word: the last point counts it. */
+    /* A ring's seam is one join, although two points have its word: it is counted at the last point. */
     if (kind < CAMBER_KIND_CUT || kind > CAMBER_KIND_SPLIT || point & CAMBER_POINT_FIRST)
         return;
     info->joins++;

@@ -3,9 +3,9 @@
  * Input: a part's points. Output: its records and indices, in buffers that GL may read, and its counts.
  *
  *     points
- *        |  scan          a chunk: vertices and indices before it in its block; a block: its sum
- *        |  the host adds the blocks' sums up, and checks that the part fits: else it is cut, and made again
- *        v  emit          a slot: its records and indices, where the sums say
+ *        |  scan          per chunk: vertices and indices before it in its block; per block: its sum
+ *        |  the host adds the blocks' sums up, and checks that the part fits; if not, it is cut, and made again
+ *        v  emit          per slot: its records and indices, where the sums say
  *     output buffers      GL draws them */
 #include "vertices/vertices.h"
 
@@ -23,7 +23,7 @@ void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *base
     }
 }
 
-/* How many records a scanned part will have. */
+/* Returns how many records a scanned part will have. */
 static size_t count_records(const camber_mesh *mesh, const camber_mesh_part *part) {
     return mesh->mesh_info.strips ? part->index_count / 2
                                   : camber_part_slot(mesh, part, NULL, part->first_polyline + part->polyline_count);
@@ -45,7 +45,7 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     return CAMBER_OK;
 }
 
-/* Finds how much output the part has; one without points has none. */
+/* Finds how much output the part has; a part without points has none. */
 static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
     camber_program *program = NULL;
     if (part->slot_count == 0)
@@ -65,8 +65,8 @@ static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
     return status;
 }
 
-/* Makes room in an output buffer. For a network a quarter more, where the device has plenty: the next frame may need
- * it. */
+/* Makes room in an output buffer. For a network it takes a quarter more if the device has plenty of memory, because the
+ * next frame may need it. */
 static camber_status reserve_buffer(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
     camber_shared_buffer *buffer = part->buffers + which;
     const size_t room = size_bytes + (mesh->held ? size_bytes / 4 : 0);
@@ -81,7 +81,7 @@ static camber_status reserve_buffer(camber_mesh *mesh, camber_mesh_part *part, s
 static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     const bool strips = mesh->mesh_info.strips;
     const size_t records = strips ? part->record_count : part->slot_count;
-    const size_t indices = part->index_count ? part->index_count : 1; /* no buffer is empty */
+    const size_t indices = part->index_count ? part->index_count : 1; /* a buffer may not be empty */
     camber_status status =
         reserve_buffer(mesh, part, CAMBER_BUFFER_RECORDS, records * camber_record_bytes(&mesh->mesh_info));
     if (status == CAMBER_OK && !strips)
@@ -109,7 +109,8 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
     if (status != CAMBER_OK)
         return status;
     camber_event *event = NULL;
-    const size_t second = mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES; /* no indices */
+    /* strips have no indices */
+    const size_t second = mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES;
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(part->x),
                                       CAMBER_ARG_BUFFER(part->y),
                                       CAMBER_ARG_BUFFER(part->info),
@@ -157,7 +158,7 @@ camber_status camber_part_number(const camber_mesh *mesh, camber_mesh_part *part
                : CAMBER_OK;
 }
 
-/* Joins are counted while the part is there, if parts may be evicted later. */
+/* Counts a part's output, and its joins as well if parts may be evicted later. */
 static camber_status count(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     camber_status status = count_output(mesh, part);
     if (status == CAMBER_OK)
@@ -188,7 +189,7 @@ camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *pa
     if (status != CAMBER_OK || part->scanned)
         return status;
     status = count_output(mesh, part);
-    /* Whoever reads the mesh has made room for what was counted before. */
+    /* Callers that read the mesh have allocated for the counts of before. */
     if (status == CAMBER_OK && mesh->joins_counted && (part->record_count != records || part->index_count != indices))
         status = camber_part_fail_remade(mesh, part, part->slot_count, records);
     if (status != CAMBER_OK)

@@ -1,11 +1,11 @@
-/* Reads meshes back to the host, and their counts. Parts that have lost their buffers are made again as they are
- * needed, one at a time. */
+/* Reads meshes and their counts back to the host. Parts that have lost their buffers are made again as they are needed,
+ * one at a time. */
 #include "vertices/vertices.h"
 
 #include <string.h>
 
-/* Counts joins and triangles from the join words on the device, unless that has been done. Few callers want them, so
- * that this waits until one asks. */
+/* Counts joins and triangles from the join words on the device, unless that has been done. Few callers need them, so
+ * this is done only on request. */
 camber_status camber_mesh_count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
     camber_status status = camber_check_process(mesh->device->context);
@@ -40,7 +40,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     return status;
 }
 
-/* Reads the records of a part. With arc lengths one has 32 bytes, of which the first 16 are its words. */
+/* Reads the records of a part. With arc lengths a record has 32 bytes, of which the first 16 are its words. */
 static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
     camber_buffer *buffer = part->buffers[CAMBER_BUFFER_RECORDS].buffer;
     camber_record *records = data->records + part->first_record;
@@ -61,7 +61,8 @@ static camber_status read_records(const camber_mesh *mesh, const camber_mesh_par
     return CAMBER_OK;
 }
 
-/* Reads a part's records and corners behind those of the parts before, and numbers the corners' records on. */
+/* Appends a part's records and corners to those of the previous parts, and continues the numbering of the corners'
+ * records. */
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
     camber_status status = camber_part_ensure_output(mesh, part);

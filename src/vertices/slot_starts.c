@@ -1,6 +1,5 @@
-/* Where the output of polylines begins in a part. The scan stores where a slot's vertices and indices begin within its
- * block only for the first slot of each chunk that a work-item took. From there on the host counts again, from the join
- * words. */
+/* Finds where the output of polylines begins in a part. The scan stores only for the first slot of each work-item's
+ * chunk where its vertices and indices begin within the block. From there the host counts on, from the join words. */
 #include "vertices/vertices.h"
 
 #include "kernels/join.h"

@@ -1,7 +1,7 @@
-/* Reads back what classify and scan left on the device, a record a point, for checks against the CPU twin.
+/* Reads back what classify and scan left on the device, one struct per point, for checks against the CPU twin.
  *
- * Input: a tessellated mesh. Output: camber_stages, its points in the order of the polylines. Nothing that the device
- * left is trusted: a broken kernel must show up as a difference, never as a read outside of a buffer. */
+ * Input: a tessellated mesh. Output: camber_stages, its points in the order of the polylines. The device's output is
+ * not trusted: a broken kernel must show up as a difference, never as a read outside a buffer. */
 #include "vertices/vertices.h"
 
 /* A part's arrays, mapped into host memory. */
@@ -19,8 +19,8 @@ static const void *map(const camber_mesh *mesh, camber_buffer *buffer, size_t wo
     return mapped;
 }
 
-/* Appends the points of a part to stages. Where a device has counted wrongly, a polyline's slots may lie past the
- * part's end or overlap another's: slots only ever go forward, so that none is read twice. */
+/* Appends the points of a part to stages. If a device has counted wrongly, a polyline's slots may be past the part's
+ * end or overlap another's. So this only ever moves forward, and reads no slot twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
                                    camber_stages *stages) {
     size_t count = 0;

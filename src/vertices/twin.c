@@ -1,16 +1,16 @@
 /* The CPU twin of classify, scan and emit: the specification that the kernels are compared with.
  *
- * Input: polylines and strokes. Output: camber_mesh_data, and where wanted camber_stages. Main idea: it walks each
+ * Input: polylines and strokes. Output: camber_mesh_data, and camber_stages if wanted. Main idea: it walks each
  * polyline from its first point to its last and appends records and triangles. It needs no counts and no scan, and
  * shares only the formulas of kernels/join.h with the device. So a mistake in the kernels' bookkeeping cannot hide in a
- * copy of it.
+ * copy of the same mistake.
  *
  * A strip's records, for an open line A B C D that has a tight join at B and a split join at C:
  *
  *     point        A             B           C                   D
  *     record   break start    end start   end break start       end
  *
- * A plain join has a single end, with which the strip goes on. For kite and fan there is one record a slot, and the
+ * A plain join has a single end, with which the strip continues. For kite and fan there is one record per slot, and the
  * walk appends triangles: the body of each segment when it reaches the segment's end, then that point's join. */
 #include "points/rows.h"
 #include "stroke/arc_length.h"
@@ -27,11 +27,11 @@ typedef struct twin {
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    const camber_arc_length *arc_lengths; /* one a slot. NULL: without arc lengths */
+    const camber_arc_length *arc_lengths; /* one per slot. NULL: without arc lengths */
     camber_stages *stages;                /* NULL: not wanted */
-    uint32_t polyline, point;             /* of the next point in stages */
+    uint32_t polyline, point;             /* polyline and number of the next point in stages */
     size_t record_capacity, measure_capacity, index_capacity, stage_capacity, stage_arc_length_capacity;
-    bool failed; /* out of memory, or out of 32-bit indices: nothing is appended any more */
+    bool failed; /* out of memory, or out of 32-bit indices: nothing more is appended */
 } twin;
 
 /* The point that the walk has reached: its slot, info and join word, and the join word of the slot before. */
@@ -101,7 +101,7 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 
 /* ---- strip ---- */
 
-/* Begins a strip: a break at the slot `from`, where the segment before the point comes from, then the point. */
+/* Begins a strip: a break at the slot `from`, where the segment into the point starts, then the point. */
 static void push_start(twin *t, const visited_point *p, size_t from, camber_u32 last) {
     push_record(t, p->slot,
                 (camber_record){t->polylines->x[from], t->polylines->y[from], 0,
@@ -110,7 +110,7 @@ static void push_start(twin *t, const visited_point *p, size_t from, camber_u32 
     t->data->info.vertex_count += 2;
 }
 
-/* Repeats the point at a tight join for the segment that goes out, which has an inner vertex of its own. */
+/* Repeats the point at a tight join for the outgoing segment, which has an inner vertex of its own. */
 static void push_tight_start(twin *t, const visited_point *p) {
     push_point(t, p, p->join, p->info | CAMBER_RECORD_START);
     t->data->info.vertex_count++;
@@ -172,9 +172,9 @@ static void push_body(twin *t, const visited_point *p) {
     }
 }
 
-/* Appends a join's triangles. They turn around the centre on the outer side, from the outer edge of the segment in to
- * that of the segment out. A triangle's last vertex tells the shader its segment, so that its order depends on which
- * vertex carries the right one. The winding is that of the bodies. */
+/* Appends a join's triangles. They turn around the centre on the outer side, from the outer edge of the incoming
+ * segment to that of the outgoing one. A triangle's last vertex tells the shader its segment, so the order of vertices
+ * depends on which vertex carries the right one. The winding is that of the bodies. */
 static void push_join(twin *t, const visited_point *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
@@ -209,7 +209,7 @@ static void walk_body_point(twin *t, const visited_point *p) {
     }
 }
 
-/* Notes the point's stages. Whatever has been appended so far is where its vertices and indices begin. */
+/* Notes the point's stages. Its vertices and indices begin after whatever has been appended so far. */
 static void note_stages(twin *t, size_t slot, camber_u32 join) {
     const camber_polylines *p = t->polylines;
     camber_stages *stages = t->stages;
@@ -257,8 +257,7 @@ static void walk_point(twin *t, const visited_point *p, float half_shorter) {
 
 static void walk(twin *t) {
     const camber_polylines *lines = t->polylines;
-    const size_t slots =
-        lines->first_slots[lines->polyline_count]; /* the padding behind them is not part of the mesh */
+    const size_t slots = lines->first_slots[lines->polyline_count]; /* the padding after them is not part of the mesh */
     visited_point p = {0};
     for (p.slot = 1; p.slot <= slots && !t->failed; p.slot++) {
         float half_shorter = 0.0f;
@@ -270,7 +269,7 @@ static void walk(twin *t) {
 }
 
 /* Replaces records by vertices in the stages of kite and fan. The walk could only note a point's record: which of its
- * corners become vertices is known when all triangles are there. */
+ * corners become vertices is known only when all triangles have been made. */
 static camber_status number_vertices(camber_context *context, camber_mesh_data *data, camber_stages *stages) {
     uint32_t *first_vertices;
     const camber_status status = camber_mesh_data_find_first_vertices(context, data, &first_vertices);

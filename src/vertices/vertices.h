@@ -1,4 +1,4 @@
-/* Vertex buffers: the records and indices that GL draws, made of a mesh's points by scan and emit. */
+/* Vertex buffers: the records and indices that GL draws, which scan and emit make from a mesh's points. */
 #ifndef CAMBER_VERTICES_VERTICES_H
 #define CAMBER_VERTICES_VERTICES_H
 
@@ -6,26 +6,26 @@
 
 #include "camber_proof.h"
 
-/* output.c: for meshes that GL draws or that somebody reads. */
+/* output.c: for meshes that GL draws or that a caller reads. */
 extern const camber_mesh_output camber_vertices;
 
-/* Makes sure that a part is made, that its join words are those of the mesh's method, and that they are scanned: the
- * part's counts are known. */
+/* Makes sure that a part is made, that its join words are those of the mesh's method, and that they are scanned, so
+ * that the part's counts are known. */
 camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *part);
-/* Makes sure, too, that its output is in its buffers. */
+/* Also makes sure that its output is in its buffers. */
 camber_status camber_part_ensure_output(camber_mesh *mesh, camber_mesh_part *part);
-/* Numbers the output of a part that was counted after that of the parts before it, which counts has, and adds it. */
+/* Numbers the output of a counted part after that of the previous parts, which is in counts, and adds it to counts. */
 camber_status camber_part_number(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_info *counts);
-/* Ends what the table of shared buffers has begun on a part's output. Returns status if that is a failure, which has
- * been logged; then a failure of this is not. */
+/* Calls finish of the shared buffers' table for a part's output. If status is a failure, which has been logged already,
+ * returns it and logs no other. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
 
-/* joins.c: adds the joins and triangles of a part, whose join words must be in its buffers, to counts. */
+/* joins.c: adds the joins and triangles of a part to counts. The part's join words must be in its buffers. */
 camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts);
 /* Counts the join of a point, given its join word and its info word. */
 void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t point);
-/* The most records that a mesh may have. Strips number two vertices a record with 32 bits; the other methods number a
- * record with the bits that CAMBER_CORNER_BITS leave. */
+/* Returns the most records that a mesh may have. Strips number two vertices per record with 32 bits; the other methods
+ * number a record with the bits that CAMBER_CORNER_BITS leave. */
 size_t camber_records_max(camber_method method);
 camber_status camber_fail_records(camber_context *context, camber_method method);
 
@@ -33,29 +33,29 @@ camber_status camber_fail_records(camber_context *context, camber_method method)
  * polyline's part if it is gone. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
-/* slot_starts.c: where the output of a part's polylines begins, from what classify and scan left. */
+/* slot_starts.c: finds where the output of a part's polylines begins, from the results of classify and scan. */
 typedef struct camber_slot_starts {
-    camber_slot_finder finder;              /* its part has been scanned */
-    const uint32_t *joins, *info, *offsets; /* mapped; NULL: nobody asked yet */
-    size_t at;                              /* the slot that was asked for last, and sum for it */
+    camber_slot_finder finder;              /* its part must have been scanned */
+    const uint32_t *joins, *info, *offsets; /* mapped; NULL: not needed yet */
+    size_t at;                              /* the slot of the last query, and the sum for it */
     uint32_t sum;
 } camber_slot_starts;
 
 static inline camber_slot_starts camber_slot_starts_of(const camber_mesh *mesh, const camber_mesh_part *part) {
     return (camber_slot_starts){.finder = {.mesh = mesh, .part = part}};
 }
-/* Maps the whole part, unless it is mapped: that waits for the device, and is for many questions. Until it is unmapped
- * the part must not lose its buffers. */
+/* Maps the whole part, unless it is mapped already. This waits for the device, and pays off for many queries. The part
+ * must not lose its buffers until it is unmapped. */
 camber_status camber_slot_starts_map(camber_slot_starts *starts);
-/* Forgets the part. May be called of none. */
+/* Unmaps and forgets the part, if there is one. */
 void camber_slot_starts_unmap(camber_slot_starts *starts);
-/* Returns vertices | indices << 16: how many the slot's block has before it. Asking in ascending order is cheap. This
- * and the first slot of a polyline are for parts that are mapped. */
+/* Returns vertices | indices << 16: how many the slot's block has before it. Queries in ascending order are cheap.
+ * This, and the first slot of a polyline, need a mapped part. */
 uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot);
 size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline);
-/* The first index of a polyline, and its first record. A strip has two indices for each record; kite and fan have a
- * record for each slot. A polyline just after the part's last gives the end. The part is mapped where it must be: not
- * for its first polyline, nor for its end. */
+/* Finds the first index of a polyline, and its first record. A strip has two indices for each record; kite and fan have
+ * a record for each slot. The polyline just after the part's last one gives the end. The part is mapped only if
+ * necessary: not for its first polyline, nor for its end. */
 camber_status camber_slot_starts_index(camber_slot_starts *starts, size_t polyline, uint64_t *index);
 camber_status camber_slot_starts_record(camber_slot_starts *starts, size_t polyline, size_t *record);
 

@@ -1,5 +1,5 @@
 /* Buffers in OpenCL. Some drivers allocate memory only when a kernel first uses it, and then cannot report that there
- * is none: PoCL ends the process. So host memory is asked for at once (CL_MEM_ALLOC_HOST_PTR). */
+ * is none: PoCL ends the process. So buffers are allocated at once in host memory (CL_MEM_ALLOC_HOST_PTR). */
 #include "gpu/opencl/opencl.h"
 
 #include <CL/cl_gl.h>
@@ -66,7 +66,7 @@ camber_status camber_opencl_unmap(const camber_device *device, void *native, voi
                    : (code == CL_SUCCESS ? CAMBER_OK : CAMBER_ERROR_DEVICE);
 }
 
-/* Turns handles into OpenCL's type. */
+/* Converts handles to OpenCL's type. */
 static cl_uint list_mems(void *const *natives, size_t count, cl_mem mems[CAMBER_GL_BUFFERS_MAX]) {
     for (size_t i = 0; i < count; i++)
         mems[i] = natives[i];

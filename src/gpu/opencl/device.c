@@ -1,7 +1,7 @@
-/* Finds and opens OpenCL devices, and is the table of the back end.
+/* Finds and opens OpenCL devices, and defines the table of this back end.
  *
- * Every platform is asked for every device. Each answer may fail: such a device is left out, and the reason is told if
- * none is left. */
+ * Every platform is asked for every device. Any query may fail: that device is then left out, and the reason is logged
+ * if no device is left. */
 #include "gpu/opencl/opencl.h"
 #include "gpu/opencl/pocl.h"
 
@@ -11,7 +11,7 @@
 
 enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
 
-/* The loader answers this if it finds no driver. It belongs to an extension, so that cl.h lacks it. */
+/* The loader returns this if it finds no driver. It belongs to an extension, so that cl.h lacks it. */
 #define PLATFORM_NOT_FOUND_KHR (-1001)
 
 static bool has_word(const char *text, const char *word) {
@@ -29,12 +29,12 @@ static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t 
     return code;
 }
 
-/* Fills found->info. Returns the error of the first question that the device does not answer: it cannot be used. */
+/* Fills found->info. Returns the error of the first query that fails; the device then cannot be used. */
 static cl_int query_info(camber_found_device *found) {
     camber_device_info *info = &found->info;
     cl_device_type type = 0;
     cl_ulong memory = 0, largest = 0;
-    char extensions[16384] = ""; /* a longer list does not fit: buffers are copied then */
+    char extensions[16384] = ""; /* a longer list does not fit; buffers are then copied */
     const cl_int codes[] = {
         get_text(found->id, CL_DEVICE_NAME, info->name, sizeof info->name),
         get_text(found->id, CL_DEVICE_VERSION, info->version, sizeof info->version),
@@ -101,7 +101,7 @@ static size_t find(camber_found_device *found, size_t capacity, camber_failed_ca
     return count;
 }
 
-/* Lanes that are as wide as the device's vectors. GPUs have none: each work-item takes a pixel at a time. */
+/* Chooses as many lanes as the device's vectors have. GPUs have none: each work-item takes one pixel at a time. */
 static camber_status find_lanes(camber_device *device) {
     cl_uint floats = 0;
     const cl_int code =
@@ -117,7 +117,7 @@ static cl_context_properties display_kind(const camber_gl_handles *gl) {
     return gl->display_kind == CAMBER_GL_DISPLAY_GLX ? CL_GLX_DISPLAY_KHR : CL_EGL_DISPLAY_KHR;
 }
 
-/* Makes the context, shared with a GL context where that works, and the queue; then asks for properties. */
+/* Makes the context, shared with a GL context if that works, and the queue; then queries properties. */
 static camber_status open_cl(camber_device *device, const camber_gl_handles *gl) {
     camber_opencl_device *cl = device->native;
     cl_int code;
@@ -146,7 +146,7 @@ static camber_status open_cl(camber_device *device, const camber_gl_handles *gl)
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clGetDeviceInfo", code);
     device->rounds_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    cl_bool unified = CL_FALSE; /* a device that does not answer gets copies */
+    cl_bool unified = CL_FALSE; /* if the query fails, buffers are copied */
     (void)clGetDeviceInfo(cl->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
     device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
     return device->lanes ? CAMBER_OK : find_lanes(device);

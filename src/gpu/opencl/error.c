@@ -1,4 +1,4 @@
-/* Tells of failed calls. */
+/* Reports failed OpenCL calls. */
 #include "gpu/opencl/opencl.h"
 
 static const char *cl_error_name(cl_int code) {
@@ -14,7 +14,7 @@ static const char *cl_error_name(cl_int code) {
     case CL_INVALID_BUFFER_SIZE: return "CL_INVALID_BUFFER_SIZE";
     case CL_INVALID_BINARY: return "CL_INVALID_BINARY";
     case CL_INVALID_WORK_GROUP_SIZE: return "CL_INVALID_WORK_GROUP_SIZE";
-    case -1001: return "CL_PLATFORM_NOT_FOUND_KHR"; /* of an extension, so that cl.h lacks it */
+    case -1001: return "CL_PLATFORM_NOT_FOUND_KHR"; /* it belongs to an extension, so that cl.h lacks it */
     default: return "error";
     }
 }

@@ -1,4 +1,4 @@
-/* Launching kernels in OpenCL. */
+/* Launches kernels in OpenCL. */
 #include "gpu/opencl/opencl.h"
 
 #include <stdio.h>

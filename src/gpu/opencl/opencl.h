@@ -1,4 +1,4 @@
-/* OpenCL, the back end: what its files share. A buffer's native handle is a cl_mem, a program's a cl_program, a
+/* Shared by the files of the OpenCL back end. A buffer's native handle is a cl_mem, a program's a cl_program, a
  * camber_kernel is a cl_kernel, and a camber_event a cl_event. */
 #ifndef CAMBER_GPU_OPENCL_OPENCL_H
 #define CAMBER_GPU_OPENCL_OPENCL_H
@@ -18,7 +18,7 @@ static inline const camber_opencl_device *opencl_of(const camber_device *device)
     return device->native;
 }
 
-/* Logs "CALL: OpenCL NAME (code); cure" and returns the status that the code stands for. */
+/* Logs "CALL: OpenCL NAME (code); cure" and returns the status for that code. */
 camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);
 
 camber_status camber_opencl_make_buffer(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,

@@ -1,8 +1,8 @@
-/* Makes PoCL run the kernels of a saved binary as they are.
+/* Makes PoCL run the kernels of a saved binary without compiling them again.
  *
- * Input: a binary that clGetProgramInfo gave. Output: the same without LLVM's code. Main idea: a binary of PoCL holds
+ * Input: a binary that clGetProgramInfo gave. Output: the same without the LLVM code. Main idea: a binary of PoCL holds
  * the kernels, ready for work-groups of any size, and LLVM's code of the program. If PoCL has the code, it compiles a
- * kernel anew for the size, offset and count of a launch, which takes a second and gains nothing here. Only the
+ * kernel again for the size, offset and count of a launch, which takes a second and gains nothing here. Only the
  * environment variable POCL_WORK_GROUP_SPECIALIZATION=0 stops that, and the environment is the caller's. If PoCL does
  * not have the code, it runs the kernels that it has.
  *
@@ -81,7 +81,7 @@ bool camber_pocl_strip(unsigned char *binary, size_t *size_bytes) {
     memcpy(name, NO_CODE, NAME_BYTES);
     put(code - 4, 4, 0);
     memmove(code, code + code_bytes, left - (size_t)code_bytes);
-    binary[FOLDER_AT] = 'c'; /* no capital letter: no program from source has this folder */
+    binary[FOLDER_AT] = 'c'; /* not a capital letter, so that no program from source has this folder */
     *size_bytes -= (size_t)code_bytes;
     return true;
 }
@@ -94,7 +94,7 @@ static void *wait_for_end(void *end) {
     return NULL;
 }
 
-/* As many threads as there are processors are there at once, where a limit is so low that they may not be. */
+/* If the limit on threads is low, tests it by starting as many threads as there are processors at once. */
 camber_status camber_pocl_check_threads(camber_context *context) {
     enum { MOST_THREADS = 256, LOW_LIMIT = 4096 };
     struct rlimit limit;
@@ -121,7 +121,7 @@ camber_status camber_pocl_check_threads(camber_context *context) {
         wanted, (unsigned long long)limit.rlim_cur);
 }
 
-/* The folder where PoCL keeps kernels. false: it has none, or too long a name. */
+/* Finds the folder where PoCL keeps kernels. false: it has none, or its name is too long. */
 static bool find_folder(char folder[PATH_MAX]) {
     const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     const int length = own && *own       ? snprintf(folder, PATH_MAX, "%s", own)
@@ -159,7 +159,7 @@ static bool has_linker(void) {
     return false;
 }
 
-/* Whether the kernels of a binary lie in the folder already. */
+/* Whether the kernels of a binary are already in the folder. */
 static bool is_unpacked(const char *folder, const unsigned char *binary, size_t size_bytes) {
     char name[PATH_MAX];
     if (!binary || size_bytes < LEAST_BYTES || memcmp(binary, MAGIC, sizeof MAGIC) != 0)
@@ -170,7 +170,7 @@ static bool is_unpacked(const char *folder, const unsigned char *binary, size_t 
 }
 
 camber_status camber_pocl_check_program(const camber_device *device, const unsigned char *binary, size_t size_bytes) {
-    enum { KERNELS_BYTES = 1 << 20, FIRST_WITH_LINKER = 5 }; /* later ones may have one built in */
+    enum { KERNELS_BYTES = 1 << 20, FIRST_WITH_LINKER = 5 }; /* later versions may have a linker built in */
     char folder[PATH_MAX];
     struct statvfs about;
     camber_context *context = device->context;

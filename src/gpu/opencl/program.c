@@ -1,4 +1,4 @@
-/* Loads and builds OpenCL programs, and keeps what was built.
+/* Loads and builds OpenCL programs, and caches what was built.
  *
  * Input: a source with its options. Output: a cl_program. Main idea: a program is compiled once per machine and loaded
  * from then on.
@@ -20,11 +20,11 @@
 
 typedef struct built_program {
     cl_program cl;
-    uint64_t key; /* names its file in the cache */
+    uint64_t key; /* the name of its file in the cache */
     bool built, kept;
 } built_program;
 
-/* Changes if the same program is saved in another form. */
+/* Change this if the same program is to be saved in another form. */
 static const char FORM[] = "without LLVM's code";
 
 /* A hash of everything that a binary depends on. */
@@ -47,7 +47,7 @@ static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t si
     return camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), binary, size_bytes);
 }
 
-/* Makes a program of a cache file: 8 bytes of hash, then the binary. Returns false where that does not work. */
+/* Makes a program from a cache file: 8 bytes of hash, then the binary. Returns false if that fails. */
 static bool load_binary(camber_device *device, built_program *program, const char *options, const char *bytes,
                         size_t size) {
     uint64_t hash;
@@ -60,7 +60,7 @@ static bool load_binary(camber_device *device, built_program *program, const cha
     if (hash != hash_binary(program->key, binary, binary_size))
         return false;
     if (camber_is_pocl(&device->info) && camber_pocl_check_program(device, binary, binary_size) != CAMBER_OK)
-        return false; /* as building it will, and say why */
+        return false; /* building it will fail too, and say why */
     program->cl = clCreateProgramWithBinary(opencl_of(device)->cl, 1, &opencl_of(device)->id, &binary_size, &binary,
                                             &binary_code, &code);
     if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
@@ -129,7 +129,7 @@ static camber_status build_from_source(camber_device *device, built_program *pro
     return CAMBER_OK;
 }
 
-/* Saves the binary in the cache. Returns false where it could not be saved, which is no failure. PoCL compiles all
+/* Saves the binary in the cache. Returns false if it could not be saved, which is not an error. PoCL compiles all
  * kernels of a program when it is asked for the binary. */
 static bool save_binary(camber_device *device, const built_program *program) {
     size_t size = 0;
@@ -145,8 +145,8 @@ static bool save_binary(camber_device *device, const built_program *program) {
     unsigned char *binary = bytes + sizeof hash;
     if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
         char name[64];
-        /* The binary of a PoCL that camber does not know is saved whole: its kernels run as they are if
-         * POCL_WORK_GROUP_SPECIALIZATION is 0, as the tool sets it, and are compiled once more if not. */
+        /* The binary of a PoCL version that camber does not know is saved unstripped: its kernels run as they are if
+         * POCL_WORK_GROUP_SPECIALIZATION is 0, as the tool sets it, and are otherwise compiled again. */
         if (camber_is_pocl(&device->info))
             camber_pocl_strip(binary, &size);
         hash = hash_binary(program->key, binary, size);
@@ -158,8 +158,8 @@ static bool save_binary(camber_device *device, const built_program *program) {
     return saved;
 }
 
-/* Loads under the program's lock. PoCL unpacks a binary file by file, and a process that unpacks the same one might
- * look for a file before it is there. */
+/* Loads under the program's lock. PoCL unpacks a binary file by file, and another process that unpacks the same one
+ * might look for a file too early. */
 static bool load_alone(camber_device *device, built_program *program, const char *options) {
     static const double LONGEST_MS = 30e3; /* it takes 2 ms, on a busy machine much longer */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
@@ -168,8 +168,8 @@ static bool load_alone(camber_device *device, built_program *program, const char
     return loaded;
 }
 
-/* Puts what was saved in the place of what was compiled: of the latter PoCL would compile each kernel once more when it
- * is launched. */
+/* Replaces the compiled program by the saved one, because PoCL would compile each kernel of the former again when it is
+ * launched. */
 static bool use_saved(camber_device *device, built_program *program, const char *options) {
     built_program saved = {.key = program->key};
     if (!load_cached(device, &saved, options))

@@ -67,8 +67,8 @@ bool camber_environment_set(const camber_options *options) {
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
     /* Gives each of PoCL's threads a core of its own: left alone, two of them often share one. */
     set = (!may_pin() || setenv("POCL_AFFINITY", "1", 0) == 0) && set;
-    /* For a PoCL whose binaries the library does not know (src/gpu/opencl/pocl.c): each kernel is built once for all sizes of
-     * work-groups, so that the cache can keep it. */
+    /* For a PoCL whose binaries the library does not know (src/gpu/opencl/pocl.c): each kernel is built once for all
+     * sizes of work-groups, so that the cache can keep it. */
     set = setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0) == 0 && set;
     /* PoCL sets this variable while it looks for devices. Adding a variable moves the environment under a getenv on
      * GDAL's thread; changing one that exists does not. */

@@ -66,8 +66,7 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
         snprintf(message, message_size,
                  "--shard auto: %s counts %u tasks%s, which are not all parts%s; give an array of all of them, or name "
                  "this task's part: --shard K/N",
-                 found->number, count, gaps ? " with gaps between them" : "",
-                 options->shards ? " of --shards" : "");
+                 found->number, count, gaps ? " with gaps between them" : "", options->shards ? " of --shards" : "");
         return CAMBER_EXIT_USAGE;
     }
     number = (number - first) / step;
@@ -77,8 +76,8 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
                  found->number);
     else if (number >= count || count > MOST_SHARDS)
         snprintf(message, message_size,
-                 "--shard auto: %s is \"%s\", which is part %u of %u; give the --shards of all parts",
-                 found->number, getenv(found->number), number + 1, count);
+                 "--shard auto: %s is \"%s\", which is part %u of %u; give the --shards of all parts", found->number,
+                 getenv(found->number), number + 1, count);
     else {
         *shard = (camber_shard){number + 1, count};
         return CAMBER_EXIT_DONE;

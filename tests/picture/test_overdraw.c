@@ -1,8 +1,8 @@
 /* Overdraw against counts by hand, against the oracle, and against itself in other ranges, pieces and back ends. */
 #include "pictures.h"
 
-#include "vertices/vertices.h"
 #include "validate/oracle.h"
+#include "vertices/vertices.h"
 
 /* ---- Counting ---- */
 

@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
 """Checks the rules of the tree that no compiler checks: names, guards, includes, layers, words, comments and documents.
 
-    lint_tree.py ROOT [BUILD]
+    lint_tree.py [--hints] ROOT [BUILD]
 
 ROOT is the source tree. BUILD is a build folder of it: with one, the object files are checked against the layers too.
-Each finding is one line, `file:line: what: cure`. The exit status is 1 where there are findings, else 0.
+Each finding is one line, `file:line: what: cure`. The exit status is 1 if there are findings, else 0.
 
-Each rule is a function that takes a Tree and yields findings; RULES lists them. They need Python's standard library
-alone, and for BUILD the program `nm`. Adding a rule: write the function, list it, break it in tests/tool/test_lint.py.
+Hints are about English that reads like a translation, in documents and comments. A pattern cannot judge a sentence, so
+they never change the exit status. With --hints each is one line, `hint: file:line: what: cure`; without it a single
+line counts them.
+
+Each rule is a function that takes a Tree and yields findings; RULES lists them. They need only Python's standard
+library, and for BUILD the program `nm`. To add a rule, write the function, list it, and break it in
+tests/tool/test_lint.py.
 """
 
 import collections
@@ -546,6 +551,56 @@ def check_documents(tree):
                               "break the line")
 
 
+# ---- English ----
+
+# (what a hint quotes, what to say instead). Spaces match line ends too. Capital letters begin a sentence.
+PATTERNS = [(re.compile(pattern.replace(" ", r"\s+")), cure) for pattern, cure in (
+    (r"\bWhere [^.;:?!]*?,", 'if it is a condition, say "if"'),
+    (r"\bWhat (?!is |are |it is )[^.;:,?!|]*? (?:is|are|was|has|have|does|goes|lies|stays|takes)\b(?![^.|]*\?)",
+     "name the subject: who does it, or which things"),
+    (r"\b[Bb]ehind (?:the|it|its|them|that|this|those|each|every|all|others?)\b", 'if it is an order, say "after"'),
+    (r"\b(?:is|are|was|were) told\b", "say who reports, names or prints it"),
+    (r"\b[Ss]o (?:many|much)\b(?! (?:\w+ )?(?:that|as|for)\b)", "give the number, or the thing that it depends on"),
+    (r"(?<!let\s)\balone\b", 'say "only"'),
+    (r"\b[Aa]new\b", 'say "again"'),
+    (r"\b[Aa]s [^.;:,?!]{1,30}? (?:has|have|had) (?:it|them)\b", 'say "like" or "as in"'),
+    (r"\b(?:lies|lie|lay)\b", 'say "is", unless somebody rests'),
+    (r"\b[Bb]eside\b", 'say "next to", "with" or "compared with"'))]
+
+
+def split_paragraphs(text):
+    """(line, text): what stands between empty lines and headings."""
+    for match in re.finditer(r"(?:^(?!#|[ \t]*$)[^\n]*\n?)+", text, re.M):
+        yield text.count("\n", 0, match.start()) + 1, match.group()
+
+
+def list_prose(tree):
+    """(path, line, text): the paragraphs of documents and the comments, without code."""
+    for path, _ in list_documents(tree.root):
+        with open(os.path.join(tree.root, path), encoding="utf-8") as file:
+            text = file.read()
+        text = re.sub(r"^```.*?^```|^ {4}[^\n]*|`[^`]*`", lambda code: blank(code.group()), text, flags=re.M | re.S)
+        for line, paragraph in split_paragraphs(text):
+            yield path, line, paragraph
+    for file in tree.files:
+        if file.path.endswith(HASHED):
+            for number, line in enumerate(file.text.split("\n"), 1):
+                comment = re.search(r"(?:^|\s)#+ (.*)", line)
+                if comment:
+                    yield file.path, number, comment.group(1)
+        for start, comment in file.comments:
+            yield file.path, file.line_at(start), re.sub(r"^[ \t]*(?:/\*|\*|//)|`[^`\n]*`", "", comment, flags=re.M)
+
+
+def list_hints(tree):
+    for path, line, text in list_prose(tree):
+        for pattern, cure in PATTERNS:
+            for match in pattern.finditer(text):
+                quoted = " ".join(match.group().split())
+                quoted = quoted if len(quoted) <= 40 else quoted[:18] + " ... " + quoted[-18:]
+                yield Finding(path, line + text.count("\n", 0, match.start()), '"%s"' % quoted, cure)
+
+
 # ---- Packages ----
 
 # Each thing that CMake looks for, or whose headers the sources include -> the package that has it: Debian's, RPM's,
@@ -636,6 +691,8 @@ RULES = (check_packages, check_types, check_guards, check_layers, check_includes
 
 
 def main(arguments):
+    lists_hints = arguments[:1] == ["--hints"]
+    arguments = arguments[lists_hints:]
     if len(arguments) not in (1, 2):
         sys.exit(__doc__)
     tree = Tree(*arguments)
@@ -644,6 +701,13 @@ def main(arguments):
         for finding in rule(tree):
             print("%s:%d: %s: %s" % finding)
             status = 1
+    hints = sorted(list_hints(tree))
+    if lists_hints:
+        for hint in hints:
+            print("hint: %s:%d: %s: %s" % hint)
+    elif hints:
+        print("hint: phrases that may read like a translation: %d; tests/lint/lint_tree.py --hints %s lists them" %
+              (len(hints), arguments[0]))
     return status
 
 

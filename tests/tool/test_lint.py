@@ -266,6 +266,43 @@ class Lint(unittest.TestCase):
         self.append("README.md", "word\n" * 1300)
         self.finds("README.md:1", "1300 are allowed")
 
+    # ---- English ----
+
+    TRANSLATED = (
+        "Where no tile has a line, none is drawn.", "What nobody asked for is left out.",
+        "The size comes behind the name.",
+        "The caller is told the name.", "It takes so many bytes.", "It reads the header alone.", "It draws the tile anew.",
+        "It draws as GL has it.", "The tile lies in memory.", "It is written beside the file.")
+    PLAIN = (
+        "If no tile has a line, none is drawn. This is where the tiles are, or what is left.", "What is a tile?",
+        "A proxy may hide behind another name.", "He told us so.",
+        "It takes so many bytes that it fails, so much for that.",
+        "It cannot count, let alone draw.", "It has it.", "Belies, aloneness, `beside`, anew_tile, besides.")
+
+    def hints(self):
+        return [hint[:2] for hint in lint_tree.list_hints(lint_tree.Tree(self.root))]
+
+    def test_each_pattern_hints(self):
+        self.assertEqual(len(self.TRANSLATED), len(lint_tree.PATTERNS))
+        for number, sentence in enumerate(self.TRANSLATED):
+            found = [i for i, (pattern, _) in enumerate(lint_tree.PATTERNS) if pattern.search(sentence)]
+            self.assertEqual(found, [number], sentence)
+
+    def test_hints(self):
+        self.assertEqual(self.hints(), [])
+        self.append("README.md", "\nA line\nthat is split: it is\ntold. This lies\nhere, and `lies` and ``\n\n"
+                                 "    lies = anew\n\n```\nbeside\n```\n\n# Where code lies, or not\n\nIt is\n\ntold.\n")
+        self.append("src/io/png.c", "/* It says\n * so\n * much. */\nint lies; // Made anew\n"
+                                    "const char *beside = \"beside\";\n")
+        self.append("src/CMakeLists.txt", "set(alone 1) # for PNG alone\n")
+        self.assertEqual(self.hints(), [("README.md", 7), ("README.md", 8), ("src/CMakeLists.txt", 8),
+                                        ("src/io/png.c", 9), ("src/io/png.c", 11)])
+
+    def test_plain_english(self):
+        self.append("README.md", "\n" + "\n".join(self.PLAIN) + "\n")
+        self.write("bench/plain.c", "/* " + "\n * ".join(self.PLAIN) + " */\n")
+        self.assertEqual(self.hints(), [])
+
     # ---- Packages ----
 
     def write_packages(self):
@@ -339,6 +376,18 @@ class Lint(unittest.TestCase):
         self.assertEqual((broken.returncode, broken.stdout),
                          (1, "bench/prowl.c:1: the file is called prowl: rename it: neighbour walk\n"))
         self.assertEqual(subprocess.run(program, capture_output=True).returncode, 1)
+
+    def test_program_hints(self):
+        program = [sys.executable, lint_tree.__file__]
+        self.write("bench/bench.c", "/* It is drawn anew. */\n")
+        counted = subprocess.run(program + [self.root], capture_output=True, text=True)
+        self.assertEqual(counted.returncode, 0, counted.stderr)
+        self.assertRegex(counted.stdout, r"\Ahint: .*: 1; .*--hints.*\n\Z")
+        listed = subprocess.run(program + ["--hints", self.root], capture_output=True, text=True)
+        self.assertEqual((listed.returncode, listed.stdout), (0, 'hint: bench/bench.c:1: "anew": say "again"\n'),
+                         listed.stderr)
+        self.write("bench/prowl.c", HEAD)
+        self.assertEqual(subprocess.run(program + ["--hints", self.root], capture_output=True).returncode, 1)
 
 
 if __name__ == "__main__":

@@ -182,8 +182,9 @@ static inline void take_ends(part_points from, global const float *rows, int fir
 /* Takes the ends of edges of rings, which have no joins. */
 static inline void take_edge_ends(part_points from, global const float *rows, int first, const camber_setup_args *r,
                                   ends *e) {
+    const camber_words none = (camber_words)(0u), some = (camber_words)(1u);
     take_points(from, first, r, e);
-    e->is_dot = e->b.x != e->b.x;
+    e->is_dot = none == some;
     e->is_drawn &= (e->b.info & CAMBER_POINT_FIRST) == 0u;
     look_up_rows(rows, r, e);
 }

@@ -5,18 +5,20 @@
 
 /* Makes a buffer's struct. Some drivers allocate memory only when a kernel first uses it, when it is too late to report
  * that there is none. So this asks the budget first, and back ends allocate host memory at once. */
-static camber_status take_bytes(const camber_device *device, size_t counted_bytes, camber_buffer **buffer) {
+static camber_buffer *take_bytes(const camber_device *device, size_t counted_bytes, camber_status *status) {
     camber_context *context = device->context;
-    if (!camber_budget_take(context, counted_bytes))
-        return camber_budget_fail(context, counted_bytes);
-    camber_buffer *made = camber_alloc_zero(context, 1, sizeof *made);
-    if (!made) {
-        camber_budget_give(context, counted_bytes);
-        return CAMBER_ERROR_MEMORY;
+    *status = CAMBER_OK;
+    if (!camber_budget_take(context, counted_bytes)) {
+        *status = camber_budget_fail(context, counted_bytes);
+        return NULL;
     }
-    made->counted_bytes = counted_bytes;
-    *buffer = made;
-    return CAMBER_OK;
+    camber_buffer *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (made)
+        made->counted_bytes = counted_bytes;
+    else
+        camber_budget_give(context, counted_bytes);
+    *status = made ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return made;
 }
 
 static void give_bytes(const camber_device *device, camber_buffer *buffer) {
@@ -27,9 +29,9 @@ static void give_bytes(const camber_device *device, camber_buffer *buffer) {
 camber_status camber_buffer_create(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                    const void *bytes, camber_buffer **buffer) {
     const bool counts = device->host_memory && kind < CAMBER_BUFFER_BORROWED;
-    camber_buffer *made = NULL;
-    camber_status status = take_bytes(device, counts ? size_bytes : 0, &made);
-    if (status != CAMBER_OK)
+    camber_status status;
+    camber_buffer *made = take_bytes(device, counts ? size_bytes : 0, &status);
+    if (!made)
         return status;
     status = device->backend->make_buffer(device, kind, size_bytes, bytes, &made->native);
     if (status == CAMBER_OK)
@@ -40,9 +42,9 @@ camber_status camber_buffer_create(const camber_device *device, camber_buffer_ki
 }
 
 camber_status camber_buffer_create_of_gl(const camber_device *device, unsigned gl_name, camber_buffer **buffer) {
-    camber_buffer *made = NULL;
-    camber_status status = take_bytes(device, 0, &made);
-    if (status != CAMBER_OK)
+    camber_status status;
+    camber_buffer *made = take_bytes(device, 0, &status);
+    if (!made)
         return status;
     status = device->backend->make_gl_buffer(device, gl_name, &made->native);
     if (status == CAMBER_OK)

@@ -128,8 +128,8 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     made->info = found.info;
     if (status == CAMBER_OK)
         status = apply_bounds(made, &full);
-    if (status == CAMBER_OK)
-        status = made->backend->open(made, &found, &full.gl);
+    if (status == CAMBER_OK && found.backend)
+        status = found.backend->open(made, &found, &full.gl);
     if (status == CAMBER_OK)
         bound_memory(made, &full);
     if (status != CAMBER_OK) {

@@ -306,7 +306,7 @@ def check_compute(tree):
 
 
 def compiled_objects(tree):
-    """(object file, source in src) of what the build folder compiles now: others in it are left from before."""
+    """(object file, source in src) of what the build folder has compiled: others in it are left from before."""
     path = os.path.join(tree.build, "compile_commands.json")
     if not os.path.isfile(path):
         return
@@ -316,7 +316,8 @@ def compiled_objects(tree):
         source = os.path.relpath(os.path.join(command["directory"], command["file"]), os.path.abspath(tree.root))
         output = re.search(r" -o (\S+)", command.get("command", ""))
         compiled = os.path.join(command["directory"], command.get("output") or (output.group(1) if output else ""))
-        if source.startswith("src/") and source.count("/") > 1 and os.path.isfile(compiled):
+        if source.startswith("src/") and source.count("/") > 1 and os.path.isfile(compiled) and \
+                os.path.getmtime(compiled) >= os.path.getmtime(os.path.join(tree.root, source)):
             yield compiled, source
 
 

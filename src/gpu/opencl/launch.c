@@ -10,7 +10,7 @@ static camber_status fail_stage(const camber_device *device, const char *call, c
 }
 
 static cl_int set_arg(cl_kernel kernel, cl_uint i, const camber_kernel_arg *arg) {
-    const cl_mem mem = arg->buffer ? arg->buffer->native : NULL;
+    cl_mem mem = arg->buffer ? arg->buffer->native : NULL;
     return arg->value ? clSetKernelArg(kernel, i, arg->value_bytes, arg->value)
                       : clSetKernelArg(kernel, i, sizeof mem, &mem);
 }
@@ -18,7 +18,7 @@ static cl_int set_arg(cl_kernel kernel, cl_uint i, const camber_kernel_arg *arg)
 camber_status camber_opencl_launch(const camber_device *device, const camber_launch *launch, camber_event **event) {
     const size_t groups = (launch->work_items + launch->group_size - 1) / launch->group_size;
     const size_t global = groups * launch->group_size, local = launch->group_size;
-    const cl_kernel kernel = (cl_kernel)launch->kernel;
+    cl_kernel kernel = (cl_kernel)launch->kernel;
     cl_event made = NULL;
     for (size_t i = 0; i < launch->arg_count; i++) {
         const cl_int code = set_arg(kernel, (cl_uint)i, launch->args + i);
@@ -35,7 +35,7 @@ camber_status camber_opencl_launch(const camber_device *device, const camber_lau
 }
 
 camber_status camber_opencl_wait(const camber_device *device, camber_event *event, const char *name) {
-    const cl_event waited = (cl_event)event;
+    cl_event waited = (cl_event)event;
     const cl_int code = clWaitForEvents(1, &waited);
     return code == CL_SUCCESS ? CAMBER_OK : fail_stage(device, "clWaitForEvents", name, code);
 }

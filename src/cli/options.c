@@ -62,14 +62,15 @@ void camber_options_help(camber_verb verb, FILE *file) {
     fputs("camber VERB [OPTION...] [INPUT...]\nturn maps into anti-aliased pictures\n\n", file);
     for (size_t i = 0; i < camber_verb_count; i++)
         fprintf(file, "  %-12s%s\n", camber_verb_specs[i].name, camber_verb_specs[i].summary);
-    fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or a verb's");
+    fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or the help of a verb");
     fprintf(file, "  %-12s%s\n", "version", "print the version");
 #ifdef CAMBER_MAP
-    fputs("\nINPUT: any file that GDAL reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard "
+    fputs("\nINPUT: any file that GDAL reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...), or - for standard "
           "input.\n",
           file);
 #endif
-    fputs("\nOptions of the verbs, with their defaults in brackets (`camber VERB --help` lists a verb's own):\n", file);
+    fputs("\nOptions of all verbs, with their defaults in brackets (`camber VERB --help` lists those of one verb):\n",
+          file);
     print_options(CAMBER_VERB_NONE, file);
     fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
           "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 128 + N signal N.\n",

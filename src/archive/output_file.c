@@ -102,8 +102,9 @@ static bool is_folder(const char *path) {
 
 static camber_status say_named(camber_context *context, const char *path, int cause) {
     if (cause == EEXIST)
-        return camber_fail(context, CAMBER_ERROR_IO,
-                           "%s: has appeared meanwhile; name another, or replace it with --force", path);
+        return camber_fail(
+            context, CAMBER_ERROR_IO,
+            "%s: another program has created it meanwhile; name another file, or replace it with --force", path);
     if (cause)
         return camber_output_fail(context, path, cause);
     sync_folder(path);

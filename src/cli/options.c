@@ -173,14 +173,14 @@ static int parse_view(const camber_option_reader *p, const camber_option_spec *s
         (rest++, !parse_count(&rest, &options->view.height)) || *rest != 0)
         return camber_options_refuse(p, "--size %s: not a size; give WIDTHxHEIGHT in CSS px, as in 1024x768", text);
     if (options->view.width < 1 || options->view.height < 1)
-        return camber_options_refuse(p, "--size %s: a side of 0; both sides are 1 or more", text);
+        return camber_options_refuse(p, "--size %s: a side is 0; both sides must be 1 or more", text);
     return CAMBER_EXIT_DONE;
 }
 
 static int parse_place(const camber_option_reader *p, const char *text) {
     camber_tiles_place place;
     if (!camber_options_parse_place(text, &place))
-        return camber_options_refuse(p, "--tile %s: no tile; give zoom/column/row, as in 12/1950/1533", text);
+        return camber_options_refuse(p, "--tile %s: not a tile; give zoom/column/row, as in 12/1950/1533", text);
     p->options->places[p->options->place_count++] = place;
     return CAMBER_EXIT_DONE;
 }
@@ -252,7 +252,7 @@ static int parse_value(const camber_option_reader *p, const camber_option_spec *
     case CAMBER_OPTION_BYTES:
         if (!parse_bytes(text, spec->least, spec->most, (uint64_t *)(void *)field))
             return camber_options_refuse(
-                p, "--%s %s: no such size; give bytes from 256K to 1024G, as in 100000000, 512M or 2G", spec->name,
+                p, "--%s %s: not a size in bytes from 256K to 1024G; give one, as in 100000000, 512M or 2G", spec->name,
                 text);
         return CAMBER_EXIT_DONE;
     case CAMBER_OPTION_CHOICE: return parse_choice(p, spec, text, (int *)(void *)field);

@@ -155,7 +155,7 @@ static void print_figures(const camber_comparison *c, int width) {
             put_number(row->figures[k], decimals_of(&camber_figures[k], row->figures[k]), camber_figures[k].width);
         putchar('\n');
     }
-    puts("0-30 and so on: joins that turn by so many degrees; tight: the inner side has no room; split: past 127 "
+    puts("0-30 and so on: joins that turn by that many degrees; tight: the inner side has no room; split: past 127 "
          "degrees");
 }
 

@@ -210,7 +210,7 @@ static bool is_remote(const json_t *json) {
 }
 
 static const char *find_trouble(const camber_style_source *source) {
-    static const char *const remote = "it lies on a network, which is not read; save it as a file and name that";
+    static const char *const remote = "it is on a network, which is not read; save it as a file and name that";
     const bool geojson = strcmp(source->type, "geojson") == 0;
     if (!geojson && strcmp(source->type, "vector") != 0)
         return "sources of this type have neither lines nor areas; draw those of a geojson or vector source";

@@ -295,7 +295,7 @@ styled("within the root", lambda: (write("a.geojson", LINE), write("style.json",
 styled("tiles within the root that are not there", lambda: write("style.json", style(
     '"type":"vector","tiles":["t/{z}/{x}/{y}.pbf"]')), "", 0, options=("--root", "."))
 styled("tiles beyond the root", lambda: write("style.json", style('"type":"vector","tiles":["../{z}/{x}/{y}.pbf"]')),
-       "beyond", options=("--root", "."))
+       "only there", options=("--root", "."))
 
 # ---- Files that OUT may be ----
 

@@ -20,7 +20,7 @@ static const char *cure_of(int cause) {
     switch (cause) {
     case ENOENT:
     case ENOTDIR: return "make its folder first";
-    case ENAMETOOLONG: return "choose a shorter name: files beside it add 16 letters";
+    case ENAMETOOLONG: return "choose a shorter name: temporary files beside it add 16 letters";
     default: return camber_file_cure(cause, "write elsewhere");
     }
 }

@@ -85,7 +85,7 @@ static void check_order(entry_walk *walk, const camber_archive_tile *tile, const
         walk->placed += tile->size_bytes;
     else if (tile->offset > walk->placed && walk->header.clustered == 1)
         camber_verify_tell(walk->v, CAMBER_VERIFY_ORDER, true,
-                           "tile %s is not where the order of a clustered archive has it", name);
+                           "tile %s is not at its place in the order of a clustered archive", name);
     if (tile->offset > walk->placed)
         walk->placed = tile->offset + tile->size_bytes;
 }

@@ -186,8 +186,8 @@ camber_status camber_budget_take_tiles(camber_context *context, const char *name
     const uint64_t most = context->budget->desc.tiles;
     if (count > most || context->spent.tiles > most - count)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "%s: more than %" PRIu64 " tiles; draw less of it: a style that names it as a source reads "
-                           "what the view sees",
+                           "%s: more than %" PRIu64
+                           " tiles; draw less of it: a style that names it as a source reads only what the view sees",
                            name, most);
     context->spent.tiles += count;
     return CAMBER_OK;

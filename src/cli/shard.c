@@ -65,8 +65,8 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
     const bool gaps = last && count && (last < first || (last - first) / step + 1 != count);
     if (gaps || (options->shards && count && count != options->shards)) {
         snprintf(message, message_size,
-                 "--shard auto: %s counts %u tasks%s, which are not all parts%s; give an array of all of them, or name "
-                 "this task's part: --shard K/N",
+                 "--shard auto: %s counts %u tasks%s, which are not all shards%s; give an array of all of them, or "
+                 "name this task's shard: --shard K/N",
                  found->number, count, gaps ? " with gaps between them" : "", options->shards ? " of --shards" : "");
         return CAMBER_EXIT_USAGE;
     }

@@ -377,7 +377,7 @@ static bool join_left(wishes *w) {
 static void explain(const reading *it, bool given_up, int status, char *error, size_t error_size) {
     const char *why = given_up ? it->own.watch.line : it->report.error;
     const bool memory = !given_up && status == CAMBER_EXIT_INTERNAL;
-    snprintf(error, error_size, "%s%.*s%s", memory ? "reading again, beside what is served: " : "",
+    snprintf(error, error_size, "%s%.*s%s", memory ? "reading again, while the previous map is served: " : "",
              (int)error_size - 100, why, memory ? " (--memory)" : "");
 }
 

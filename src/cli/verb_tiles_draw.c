@@ -380,8 +380,8 @@ static void warn_empty(const job *j) {
     char why[1024];
     (void)camber_features_explain_nothing(j->input.features, options->min_zoom, options->max_zoom, why, sizeof why);
     camber_report_warn(j->session->report, "there are no tiles: %s%s", why,
-                       j->place_count      ? " (--tile names where)"
-                       : j->region         ? " (--region says where)"
+                       j->place_count      ? " (--tile limits the tiles)"
+                       : j->region         ? " (--region limits the tiles)"
                        : options->has_bbox ? " (--bbox is W,S,E,N: longitudes come first)"
                                            : "");
 }

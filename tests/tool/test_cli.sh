@@ -268,7 +268,7 @@ run "${without_gl[@]}" "$tool" info
 name="info without GL"
 verify 0
 has "$tmp/stdout" '^GL *egl: not available: .*; install' '^GL *osmesa: not available: .*; install' '^draw *cl: ' \
-    '^sharing *none: no GL takes part'
+    '^sharing *none: GL is not used'
 
 # ---- Render ----
 
@@ -571,7 +571,7 @@ else
     echo "skipped: what compare counts: no python3 to read its JSON"
 fi
 expect 0 "compare in OpenCL, as a table" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --draw cl
-has "$tmp/stdout" 'drawn in OpenCL' "are GL's alone"
+has "$tmp/stdout" 'drawn in OpenCL' "exist only in GL"
 lacks "$tmp/stdout" 'fragments: shaded'
 expect 0 "compare counts in GL, unless asked" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json
 has "$tmp/stdout" '"draw": "gl"'

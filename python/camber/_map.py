@@ -29,7 +29,7 @@ def read_style(style, theme):
         size = ffi.new("size_t *")
         text = lib.camber_style_get_text(path, theme, size)
         if text == ffi.NULL:
-            raise NotFoundError("%s: neither a file nor a style that ships; name a style document, or one of: %s"
+            raise NotFoundError("%s: neither a file nor a built-in style; name a style document, or one of: %s"
                                 % (os.fsdecode(path), ", ".join(styles())))
         return bytes(ffi.buffer(text, size[0])), path, None
     with open(path, "rb") as file:

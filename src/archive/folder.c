@@ -116,7 +116,7 @@ camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
     camber_bytes bytes = {.context = plan->context};
     if (plan->tile_count > MOST_FILES)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
-                           "%s: %" PRIu64 " tiles are more files than a folder is written with, %d; write PMTiles",
+                           "%s: %" PRIu64 " tiles are too many files for a folder, which may have %d; write PMTiles",
                            plan->desc->path, plan->tile_count, MOST_FILES);
     camber_status status = make_folder(plan, plan->whole);
     if (status == CAMBER_OK)
@@ -203,11 +203,10 @@ camber_status camber_folder_may_go(camber_context *context, const char *path) {
     if (opened)
         closedir(opened);
     if (status == CAMBER_OK && !is_empty && !has_metadata)
-        return camber_fail(
-            context, CAMBER_ERROR_IO,
-            "%s: has no metadata.json, so it may be no archive of tiles, and would be lost; name another "
-            "folder",
-            path);
+        return camber_fail(context, CAMBER_ERROR_IO,
+                           "%s: has no metadata.json, so it may not be an archive of tiles, and its files would be "
+                           "lost; name another folder",
+                           path);
     return status;
 }
 

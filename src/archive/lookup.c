@@ -40,7 +40,7 @@ static camber_status find_type(camber_tiles_reader *reader) {
     const camber_status status = camber_folder_visit(archive->path, &visitor);
     if (archive->type == CAMBER_TILE_OTHER && status == CAMBER_OK)
         return camber_fail(reader->context, CAMBER_ERROR_INPUT,
-                           "%s: has no tile; name a folder of tiles, {z}/{x}/{y}.png or the like", archive->path);
+                           "%s: contains no tiles; name a folder with {z}/{x}/{y}.png or the like", archive->path);
     return archive->type != CAMBER_TILE_OTHER ? CAMBER_OK : status;
 }
 

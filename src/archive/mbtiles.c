@@ -41,8 +41,8 @@ static int authorize(void *user, int action, const char *first, const char *seco
 
 static camber_status fail_interrupted(const camber_tile_set *set) {
     return camber_fail(set->context, CAMBER_ERROR_INPUT,
-                       "%s: who wrote to it last was interrupted; open it once with what may write (sqlite3 FILE "
-                       ".tables), which puts it right",
+                       "%s: the last program that wrote to it was interrupted; open it once with write access (sqlite3 "
+                       "FILE .tables) to repair it",
                        set->name);
 }
 
@@ -52,8 +52,8 @@ static camber_status fail(const camber_tile_set *set) {
     const char *said = self->handle ? sqlite3_errmsg(self->handle) : "out of memory";
     if (self->computes)
         return camber_fail(set->context, CAMBER_ERROR_INPUT,
-                           "%s: a view of it computes what tables of tiles do not: recursion, or functions; copy its "
-                           "rows to tables",
+                           "%s: it has a view with recursion or functions, which camber does not run; copy the rows of "
+                           "the view to tables",
                            set->name);
     switch (code & 0xff) {
     case SQLITE_NOMEM: return camber_fail(set->context, CAMBER_ERROR_MEMORY, "%s: SQLite is out of memory", set->name);
@@ -66,11 +66,11 @@ static camber_status fail(const camber_tile_set *set) {
                            "%s: cannot be read: %s; check its permissions, and who writes to it", set->name, said);
     case SQLITE_READONLY: return fail_interrupted(set);
     case SQLITE_NOTADB:
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no MBTiles: %s; name such a file, or get it again",
-                           set->name, said);
+        return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                           "%s: not an MBTiles archive: %s; check the path, or download it again", set->name, said);
     case SQLITE_INTERRUPT:
         return camber_fail(set->context, CAMBER_ERROR_LIMIT,
-                           "%s: its queries take too many steps; make an index on tiles (zoom_level, tile_column, "
+                           "%s: its queries take too many steps; create an index on tiles (zoom_level, tile_column, "
                            "tile_row)",
                            set->name);
     default:

@@ -108,8 +108,8 @@ static camber_status check_parts(merging *m) {
     for (size_t i = 0; i < m->desc->part_count; i++)
         if (m->parts[i]->type == CAMBER_TILE_OTHER && m->parts[i]->format == CAMBER_ARCHIVE_MBTILES)
             return camber_fail(m->context, CAMBER_ERROR_INPUT,
-                               "%s: its metadata have no format, and its first tile looks like none that is known; "
-                               "set it (png, jpg, webp, pbf)",
+                               "%s: its metadata have no format, and its first tile is of no known format; set it in "
+                               "the metadata (png, jpg, webp, pbf)",
                                m->parts[i]->path);
     for (size_t i = 1; i < m->desc->part_count; i++)
         compare_parts(m, m->parts[0], m->parts[i]);
@@ -167,7 +167,7 @@ static camber_status write(merging *m, camber_archive_format format) {
     camber_archive_writer *writer = NULL;
     if (format == CAMBER_ARCHIVE_MBTILES && whole.type == CAMBER_TILE_MVT && !whole.gzipped)
         return camber_fail(m->context, CAMBER_ERROR_INPUT,
-                           "%s: its vector tiles are not compressed, and MBTiles has them with gzip; write PMTiles",
+                           "%s: its vector tiles are not compressed, but MBTiles needs them with gzip; write PMTiles",
                            m->parts[0]->path);
     camber_status status = camber_archive_writer_create(m->context, &whole, &writer);
     if (status == CAMBER_OK && m->desc->begun)

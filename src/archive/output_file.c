@@ -20,7 +20,7 @@ static const char *cure_of(int cause) {
     switch (cause) {
     case ENOENT:
     case ENOTDIR: return "make its folder first";
-    case ENAMETOOLONG: return "choose a shorter name: files beside it add 16 letters";
+    case ENAMETOOLONG: return "choose a shorter name: temporary files beside it add 16 letters";
     default: return camber_file_cure(cause, "write elsewhere");
     }
 }
@@ -102,8 +102,9 @@ static bool is_folder(const char *path) {
 
 static camber_status say_named(camber_context *context, const char *path, int cause) {
     if (cause == EEXIST)
-        return camber_fail(context, CAMBER_ERROR_IO,
-                           "%s: has appeared meanwhile; name another, or replace it with --force", path);
+        return camber_fail(
+            context, CAMBER_ERROR_IO,
+            "%s: another program has created it meanwhile; name another file, or replace it with --force", path);
     if (cause)
         return camber_output_fail(context, path, cause);
     sync_folder(path);

@@ -261,7 +261,7 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index 
         }
         in = &self->leaf;
     }
-    return fail(set, "its directories go round in circles");
+    return fail(set, "its directories form a cycle");
 }
 
 typedef struct listing {
@@ -308,10 +308,10 @@ static camber_status walk_directory(camber_tile_set *set, const camber_pmtiles_v
             continue;
         directory leaf = {0};
         if (depth >= DEEPEST)
-            return fail(set, "its directories go round in circles");
+            return fail(set, "its directories form a cycle");
         if (!camber_budget_take_steps(set->context, DIRECTORY_STEPS))
             return camber_fail(set->context, CAMBER_ERROR_LIMIT,
-                               "%s: its directories take too many steps, or go round in circles; get the file again",
+                               "%s: its directories take too many steps, or form a cycle; get the file again",
                                set->name);
         if (visitor->take_leaf)
             status = visitor->take_leaf(visitor->user, entry, depth);
@@ -429,8 +429,8 @@ static camber_status read_header(camber_tile_set *set) {
         return status;
     const unsigned char *head = self->packed.data;
     if (why || memcmp(head, "PMTiles", 7) != 0)
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no PMTiles; name such a file, or get it again",
-                           set->name);
+        return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                           "%s: not a PMTiles archive; check the path, or download it again", set->name);
     if (head[7] != 3)
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
                            set->name, head[7]);
@@ -446,7 +446,7 @@ static camber_status read_header(camber_tile_set *set) {
     if (check_type(set) != CAMBER_OK)
         return CAMBER_ERROR_INPUT;
     if (set->min_zoom > set->max_zoom || set->max_zoom > CAMBER_LARGEST_TILE_ZOOM)
-        return fail(set, "its zooms make no sense");
+        return fail(set, "its zooms are out of range");
     status = check_compression(set, self->header.directory_compression, "directories");
     return status == CAMBER_OK ? check_compression(set, self->header.tile_compression, "tiles") : status;
 }

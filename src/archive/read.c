@@ -132,7 +132,8 @@ static camber_status open_archive(camber_archive *archive) {
     struct stat about;
     if (!camber_archive_get_format(archive->path, &archive->format))
         return camber_fail(archive->context, CAMBER_ERROR_INPUT,
-                           "%s: no archive of tiles; name a .pmtiles, an .mbtiles or a folder", archive->path);
+                           "%s: not an archive of tiles; name a .pmtiles file, an .mbtiles file or a folder",
+                           archive->path);
     if (archive->format == CAMBER_ARCHIVE_FOLDER && stat(archive->path, &about) != 0)
         return camber_file_fail(archive->context, archive->path, errno);
     camber_status status =

@@ -39,7 +39,7 @@ static const char *check_png(const unsigned char *bytes, size_t size, uint32_t *
             continue;
         if (!has_pixels)
             return "is a PNG without pixels";
-        return at == size ? NULL : "is a PNG with bytes behind its end";
+        return at == size ? NULL : "is a PNG with bytes after its end";
     }
     return "is a PNG that is cut off";
 }
@@ -52,7 +52,7 @@ static const char *check_webp(const unsigned char *bytes, size_t size, uint32_t 
         return "is a WebP that is cut off";
     const uint64_t told = (uint64_t)little_endian(bytes + 4, 4) + 8;
     if (told != size)
-        return told > size ? "is a WebP that is cut off" : "is a WebP with bytes behind its end";
+        return told > size ? "is a WebP that is cut off" : "is a WebP with bytes after its end";
     const unsigned char *chunk = bytes + 12, *data = bytes + 20;
     if (memcmp(chunk, "VP8X", 4) == 0) {
         *width = little_endian(data + 4, 3) + 1;

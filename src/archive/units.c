@@ -216,7 +216,8 @@ camber_status camber_units_resume(camber_units *units, const char *key, camber_c
         found.key[KEY_BYTES - 1] = 0;
         camber_fingerprint_compare(found.key, key, names, sizeof names);
         return camber_fail(units->context, CAMBER_ERROR_INPUT,
-                           "%s: its finished units differ in their %s; start anew without --resume, or draw the same",
+                           "%s: the interrupted run differs in its %s; start again without --resume, or give the same "
+                           "input and options",
                            units->name, names);
     }
     units->written_bytes = sizeof found;

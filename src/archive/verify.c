@@ -25,7 +25,7 @@ static void check_bounds(camber_verify *v) {
                            b[2], b[3]);
     }
     if (center->given && (center->zoom < low || center->zoom > high))
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre's zoom %d is none from %d to %d", center->zoom,
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre's zoom %d is not from %d to %d", center->zoom,
                            low, high);
     if (center->given && v->archive->has_bounds &&
         (center->longitude < b[0] - 1e-6 || center->longitude > b[2] + 1e-6 || center->latitude < b[1] - 1e-6 ||
@@ -43,10 +43,10 @@ static void check_zooms(camber_verify *v) {
         high = v->tally.zoom_tiles[zoom] ? zoom : high;
     }
     if (low >= 0 && low != v->archive->min_zoom)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its lowest zoom is said to be %d, and is %d",
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its lowest zoom is given as %d, but is %d",
                            v->archive->min_zoom, low);
     if (high >= 0 && high != v->archive->max_zoom)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its highest zoom is said to be %d, and is %d",
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its highest zoom is given as %d, but is %d",
                            v->archive->max_zoom, high);
     if (v->outside && v->flipped == v->outside && v->archive->format != CAMBER_ARCHIVE_PMTILES)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "its rows count from the %s; %s count from the %s",
@@ -62,11 +62,11 @@ static void check_metadata(camber_verify *v) {
     static const char *const texts[] = {"name", "description", "attribution", "version", "type"};
     if (v->archive->type == CAMBER_TILE_MVT && !json_is_array(json_object_get(about, "vector_layers")))
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true,
-                           "the metadata have no vector_layers, which tell what vector tiles have");
+                           "the metadata have no vector_layers, which describe the layers of vector tiles");
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         const json_t *value = json_object_get(about, texts[i]);
         if (value && !json_is_string(value))
-            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s in the metadata is not a text", texts[i]);
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s in the metadata is not a string", texts[i]);
     }
 }
 
@@ -85,7 +85,7 @@ static camber_status verify(camber_verify *v) {
     (void)camber_archive_sniff(v->archive); /* where it fails, the walk below fails too */
     if (v->archive->sniffed && v->archive->format != CAMBER_ARCHIVE_FOLDER)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s, and its tiles look like %s",
-                           v->archive->format == CAMBER_ARCHIVE_PMTILES ? "the header has no type of tiles"
+                           v->archive->format == CAMBER_ARCHIVE_PMTILES ? "the header names no type of tiles"
                                                                         : "the metadata have no format",
                            camber_tile_type_get_name(v->archive->type));
     check_bounds(v);

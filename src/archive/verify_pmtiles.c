@@ -34,7 +34,8 @@ static void check_sections(camber_verify *v, const camber_pmtiles_file *file) {
             camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the %s begins at 0, where the header is",
                                sections[i].name);
         else if (at.offset > file->size_bytes || at.size > file->size_bytes - at.offset)
-            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the %s ends behind the file", sections[i].name);
+            camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the %s ends past the end of the file",
+                               sections[i].name);
         sum += at.size;
     }
     for (size_t i = 0; i < 4; i++)
@@ -49,9 +50,9 @@ static void check_sections(camber_verify *v, const camber_pmtiles_file *file) {
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true,
                            "the file has %" PRIu64 " bytes, and its sections make %" PRIu64, file->size_bytes, packed);
     if (h->root.offset + h->root.size > 16384)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the root directory ends behind the first 16384 bytes");
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the root directory ends past the first 16384 bytes");
     if (h->tile_type > CAMBER_TILE_MLT)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "type %d of tiles is none", h->tile_type);
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "type %d of tiles does not exist", h->tile_type);
     if (h->clustered > 1)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "clustered is %d, neither 0 nor 1", h->clustered);
     if (!v->archive->set->about)
@@ -84,7 +85,7 @@ static void check_order(entry_walk *walk, const camber_archive_tile *tile, const
         walk->placed += tile->size_bytes;
     else if (tile->offset > walk->placed && walk->header.clustered == 1)
         camber_verify_tell(walk->v, CAMBER_VERIFY_ORDER, true,
-                           "tile %s is not where the order of a clustered archive has it", name);
+                           "tile %s is not at its place in the order of a clustered archive", name);
     if (tile->offset > walk->placed)
         walk->placed = tile->offset + tile->size_bytes;
 }
@@ -101,14 +102,14 @@ static camber_status take_tile(entry_walk *walk, const camber_archive_tile *tile
     if (walk->any && tile->number < walk->next)
         camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s comes twice, or after a later one", name);
     if (walk->in_leaf && tile->number < walk->leaf_number)
-        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s is in a leaf directory that begins behind it", name);
+        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s is in a leaf directory that begins after it", name);
     walk->any = true;
     walk->next = tile->number + tile->run_length;
     if (tile->size_bytes == 0)
         camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile %s has no bytes", name);
     const uint64_t room = walk->header.tiles.size;
     if (tile->offset > room || tile->size_bytes > room - tile->offset)
-        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile %s ends behind the section of tiles", name);
+        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile %s ends past the section of tiles", name);
     check_order(walk, tile, name);
     camber_verify_bounds(v, tile);
     return camber_tally_take(&v->tally, tile);
@@ -144,8 +145,8 @@ static void check_places(camber_verify *v, uint64_t tiles_bytes) {
     if (overlaps)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "%zu contents overlap others", overlaps);
     if (unused)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "%" PRIu64 " bytes of the section of tiles are no tile's",
-                           unused);
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false,
+                           "%" PRIu64 " bytes of the section of tiles belong to no tile", unused);
 }
 
 static camber_status check_contents(camber_verify *v) {
@@ -180,7 +181,7 @@ camber_status camber_verify_pmtiles(camber_verify *v) {
     check_count(v, "entries", file.header.entries, v->tally.entries);
     check_count(v, "contents", file.header.contents, v->tally.contents);
     if (walk.leaf_bytes < file.header.leaves.size)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "%" PRIu64 " bytes of leaf directories are in none",
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false, "%" PRIu64 " bytes of leaf directories belong to none",
                            file.header.leaves.size - walk.leaf_bytes);
     check_places(v, file.header.tiles.size);
     return check_contents(v);

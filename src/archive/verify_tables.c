@@ -22,7 +22,8 @@ static camber_status take_tile(void *user, const camber_archive_tile *tile) {
     char name[80];
     snprintf(name, sizeof name, "%d/%" PRId64 "/%" PRId64, tile->zoom, tile->column, tile->row);
     if (tile->outside) {
-        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile %s is none: its zoom has no such column or row", name);
+        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile %s does not exist: its zoom has no such column or row",
+                           name);
         v->tally.entries++;
         return CAMBER_OK;
     }
@@ -41,7 +42,7 @@ static void check_twice(camber_verify *v) {
         if (v->tally.places[i].number != v->tally.places[i - 1].number)
             continue;
         camber_verify_name(v->tally.places[i].number, name);
-        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s (rows from the north) is there twice", name);
+        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s (rows from the north) occurs twice", name);
     }
 }
 
@@ -94,14 +95,14 @@ static camber_status take_metadata(void *user, sqlite3_stmt *row) {
             found = found || strcmp(value, known[i]) == 0;
         if (!found)
             camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false,
-                               "format %.40s is none of pbf, png, jpg and webp, and no media type", value);
+                               "format %.40s is neither pbf, png, jpg or webp nor a media type", value);
     }
     return CAMBER_OK;
 }
 
 static camber_status take_double(void *user, sqlite3_stmt *row) {
     const tables *t = user;
-    camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%.80s is in the metadata twice", text_at(row, 0));
+    camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%.80s occurs twice in the metadata", text_at(row, 0));
     return CAMBER_OK;
 }
 
@@ -147,9 +148,9 @@ static camber_status check_images(tables *t) {
     for (size_t i = 0; i < uses; i++)
         lost += !has_id(t->ids, images, used[i]);
     if (again)
-        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%zu ids of images are there twice", again);
+        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%zu ids of images occur twice", again);
     if (unused)
-        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, false, "%zu images are no tile's", unused);
+        camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, false, "%zu images belong to no tile", unused);
     if (lost)
         camber_verify_tell(t->v, CAMBER_VERIFY_ARCHIVE, true, "%zu tiles have no image", lost);
     return CAMBER_OK;
@@ -231,8 +232,7 @@ static camber_status compare_file(void *user, const char *name, const void *byte
     if (status == CAMBER_ERROR_NOT_FOUND) {
         t->is_left = is_root;
         camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, !is_root, "%s is missing%s", name,
-                           is_root ? ": viewers of 3D Tiles find no tiles"
-                                   : ", and with it the tiles that it tells of");
+                           is_root ? ": viewers of 3D Tiles find no tiles" : ", and with it the tiles that it lists");
         return CAMBER_OK;
     }
     if (status != CAMBER_OK)
@@ -241,7 +241,7 @@ static camber_status compare_file(void *user, const char *name, const void *byte
     if (is_root)
         check_root(t, found, found_bytes, same);
     else if (!same)
-        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "%s tells of other tiles than there are", name);
+        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "%s lists other tiles than there are", name);
     camber_free(t->v->context, found);
     return CAMBER_OK;
 }
@@ -258,7 +258,7 @@ static camber_status check_others(tileset *t) {
     while (opened && (entry = readdir(opened)) != NULL) {
         const uint64_t hash = camber_hash(CAMBER_HASH_START, entry->d_name, strlen(entry->d_name));
         if (entry->d_name[0] != '.' && !has_id(t->names, t->count, hash))
-            camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "subtrees/%.80s tells of no tile", entry->d_name);
+            camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "subtrees/%.80s lists no tile", entry->d_name);
     }
     if (opened)
         closedir(opened);

@@ -102,7 +102,8 @@ camber_status camber_verify_bytes(camber_verify *v, const char *name, const camb
         return CAMBER_OK;
     }
     if (packed != v->archive->gzipped)
-        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s is%s compressed with gzip, unlike what is said", name,
+        camber_verify_tell(v, CAMBER_VERIFY_BYTES, true,
+                           "tile %s is%s compressed with gzip, although the archive says otherwise", name,
                            packed ? "" : " not");
     if (packed) {
         camber_tile_set naming = {.context = v->context, .name = v->archive->path};

@@ -203,8 +203,7 @@ camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan) {
     /* Runs that files only claim would become rows without end. */
     if (plan->tile_count > MOST_TILES)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
-                           "%s: %" PRIu64 " tiles are more rows than MBTiles are "
-                           "written with, %d; write PMTiles",
+                           "%s: %" PRIu64 " tiles are too many rows for MBTiles, which may have %d; write PMTiles",
                            plan->desc->path, plan->tile_count, MOST_TILES);
     w.ids = camber_alloc_zero(plan->context, plan->contents->count, sizeof *w.ids);
     if (!w.ids)

@@ -144,8 +144,8 @@ bool camber_budget_take(camber_context *context, uint64_t size_bytes) {
 camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes) {
     camber_budget *budget = context->budget;
     return camber_fail(context, CAMBER_ERROR_MEMORY,
-                       "memory: %.1f MB are held, %.1f MB more are needed, and %.1f MB are allowed; give it less data, "
-                       "or allow more memory",
+                       "memory: %.1f MB are in use, %.1f MB more are needed, and %.1f MB are allowed; give it less "
+                       "data, or allow more memory",
                        (double)camber_budget_get_held_bytes(budget) / 1e6, (double)size_bytes / 1e6,
                        (double)camber_budget_get_most_bytes(budget) / 1e6);
 }
@@ -186,8 +186,8 @@ camber_status camber_budget_take_tiles(camber_context *context, const char *name
     const uint64_t most = context->budget->desc.tiles;
     if (count > most || context->spent.tiles > most - count)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "%s: more than %" PRIu64 " tiles; draw less of it: a style that names it as a source reads "
-                           "what the view sees",
+                           "%s: more than %" PRIu64
+                           " tiles; draw less of it: a style that names it as a source reads only what the view sees",
                            name, most);
     context->spent.tiles += count;
     return CAMBER_OK;

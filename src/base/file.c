@@ -15,9 +15,9 @@ camber_status camber_file_fail(camber_context *context, const char *path, int ca
         return camber_fail(context, CAMBER_ERROR_IO, "%s: cannot be read: too many open files; allow more (ulimit -n)",
                            path);
     if (cause == ELOOP)
-        return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: is a link, or in one, which is not followed there; put the file itself there (cp -rL)",
-                           path);
+        return camber_fail(
+            context, CAMBER_ERROR_INPUT,
+            "%s: is a link, or inside one, and links are not followed there; put the file itself there (cp -rL)", path);
     const camber_status status = cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO;
     return camber_fail(context, status, "%s: cannot be read: %s; check the path and its permissions", path,
                        strerror(cause));
@@ -30,7 +30,7 @@ static camber_status check_kind(camber_context *context, const char *path, const
         return CAMBER_OK;
     if (S_ISDIR(about->st_mode))
         return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a folder; name a file in it", path);
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a device or a pipe; copy what it gives to a file", path);
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a device or a pipe; copy its data to a file", path);
 }
 
 /* Resolves links. For a file that does not exist, resolves the closest folder above it that does. */
@@ -73,8 +73,8 @@ static camber_status check_access(camber_context *context, const char *path, con
     const camber_status status = check_kind(context, path, about);
     if (status != CAMBER_OK || !is_output(context, about))
         return status;
-    return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: is read, and would be written to; write to another file",
-                       path);
+    return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                       "%s: is an input, and would be overwritten; write to another file", path);
 }
 
 /* This check comes before the check whether the file exists, so that a style learns nothing about files outside the
@@ -83,7 +83,7 @@ static camber_status check_root(camber_context *context, const char *path, cambe
     if (naming == CAMBER_NAMED_BY_CALLER || camber_file_is_reached(context, path))
         return CAMBER_OK;
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: is not a file in %s, beyond which a style may name none; put it there", path,
+                       "%s: is not a file in %s, and a style may name files only there; put it there", path,
                        context->desc.access.root);
 }
 

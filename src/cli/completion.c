@@ -141,12 +141,12 @@ static void print_bash(FILE *file) {
     for (size_t i = 0; i < camber_verb_count; i++)
         print_bash_options(camber_verb_specs[i].name, camber_verb_specs[i].verb, file);
     print_bash_options("*", CAMBER_VERB_NONE, file);
-    fputs(
-        "    esac\n}\n\n# The values of an option; status 1 where it takes none.\n_camber_value() {\n    case $1 in\n",
-        file);
+    fputs("    esac\n}\n\n# The values of an option; status 1 if it takes none.\n_camber_value() {\n    case $1 in\n",
+          file);
     for (size_t i = 0; i < camber_option_count; i++)
         print_bash_value(&camber_option_specs[i], file);
-    fputs("    *) return 1 ;;\n    esac\n}\n\n# The operands behind VERB:OPERAND.\n_camber_operands() {\n    case $1 "
+    fputs("    *) return 1 ;;\n    esac\n}\n\n# The operands that may follow VERB:OPERAND.\n_camber_operands() {\n    "
+          "case $1 "
           "in\n",
           file);
     print_bash_operands(file);

@@ -34,8 +34,7 @@ int camber_input_read_all(camber_report *report, const char *path, char **bytes,
     FILE *file = standard ? stdin : open_regular(path);
     if (!file && errno == 0)
         return camber_report_fail(report, CAMBER_EXIT_DATA,
-                                  "%s: is a device or a pipe; copy what it gives to a file, or name - for standard "
-                                  "input",
+                                  "%s: is a device or a pipe; copy its data to a file, or name - for standard input",
                                   path);
     if (!file)
         return camber_report_fail(report, errno == ENOENT || errno == ENOTDIR ? CAMBER_EXIT_NO_INPUT : CAMBER_EXIT_IO,
@@ -139,7 +138,7 @@ static int fail_name(camber_session *session, const char *name) {
     for (size_t i = 0; (next = camber_style_list(i)) != NULL; i++)
         snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", next);
     return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
-                              "%s: neither a file nor a style that ships; name a style document, or one of: %s", name,
+                              "%s: neither a file nor a built-in style; name a style document, or one of: %s", name,
                               names);
 }
 
@@ -437,7 +436,7 @@ void camber_input_say_split(const camber_input *input) {
     const size_t splits = camber_features_get_stats(input->features).antimeridian_splits;
     if (splits > 0)
         camber_report_say(input->session->report,
-                          "antimeridian: crossed %zu time%s; what jumps by more than 180 degrees goes the short way "
+                          "antimeridian: crossed %zu time%s; segments of more than 180 degrees are drawn the short way "
                           "round the Earth",
                           splits, camber_plural(splits));
 }

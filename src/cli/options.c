@@ -62,14 +62,15 @@ void camber_options_help(camber_verb verb, FILE *file) {
     fputs("camber VERB [OPTION...] [INPUT...]\nturn maps into anti-aliased pictures\n\n", file);
     for (size_t i = 0; i < camber_verb_count; i++)
         fprintf(file, "  %-12s%s\n", camber_verb_specs[i].name, camber_verb_specs[i].summary);
-    fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or a verb's");
+    fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or the help of a verb");
     fprintf(file, "  %-12s%s\n", "version", "print the version");
 #ifdef CAMBER_MAP
-    fputs("\nINPUT: any file that GDAL reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard "
+    fputs("\nINPUT: any file that GDAL reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...), or - for standard "
           "input.\n",
           file);
 #endif
-    fputs("\nOptions of the verbs, with their defaults in brackets (`camber VERB --help` lists a verb's own):\n", file);
+    fputs("\nOptions of all verbs, with their defaults in brackets (`camber VERB --help` lists those of one verb):\n",
+          file);
     print_options(CAMBER_VERB_NONE, file);
     fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
           "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 128 + N signal N.\n",
@@ -172,14 +173,14 @@ static int parse_view(const camber_option_reader *p, const camber_option_spec *s
         (rest++, !parse_count(&rest, &options->view.height)) || *rest != 0)
         return camber_options_refuse(p, "--size %s: not a size; give WIDTHxHEIGHT in CSS px, as in 1024x768", text);
     if (options->view.width < 1 || options->view.height < 1)
-        return camber_options_refuse(p, "--size %s: a side of 0; both sides are 1 or more", text);
+        return camber_options_refuse(p, "--size %s: a side is 0; both sides must be 1 or more", text);
     return CAMBER_EXIT_DONE;
 }
 
 static int parse_place(const camber_option_reader *p, const char *text) {
     camber_tiles_place place;
     if (!camber_options_parse_place(text, &place))
-        return camber_options_refuse(p, "--tile %s: no tile; give zoom/column/row, as in 12/1950/1533", text);
+        return camber_options_refuse(p, "--tile %s: not a tile; give zoom/column/row, as in 12/1950/1533", text);
     p->options->places[p->options->place_count++] = place;
     return CAMBER_EXIT_DONE;
 }
@@ -251,7 +252,7 @@ static int parse_value(const camber_option_reader *p, const camber_option_spec *
     case CAMBER_OPTION_BYTES:
         if (!parse_bytes(text, spec->least, spec->most, (uint64_t *)(void *)field))
             return camber_options_refuse(
-                p, "--%s %s: no such size; give bytes from 256K to 1024G, as in 100000000, 512M or 2G", spec->name,
+                p, "--%s %s: not a size in bytes from 256K to 1024G; give one, as in 100000000, 512M or 2G", spec->name,
                 text);
         return CAMBER_EXIT_DONE;
     case CAMBER_OPTION_CHOICE: return parse_choice(p, spec, text, (int *)(void *)field);

@@ -38,15 +38,16 @@ static int check_picture(const camber_option_reader *p) {
             p, "%s: this build writes no WebP (CAMBER_WEBP); build it with libwebp, or name it OUT.png",
             options->output);
     if (options->quality && options->format != CAMBER_FORMAT_WEBP)
-        return camber_options_refuse(p, "--quality: is WebP's, and %s is %s; leave it out, or name it OUT.webp",
-                                     options->output, name);
+        return camber_options_refuse(
+            p, "--quality: applies only to WebP, but %s is %s; leave it out, or name the output OUT.webp",
+            options->output, name);
     if (width > longest || height > longest)
         return camber_options_refuse(
-            p, "%s: %.0f x %.0f px, and a side of a WebP is at most %u; draw a smaller picture, or a PNG",
+            p, "%s: %.0f x %.0f px, but each side of a WebP is at most %u; draw a smaller picture, or a PNG",
             options->output, width, height, longest);
     if (options->format != CAMBER_FORMAT_PNG && width * height > CAMBER_PIXELS_MOST)
         return camber_options_refuse(
-            p, "%s: %.0f x %.0f px, and %s, which is encoded as a whole, has at most %d; leave out --format",
+            p, "%s: %.0f x %.0f px, but a picture of the format %s has at most %d pixels; draw a smaller one, or a PNG",
             options->output, width, height, name, CAMBER_PIXELS_MOST);
     return CAMBER_EXIT_DONE;
 }
@@ -73,12 +74,12 @@ static int check_format(const camber_option_reader *p, bool out) {
     }
     const bool wrong = (format == CAMBER_FORMAT_GLB) != glb || (named >= 0 && (named == CAMBER_FORMAT_GLB) != glb);
     if (wrong)
-        return camber_options_refuse(p, "%s: %s writes %s; camber %s writes %s", options->output, p->verb,
+        return camber_options_refuse(p, "%s: %s writes %s; use camber %s to write %s", options->output, p->verb,
                                      glb ? "glb" : "png, png8 and webp", glb ? "render" : "tessellate",
                                      glb ? "png, png8 and webp" : "glb");
     if (named >= 0 && strcmp(formats[named].extension, formats[format].extension) != 0)
         return camber_options_refuse(
-            p, "%s: its extension says %s, and --format %s; name it OUT%s, or leave out --format", options->output,
+            p, "%s: its extension means %s, but --format is %s; name it OUT%s, or leave out --format", options->output,
             formats[named].name, formats[format].name, formats[format].extension);
     options->format = format;
     return glb ? CAMBER_EXIT_DONE : check_picture(p);
@@ -93,9 +94,9 @@ static int check_output(const camber_option_reader *p) {
         return CAMBER_EXIT_DONE;
     const bool out = strcmp(options->output, "-") == 0;
     if (out && options->json)
-        return camber_options_refuse(p, "--json and -o -: both want standard output; give one of them");
+        return camber_options_refuse(p, "--json and -o -: both write to standard output; give only one of them");
     if (options->dump && strcmp(options->dump, "-") == 0 && out)
-        return camber_options_refuse(p, "--dump - and -o -: both want standard output; give one of them");
+        return camber_options_refuse(p, "--dump - and -o -: both write to standard output; give only one of them");
     return check_format(p, out);
 }
 
@@ -104,17 +105,18 @@ static int check_view(const camber_option_reader *p) {
     camber_view_desc *view = &options->view;
     if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
         return camber_options_refuse(
-            p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
+            p, "--bbox and --center or --zoom: cannot be combined; give the box, or the centre and zoom");
     /* A style that is drawn from its own sources gives the missing one. */
     const bool own = options->style && options->input_count == 0;
     if (!own && options->has_center != !isnan(options->zoom))
-        return camber_options_refuse(p, "--%s alone: give --center LON,LAT and --zoom Z together",
-                                     options->has_center ? "center" : "zoom");
+        return camber_options_refuse(
+            p, "--%s: does not make a view by itself; give --center LON,LAT and --zoom Z together",
+            options->has_center ? "center" : "zoom");
     const bool tilts = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH;
     if (options->pitch_deg > 0 && !tilts)
-        return camber_options_refuse(p,
-                                     "--pitch %g: camber %s works on the map's plane, which has no pitch; leave it out",
-                                     options->pitch_deg, p->verb);
+        return camber_options_refuse(
+            p, "--pitch %g: camber %s works in the plane of the map, without a pitch; leave it out", options->pitch_deg,
+            p->verb);
     view->kind = options->has_bbox ? CAMBER_VIEW_BBOX : options->has_center ? CAMBER_VIEW_CENTER : CAMBER_VIEW_FIT;
     view->zoom = isnan(options->zoom) ? 0 : options->zoom;
     view->bearing_deg = isnan(options->bearing_deg) ? 0 : options->bearing_deg;
@@ -124,9 +126,10 @@ static int check_view(const camber_option_reader *p) {
     const double width = floor(view->width * view->ratio + 0.5);
     const double height = floor(view->height * view->ratio + 0.5);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 || width * height > 2147483648.0)
-        return camber_options_refuse(
-            p, "%ux%u at ratio %g: out of range; after --ratio a side is 1 to 65535 px, all 2^31 at most", view->width,
-            view->height, view->ratio);
+        return camber_options_refuse(p,
+                                     "%ux%u at ratio %g: out of range; times --ratio, each side must be 1 to 65535 px, "
+                                     "and the picture at most 2^31",
+                                     view->width, view->height, view->ratio);
     return CAMBER_EXIT_DONE;
 }
 
@@ -146,25 +149,26 @@ static int check_inputs(const camber_option_reader *p) {
         (options->style || options->theme >= 0 || options->layer || options->where || options->has_bbox ||
          options->has_center || !isnan(options->bearing_deg) || !isnan(options->pitch_deg)))
         return camber_options_refuse(
-            p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
+            p, "--polylines: the file is in pixels and has no style, layer or view; leave out the options for those");
     if (options->where_count > 1 && options->verb != CAMBER_VERB_COMPARE)
         return camber_options_refuse(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",
                                      options->where_count, verb);
     if (options->width_px > 0 && !options->polylines && options->verb != CAMBER_VERB_COMPARE)
-        return camber_options_refuse(p, "--width-px: is for --polylines; a map's widths are its style's");
+        return camber_options_refuse(p, "--width-px: applies only to --polylines; the style sets the widths of a map");
     if (options->style && options->theme >= 0 && !ships(options->style))
-        return camber_options_refuse(
-            p, "--theme: is for the styles that ship with camber; leave it out with --style %s", options->style);
+        return camber_options_refuse(p, "--theme: applies only to the built-in styles; leave it out with --style %s",
+                                     options->style);
     if (options->style && options->input_count == 0 && (options->layer || options->where))
-        return camber_options_refuse(
-            p, "--%s: is for INPUT, and the style's own sources are drawn; let its layers name what they draw",
-            options->layer ? "layer" : "where");
+        return camber_options_refuse(p,
+                                     "--%s: applies only to INPUT, but this run draws the style's own sources; use the "
+                                     "filters of its layers instead",
+                                     options->layer ? "layer" : "where");
     size_t streams = options->polylines && strcmp(options->polylines, "-") == 0;
     for (size_t i = 0; i < options->input_count; i++)
         streams += strcmp(options->inputs[i], "-") == 0;
     streams += options->style && strcmp(options->style, "-") == 0;
     if (streams > 1)
-        return camber_options_refuse(p, "-: standard input can be read once; name the other file");
+        return camber_options_refuse(p, "-: standard input can be read only once; name a file for the other one");
     const bool takes_both = options->verb == CAMBER_VERB_COMPARE || options->verb == CAMBER_VERB_BENCH;
     const bool needs = options->verb != CAMBER_VERB_INFO && options->verb != CAMBER_VERB_VALIDATE;
     if (needs && !options->input_count && !options->polylines && !options->style)
@@ -179,9 +183,9 @@ static int check_style(const camber_option_reader *p) {
     const camber_options *options = p->options;
     if (options->input_count == 0 ||
         (strcmp(options->inputs[0], "check") != 0 && strcmp(options->inputs[0], "eval") != 0))
-        return camber_options_refuse(
-            p, "style: %s%swhat to do with a file; write camber style check FILE or camber style eval FILE",
-            options->input_count ? options->inputs[0] : "", options->input_count ? ": not " : "say ");
+        return camber_options_refuse(p, "style: %s%s; write camber style check FILE or camber style eval FILE",
+                                     options->input_count ? "no such action: " : "no action",
+                                     options->input_count ? options->inputs[0] : "");
     if (options->input_count == 1)
         return camber_options_refuse(p, "style %s: no file; give one, or - for standard input", options->inputs[0]);
     if (options->input_count > 2)
@@ -196,9 +200,10 @@ static int check_draw(const camber_option_reader *p) {
     const bool named = options->backend != CAMBER_BACKEND_AUTO;
     if (options->draw != CAMBER_RASTERIZER_OPENCL || (!named && options->sharing == CAMBER_SHARING_AUTO))
         return CAMBER_EXIT_DONE;
-    return camber_options_refuse(
-        p, "--draw cl and --%s: OpenCL kernels draw without any GL; leave out --%s, or give --draw gl",
-        named ? "backend" : "sharing", named ? "backend" : "sharing");
+    return camber_options_refuse(p,
+                                 "--draw cl and --%s: cannot be combined, because OpenCL kernels draw without GL; "
+                                 "leave out --%s, or give --draw gl",
+                                 named ? "backend" : "sharing", named ? "backend" : "sharing");
 }
 
 static int check_plot(const camber_option_reader *p) {
@@ -239,9 +244,9 @@ int camber_options_check(camber_options *options, const char *verb, char *messag
     if (status == CAMBER_EXIT_DONE)
         status = check_plot(p);
     if (status == CAMBER_EXIT_DONE && options->junit && strcmp(options->junit, "-") == 0)
-        return camber_options_refuse(p, "--junit -: standard output is the report's; name a file");
+        return camber_options_refuse(p, "--junit -: the report already goes to standard output; name a file");
     if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
-        return camber_options_refuse(p, "--json and --dump -: both want standard output; give one of them");
+        return camber_options_refuse(p, "--json and --dump -: both write to standard output; give only one of them");
     if (status == CAMBER_EXIT_DONE && camber_options_clash(options, message, message_size))
         return CAMBER_EXIT_USAGE;
     return status;

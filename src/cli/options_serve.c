@@ -39,20 +39,22 @@ int camber_options_check_serve(camber_options *options, char *message, size_t me
         return camber_options_refuse(p, "--style -: cannot be read again at SIGHUP; name a file");
     const bool listens = !options->listen || is_address(options->listen);
     if (!listens || (options->metrics && !is_address(options->metrics)))
-        return camber_options_refuse(p, "--%s %.64s: no address; give ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
-                                     listens ? "metrics" : "listen", listens ? options->metrics : options->listen);
+        return camber_options_refuse(
+            p, "--%s %.64s: not an address; give ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
+            listens ? "metrics" : "listen", listens ? options->metrics : options->listen);
     if (options->public_url && !is_url(options->public_url))
-        return camber_options_refuse(p, "--public-url: no URL; give one as in https://example.org/map");
+        return camber_options_refuse(p, "--public-url: not a URL; give one such as https://example.org/map");
     if (options->cors && !is_origin(options->cors))
-        return camber_options_refuse(p, "--cors: no origin; give *, or a site as in https://example.org");
+        return camber_options_refuse(p, "--cors: not an origin; give *, or one such as https://example.org");
     if (options->edit && options->style)
         return camber_options_refuse(p, "--edit and --style: both name the style; give one of them");
     if (options->edit && options->theme >= 0)
-        return camber_options_refuse(p, "--theme: is for the styles that ship with camber; leave it out with --edit");
+        return camber_options_refuse(p, "--theme: applies only to the built-in styles; leave it out with --edit");
     if (options->edit && strcmp(options->edit, "-") == 0)
-        return camber_options_refuse(p, "--edit -: standard input is never saved again; name a file");
+        return camber_options_refuse(p, "--edit -: changes to standard input cannot be seen; name a file");
     if (options->renderd && !options->cache_dir)
-        return camber_options_refuse(p, "--renderd alone: give --cache-dir FOLDER, mod_tile's TileDir, too");
+        return camber_options_refuse(
+            p, "--renderd: needs a folder for its tiles; also give --cache-dir FOLDER, which is mod_tile's TileDir");
     if (options->edit)
         options->style = options->edit;
     /* A style's own sources are read once, at a zoom at which all that they have is so wide, or their highest. */

@@ -45,8 +45,8 @@ static int check_action(const camber_option_reader *p, const char *action) {
     const bool merges = strcmp(action, "merge") == 0;
     const char *drawing = find_drawing(options);
     if (drawing)
-        return camber_options_refuse(p, "--%s: is for drawing tiles, and tiles %s draws none; leave it out", drawing,
-                                     action);
+        return camber_options_refuse(p, "--%s: applies only to drawing tiles, and tiles %s draws none; leave it out",
+                                     drawing, action);
     if (options->input_count == 1)
         return camber_options_refuse(p, "tiles %s: no archive; give one, as in city.pmtiles", action);
     if (!merges && options->input_count > 2)
@@ -72,7 +72,7 @@ static int check_zooms(const camber_option_reader *p) {
     camber_options *options = p->options;
     options->has_zooms = options->min_zoom != UINT32_MAX || options->max_zoom != UINT32_MAX;
     if (options->place_count && options->has_zooms && !options->renewed)
-        return camber_options_refuse(p, "--tile: its tiles say their zooms; leave out --min-zoom and --max-zoom");
+        return camber_options_refuse(p, "--tile: each tile includes its zoom; leave out --min-zoom and --max-zoom");
     if (options->min_zoom == UINT32_MAX)
         options->min_zoom = 0;
     if (options->max_zoom == UINT32_MAX)
@@ -88,7 +88,7 @@ static int check_encoding(const camber_option_reader *p) {
     if (options->format < 0)
         options->format = CAMBER_FORMAT_PNG;
     if (options->format == CAMBER_FORMAT_GLB && options->keep_empty)
-        return camber_options_refuse(p, "--keep-empty: a mesh tile without lines and areas has nothing; leave it out");
+        return camber_options_refuse(p, "--keep-empty: an empty mesh tile has no background to keep; leave it out");
 #ifndef CAMBER_MESHOPT
     if (options->format == CAMBER_FORMAT_GLB)
         return camber_options_refuse(p, "--format glb: this build writes no mesh tiles (CAMBER_MESHOPT); build it with "
@@ -98,10 +98,10 @@ static int check_encoding(const camber_option_reader *p) {
         return camber_options_refuse(
             p, "--format webp: this build writes no WebP (CAMBER_WEBP); build it with libwebp, or choose png");
     if (options->quality && options->format != CAMBER_FORMAT_WEBP)
-        return camber_options_refuse(p, "--quality: is WebP's; leave it out, or give --format webp");
+        return camber_options_refuse(p, "--quality: applies only to WebP; leave it out, or give --format webp");
     const double tile_px = (options->tile_size == 1 ? 512 : 256) * options->view.ratio;
     if (tile_px < 63.5 || tile_px > 2048.4)
-        return camber_options_refuse(p, "--ratio %g: makes %.0f px of a tile; choose one that makes 64 to 2048",
+        return camber_options_refuse(p, "--ratio %g: gives tiles of %.0f px; choose one that gives 64 to 2048",
                                      options->view.ratio, tile_px);
     return CAMBER_EXIT_DONE;
 }
@@ -125,15 +125,19 @@ static int check_schedule(const camber_option_reader *p) {
     if (!options->schedule)
         return CAMBER_EXIT_DONE;
     if (options->renewed)
-        return camber_options_refuse(p, "--schedule and --renew: renewing looks where lines are; leave out one");
+        return camber_options_refuse(
+            p, "--schedule and --renew: cannot be combined, because --renew looks up the lines itself; leave out one");
     if (options->shard && options->dry_run)
         return camber_options_refuse(p, "--schedule and --shard: a dry run makes the schedule of all shards; leave out "
                                         "--shard");
     if (!options->input_count)
-        return camber_options_refuse(p, "--schedule: is of files, and a style's own sources are none; name an INPUT");
+        return camber_options_refuse(
+            p, "--schedule: works only with INPUT files, not with a style's own sources; name an INPUT");
     for (size_t i = 0; i < options->input_count; i++)
         if (strcmp(options->inputs[i], "-") == 0 || strncmp(options->inputs[i], "/vsi", 4) == 0)
-            return camber_options_refuse(p, "--schedule: %s is not a file that could be compared; copy it to one",
+            return camber_options_refuse(p,
+                                         "--schedule: %s is not a regular file, so later runs could not tell whether "
+                                         "it has changed; copy it to one",
                                          options->inputs[i]);
     return CAMBER_EXIT_DONE;
 }
@@ -142,13 +146,14 @@ static int check_run(const camber_option_reader *p) {
     const camber_options *options = p->options;
     if (options->renewed && (options->shard || options->resume || options->force || options->dry_run))
         return camber_options_refuse(
-            p, "--renew and --%s: an archive that is there is renewed, at once and in place; leave out one",
+            p,
+            "--renew and --%s: cannot be combined, because --renew changes an existing archive in place; leave out one",
             options->shard    ? "shard"
             : options->resume ? "resume"
             : options->force  ? "force"
                               : "dry-run");
     if (options->shards && (!options->shard || strcmp(options->shard, "auto") != 0))
-        return camber_options_refuse(p, "--shards %u: is for --shard auto; give --shard auto, or --shard K/%u",
+        return camber_options_refuse(p, "--shards %u: applies only to --shard auto; give --shard auto, or --shard K/%u",
                                      options->shards, options->shards);
     return CAMBER_EXIT_DONE;
 }

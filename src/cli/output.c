@@ -202,9 +202,10 @@ int camber_output_publish(camber_output *output) {
         camber_guard_remove(output->guard, output->temporary);
     camber_guard_unlock(output->guard);
     if (cause == EEXIST)
-        return camber_report_fail(output->report, CAMBER_EXIT_CREATE,
-                                  "%s: has appeared meanwhile; name another file, or replace it with --force",
-                                  output->path);
+        return camber_report_fail(
+            output->report, CAMBER_EXIT_CREATE,
+            "%s: another program has created it meanwhile; name another file, or replace it with --force",
+            output->path);
     if (cause)
         return cannot_create(output, cause);
     free(output->temporary);
@@ -236,10 +237,10 @@ static const char *suffix_of(const char *head, size_t size) {
 }
 
 static int cannot_spool(camber_report *report, const char *folder, int cause) {
-    return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: no copy in %s (%s); %s", folder, strerror(cause),
-                              cause == ENOSPC || cause == EDQUOT
-                                  ? "set TMPDIR to a larger folder"
-                                  : camber_file_cure(cause, "set TMPDIR to a folder that you may write to"));
+    return camber_report_fail(
+        report, CAMBER_EXIT_IO, "standard input: cannot be copied to %s (%s); %s", folder, strerror(cause),
+        cause == ENOSPC || cause == EDQUOT ? "set TMPDIR to a larger folder"
+                                           : camber_file_cure(cause, "set TMPDIR to a folder that you may write to"));
 }
 
 /* Copies the rest of standard input after the block that has been read. Returns errnos; 0: no failure. */

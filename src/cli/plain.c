@@ -48,13 +48,13 @@ static bool set(json_t *state, const char *name, json_t *value) {
 
 static int fail_style(camber_session *session) {
     return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
-                              "--color, --fill, --width: the style draws nothing that they change; choose --style city "
+                              "--color, --fill, --width: have no effect on this style; choose --style city "
                               "or roads, or change the document");
 }
 
 static int fail_color(camber_session *session, const char *option, const char *text) {
     return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
-                              "--%s %s: is no colour; write a name of CSS, #RRGGBB, or rgb(...)", option, text);
+                              "--%s %s: is not a colour; give a CSS name, #RRGGBB or rgb(...)", option, text);
 }
 
 int camber_plain_apply(camber_session *session, camber_style_input *style) {

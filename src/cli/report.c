@@ -45,7 +45,7 @@ static void say_compiles(camber_report *report, const char *stage) {
     if (!report->terminal || report->said_compiles)
         return;
     report->said_compiles = report->bar_drawn = true;
-    camber_report_say(report, "%s for this machine, once; `camber info --warm` does it ahead, for all its users",
+    camber_report_say(report, "%s for this machine, once; `camber info --warm` does it in advance, for all users",
                       stage);
 }
 

@@ -47,7 +47,7 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
             found = &engines[i];
     if (!found) {
         snprintf(message, message_size,
-                 "--shard auto: the environment names no part (SLURM_ARRAY_TASK_ID, SLURM_PROCID, "
+                 "--shard auto: no environment variable says which shard this is (SLURM_ARRAY_TASK_ID, SLURM_PROCID, "
                  "OMPI_COMM_WORLD_RANK, PMI_RANK, JOB_COMPLETION_INDEX, AWS_BATCH_JOB_ARRAY_INDEX); give --shard K/N");
         return CAMBER_EXIT_USAGE;
     }
@@ -55,8 +55,9 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
     if (!parse(getenv(found->number), 0, &number, NULL) || !read_variable(found->first, 0, &first) ||
         !read_variable(found->last, 0, &last) || !read_variable(found->step, 1, &step) ||
         !read_variable(found->count, 0, &count) || number < first) {
-        snprintf(message, message_size, "--shard auto: %s is \"%s\", with which no part can be told; give --shard K/N",
-                 found->number, getenv(found->number));
+        snprintf(message, message_size,
+                 "--shard auto: %s is \"%s\", which is not the number of a shard; give --shard K/N", found->number,
+                 getenv(found->number));
         return CAMBER_EXIT_USAGE;
     }
     step = step ? step : 1;
@@ -64,20 +65,21 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
     const bool gaps = last && count && (last < first || (last - first) / step + 1 != count);
     if (gaps || (options->shards && count && count != options->shards)) {
         snprintf(message, message_size,
-                 "--shard auto: %s counts %u tasks%s, which are not all parts%s; give an array of all of them, or name "
-                 "this task's part: --shard K/N",
+                 "--shard auto: %s counts %u tasks%s, which are not all shards%s; give an array of all of them, or "
+                 "name this task's shard: --shard K/N",
                  found->number, count, gaps ? " with gaps between them" : "", options->shards ? " of --shards" : "");
         return CAMBER_EXIT_USAGE;
     }
     number = (number - first) / step;
     count = options->shards ? options->shards : count;
     if (count == 0)
-        snprintf(message, message_size, "--shard auto: %s says which part, and nothing how many; give --shards N",
+        snprintf(message, message_size,
+                 "--shard auto: %s says which shard this is, but nothing says how many there are; give --shards N",
                  found->number);
     else if (number >= count || count > MOST_SHARDS)
         snprintf(message, message_size,
-                 "--shard auto: %s is \"%s\", which is part %u of %u; give the --shards of all parts", found->number,
-                 getenv(found->number), number + 1, count);
+                 "--shard auto: %s is \"%s\", which would be shard %u of %u; give --shards the number of all shards",
+                 found->number, getenv(found->number), number + 1, count);
     else {
         *shard = (camber_shard){number + 1, count};
         return CAMBER_EXIT_DONE;
@@ -95,7 +97,7 @@ int camber_shard_find(const camber_options *options, camber_shard *shard, char *
     if (parse(options->shard, '/', &shard->number, &rest) && parse(rest, 0, &shard->count, NULL) &&
         shard->number >= 1 && shard->number <= shard->count && shard->count <= MOST_SHARDS)
         return CAMBER_EXIT_DONE;
-    snprintf(message, message_size, "--shard %s: no part; give K/N with K from 1 to N, as in 2/8, or auto",
+    snprintf(message, message_size, "--shard %s: not a shard; give K/N with K from 1 to N, as in 2/8, or auto",
              options->shard);
     return CAMBER_EXIT_USAGE;
 }

@@ -230,7 +230,7 @@ static int print_text(const job *j) {
                 j->summaries[i].max);
     const double kernels_ms = j->summaries[5].median + j->summaries[6].median + j->summaries[7].median;
     if (kernels_ms > 0)
-        fprintf(file, "\n%.1f million segments a second through the kernels, %.1f with what the host does for them\n",
+        fprintf(file, "\n%.1f million segments a second through the kernels, %.1f including the work of the host\n",
                 (double)lines.kept_segments / kernels_ms / 1e3,
                 (double)lines.kept_segments / j->summaries[0].median / 1e3);
     return taken ? CAMBER_EXIT_DONE : camber_report_flush(session->report);

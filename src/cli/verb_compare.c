@@ -155,7 +155,7 @@ static void print_figures(const camber_comparison *c, int width) {
             put_number(row->figures[k], decimals_of(&camber_figures[k], row->figures[k]), camber_figures[k].width);
         putchar('\n');
     }
-    puts("0-30 and so on: joins that turn by so many degrees; tight: the inner side has no room; split: past 127 "
+    puts("0-30 and so on: joins that turn by that many degrees; tight: the inner side has no room; split: past 127 "
          "degrees");
 }
 
@@ -202,9 +202,8 @@ static int print_text(const camber_comparison *c) {
          "from 256\n"
          "samples a pixel, in 255ths, over the pixels that lines or picture touch; max: the largest");
     if (!in_gl) {
-        puts("kernels draw the segments of any mesh alike, without its triangles: draw calls, fragments and pixels "
-             "that\n"
-             "triangles repeat are GL's alone (--draw gl)");
+        puts("kernels draw the segments of every mesh in the same way, without its triangles: draw calls, fragments "
+             "and\nrepeated pixels exist only in GL (--draw gl)");
         return camber_report_flush(c->session->report);
     }
     print_metrics(c, width, CAMBER_METRIC_OF_PIXELS, CAMBER_METRIC_COUNT);

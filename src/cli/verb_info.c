@@ -143,7 +143,7 @@ static void print_text(const json_t *object) {
     if (json_object_get(object, "unavailable"))
         printf("sharing   none: %s\n", text_of(object, "unavailable"));
     else if (strcmp(text_of(object, "draw"), "cl") == 0)
-        printf("sharing   none: no GL takes part\n");
+        printf("sharing   none: GL is not used\n");
     else
         printf("sharing   %s, between %s and %s\n", text_of(object, "sharing"), text_of(object, "device"),
                text_of(object, "gl_renderer"));

@@ -3,7 +3,7 @@
 
 BEGIN {
     name["tiles"] = "draw pyramids of map tiles into archives"
-    name["serve"] = "draw map tiles over HTTP as they are asked for"
+    name["serve"] = "serve map tiles over HTTP, drawn on request"
 }
 
 function end_block() {

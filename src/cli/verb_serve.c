@@ -254,11 +254,10 @@ static int read_archive(reading *it) {
         return camber_report_status(it->session->report, status);
     const camber_tiles_info *info = camber_tiles_reader_get_info(it->reader);
     if (!camber_route_find_type(info->type, &type))
-        return camber_report_fail(
-            it->session->report, CAMBER_EXIT_DATA,
-            "%s: its tiles are of no type that is served: it says none, and its first tile looks like none, of png, "
-            "webp, jpg, avif, pbf, mlt, glb; convert it",
-            options->inputs[0]);
+        return camber_report_fail(it->session->report, CAMBER_EXIT_DATA,
+                                  "%s: neither it nor its first tile shows a type of tiles that can be served (png, "
+                                  "webp, jpg, avif, pbf, mlt, glb); convert it",
+                                  options->inputs[0]);
     if (type == CAMBER_ROUTE_MVT && strcmp(info->format, "folder") != 0) {
         camber_tiles_reader_destroy(it->reader);
         it->reader = NULL;
@@ -378,7 +377,7 @@ static bool join_left(wishes *w) {
 static void explain(const reading *it, bool given_up, int status, char *error, size_t error_size) {
     const char *why = given_up ? it->own.watch.line : it->report.error;
     const bool memory = !given_up && status == CAMBER_EXIT_INTERNAL;
-    snprintf(error, error_size, "%s%.*s%s", memory ? "reading again, beside what is served: " : "",
+    snprintf(error, error_size, "%s%.*s%s", memory ? "reading again, while the previous map is served: " : "",
              (int)error_size - 100, why, memory ? " (--memory)" : "");
 }
 
@@ -387,8 +386,7 @@ static int read_again(const camber_session *verb, reading *it, char *error, size
     wishes *w = it->wishes;
     begin_again(it, verb);
     if (!join_left(w)) {
-        snprintf(error, error_size,
-                 "the reader of a former input has not ended yet; start the server again to read now");
+        snprintf(error, error_size, "an earlier reader of the input has not ended yet; restart the server to read now");
         close_reading(it);
         return CAMBER_EXIT_DATA;
     }
@@ -398,7 +396,7 @@ static int read_again(const camber_session *verb, reading *it, char *error, size
     if (r)
         *r = (rereading){.it = it};
     if (status != CAMBER_EXIT_DONE || pthread_create(&r->thread, NULL, read_beside, r) != 0) {
-        snprintf(error, error_size, "reading again: no memory, or no thread; allow more");
+        snprintf(error, error_size, "reading again: out of memory, or of threads; allow more");
         free(r);
         close_reading(it);
         return CAMBER_EXIT_INTERNAL;
@@ -512,14 +510,14 @@ static int listen_there(camber_session *session, camber_server **server, char ur
         failed = NULL; /* it is not the address */
     if (cause == EINVAL && failed)
         return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
-                                  "%s: no address; give the number of one, as in 127.0.0.1:8080 or [::1]:8080", failed);
+                                  "%s: not an address; give a numeric one, as in 127.0.0.1:8080 or [::1]:8080", failed);
     if (cause && failed && failed == options->cache_dir)
         return camber_report_fail(session->report, CAMBER_EXIT_IO, "--cache-dir %s: %s; make the folder first", failed,
                                   strerror(cause));
     if (cause && failed && failed == options->renderd)
         return camber_report_fail(session->report, CAMBER_EXIT_IO,
-                                  "--renderd %s: %s; give a socket that nobody uses, in a folder that is there", failed,
-                                  strerror(cause));
+                                  "--renderd %s: %s; give a socket that no other program uses, in a folder that exists",
+                                  failed, strerror(cause));
     if (cause && failed)
         return camber_report_fail(session->report, CAMBER_EXIT_IO, "%s: %s; choose another port or address (--listen)",
                                   failed, strerror(cause));
@@ -534,9 +532,10 @@ static int listen_there(camber_session *session, camber_server **server, char ur
 static void tell_public_url(camber_session *session, const camber_server *server) {
     const char *address = camber_server_get_address(server);
     if (!session->options->public_url && (strncmp(address, "0.0.0.0:", 8) == 0 || strncmp(address, "[::]:", 5) == 0))
-        camber_report_say(session->report,
-                          "tiles.json names %s, where other machines find nothing; tell what they know by --public-url",
-                          camber_server_get_url(server));
+        camber_report_say(
+            session->report,
+            "tiles.json names %s, which other machines cannot reach; give the URL that they can with --public-url",
+            camber_server_get_url(server));
 }
 
 /* Programs get the addresses as soon as it listens: they ask /health when it serves. */
@@ -582,8 +581,9 @@ static int serve(camber_session *session, camber_server *server, wishes *w) {
             camber_report_say(session->report, "still serving the previous map");
     }
     if (w->lost)
-        return camber_report_fail(session->report, CAMBER_EXIT_UNAVAILABLE,
-                                  "serve: the device is lost; start it again, as a service manager does by itself");
+        return camber_report_fail(
+            session->report, CAMBER_EXIT_UNAVAILABLE,
+            "serve: the device is lost; restart the server, or run it under a service manager that does");
     return CAMBER_EXIT_DONE;
 }
 

@@ -134,7 +134,7 @@ static int find_output(job *j) {
         return CAMBER_EXIT_DONE;
     if (options->renewed && stat(j->output, &about) != 0)
         return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
-                                  "%s: no such archive, and --renew renews one; draw it first", j->output);
+                                  "%s: no such archive, and --renew needs an existing one; draw it first", j->output);
     j->files = (camber_tiles_files){.session = session, .first = 2}; /* finished units stay for --resume */
     status = options->renewed ? CAMBER_EXIT_DONE : camber_tiles_look_at_output(session, j->output);
     if (status == CAMBER_EXIT_DONE)
@@ -203,7 +203,7 @@ static bool tell_kept(void *user, int number) {
     if (number && (sigismember(&j->session->guard->ignored, number) || poll(&errors, 1, 0) != 1))
         return false;
     if (j->begun && !j->session->options->renewed && stat(j->files.names[0], &about) == 0 && about.st_size > 0)
-        camber_report_warn(j->session->report, "%s: --resume%s goes on with what is finished, which is kept in %s",
+        camber_report_warn(j->session->report, "%s: --resume%s continues with the finished tiles, which are kept in %s",
                            j->output, j->session->options->force ? " --force" : "", j->files.names[0]);
     return false;
 }
@@ -221,7 +221,8 @@ static void begin(void *user) {
     job *j = user;
     if (j->is_left)
         camber_report_warn(j->session->report,
-                           "%s: what a run that was cut off had finished is drawn again; --resume keeps it", j->output);
+                           "%s: the finished tiles of an interrupted run are drawn again; --resume would keep them",
+                           j->output);
     j->begun = true;
     camber_tiles_files_guard(&j->files);
     heed_signals(j, true);
@@ -271,7 +272,7 @@ static void warn_wide(const job *j) {
     const double width = view->east + 360.0 - view->west;
     if (j->session->options->has_bbox && view->west > view->east && width > 180.0)
         camber_report_warn(j->session->report,
-                           "the box goes over the antimeridian, and is %g degrees wide; --bbox is W,S,E,N", width);
+                           "the box crosses the antimeridian, and is %g degrees wide; --bbox is W,S,E,N", width);
 }
 
 static int draw(job *j) {
@@ -379,8 +380,8 @@ static void warn_empty(const job *j) {
     char why[1024];
     (void)camber_features_explain_nothing(j->input.features, options->min_zoom, options->max_zoom, why, sizeof why);
     camber_report_warn(j->session->report, "there are no tiles: %s%s", why,
-                       j->place_count      ? " (--tile names where)"
-                       : j->region         ? " (--region says where)"
+                       j->place_count      ? " (--tile limits the tiles)"
+                       : j->region         ? " (--region limits the tiles)"
                        : options->has_bbox ? " (--bbox is W,S,E,N: longitudes come first)"
                                            : "");
 }
@@ -390,8 +391,8 @@ static void warn_left_out(const job *j) {
     const uint64_t count = j->stats.left_out;
     if (count)
         camber_report_warn(j->session->report,
-                           "%s: %llu tile%s of the list lie%s outside of its zooms and bounds; left out (--min-zoom, "
-                           "--max-zoom and --bbox name others)",
+                           "%s: %llu tile%s of the list lie%s outside its zooms and bounds, and left out (--min-zoom, "
+                           "--max-zoom and --bbox give others)",
                            j->output, (unsigned long long)count, camber_plural((size_t)count), count == 1 ? "s" : "");
 }
 
@@ -399,7 +400,7 @@ static void print_text(const job *j) {
     const camber_tiles_stats *stats = &j->stats;
     camber_report *report = j->session->report;
     if (stats->done) {
-        camber_report_say(report, "%s: is whole; nothing to %s", j->output,
+        camber_report_say(report, "%s: is complete; nothing to %s", j->output,
                           j->session->options->renewed ? "renew" : "do");
         return;
     }
@@ -414,7 +415,7 @@ static void print_text(const job *j) {
     camber_input_say_missing(&j->input);
     camber_input_say_split(&j->input);
     if (stats->emptied)
-        camber_report_say(report, "%llu tile%s taken out, since nothing is there now",
+        camber_report_say(report, "%llu tile%s removed, because nothing is there now",
                           (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));
     if (stats->resumed)
         camber_report_say(report, "%llu metatile%s had been drawn before", (unsigned long long)stats->resumed,

@@ -139,7 +139,7 @@ static int check(run *r) {
     if (status == CAMBER_EXIT_DONE && !r->validation.results.wanted)
         status = camber_report_fail(
             session->report, CAMBER_EXIT_USAGE,
-            "--only %s: no group of checks has that in its name; without it each group is a line", options->only);
+            "--only %s: no group of checks has this in its name; a run without --only lists the groups", options->only);
     if (status != CAMBER_EXIT_DONE && !options->json)
         camber_tap_bail();
     return status;

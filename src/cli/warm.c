@@ -68,12 +68,12 @@ int camber_warm(camber_session *session) {
     if (status != CAMBER_OK)
         return camber_report_status(session->report, status);
     if (!warmed.folder[0])
-        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
-                                  "kernels: no folder can be written to keep them in; set XDG_CACHE_HOME or "
-                                  "CAMBER_KERNELS to one that can");
+        return camber_report_fail(
+            session->report, CAMBER_EXIT_CREATE,
+            "kernels: there is no writable folder to keep them in; set XDG_CACHE_HOME or CAMBER_KERNELS to one");
     if (warmed.kept < warmed.programs)
         return camber_report_fail(session->report, CAMBER_EXIT_IO,
-                                  "%s: %zu of %zu programs could not be kept; make room", warmed.folder,
+                                  "%s: %zu of %zu programs could not be saved; free some space", warmed.folder,
                                   warmed.programs - warmed.kept, warmed.programs);
     const double ms = camber_now_ms() - begin_ms;
     if (session->options->json)

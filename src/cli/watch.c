@@ -52,10 +52,11 @@ static void look_at_memory(camber_watch *watch) {
     const bool given_up = watch->give_up && watch->line[0];
     if ((held - LIBRARIES_BYTES) / (given_up ? 2 : 1) <= most)
         return;
-    snprintf(watch->line, sizeof watch->line,
-             "memory: %.1f MB are held with what libraries take, and %.1f MB are allowed besides those; give it less "
-             "data, or allow more (--memory)",
-             (double)held / 1e6, (double)most / 1e6);
+    snprintf(
+        watch->line, sizeof watch->line,
+        "memory: %.1f MB are in use, libraries included, and %.1f MB are allowed without those; give it less data, "
+        "or allow more (--memory)",
+        (double)held / 1e6, (double)most / 1e6);
     if (given_up)
         watch->give_up = NULL;
     end(watch, CAMBER_EXIT_INTERNAL);
@@ -65,7 +66,7 @@ static void look_at_reading(camber_watch *watch) {
     if (!watch->path || watch->line[0] || camber_clock_ms(watch->clock) - watch->beat_ms <= 1e3 * watch->allowed_s)
         return;
     snprintf(watch->line, sizeof watch->line,
-             "%.200s: its reader has worked for %.0f s and has no more of it; get the file from a source that you "
+             "%.200s: reading it has taken %.0f s and yields nothing more; get the file from a source that you "
              "trust, or convert it (ogr2ogr)",
              watch->path, watch->allowed_s);
     end(watch, CAMBER_EXIT_DATA);

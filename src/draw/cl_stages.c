@@ -26,9 +26,9 @@ static camber_status read_area(camber_renderer *renderer, const camber_raster_sc
     if (status != CAMBER_OK)
         return status;
     if (camber_raster_slice_count(renderer->raster) > 1)
-        return camber_fail(
-            context, CAMBER_ERROR_LIMIT,
-            "the stages of what is drawn in slices are not kept; read those of less, or allow more memory");
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "the intermediate results of a picture that is drawn in slices are not kept; draw less, or "
+                           "allow more memory");
     return camber_raster_read_stages(renderer->raster, &r->stages);
 }
 

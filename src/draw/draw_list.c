@@ -519,10 +519,11 @@ static camber_status find_pitch(camber_context *context, const camber_frame *fra
             continue;
         const double of_mesh = pass->mesh->pitch_deg;
         if (found && (of_mesh < pitch || of_mesh > pitch))
-            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "a mesh that was tessellated for a pitch of %g degrees, in a picture of %g; tessellate "
-                               "all meshes of a picture for one camera",
-                               of_mesh, pitch);
+            return camber_fail(
+                context, CAMBER_ERROR_ARGUMENT,
+                "a mesh that was tessellated for a pitch of %g degrees, in a picture with a pitch of %g; tessellate "
+                "all meshes of a picture for one camera",
+                of_mesh, pitch);
         pitch = of_mesh;
         found = true;
     }

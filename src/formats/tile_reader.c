@@ -317,7 +317,7 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
 static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,
-                   "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
+                   "%s: %zu damaged features (the first: %s); their readable parts are kept", self->desc->path,
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,

@@ -190,8 +190,8 @@ static camber_status check_database(camber_context *context, const char *path) {
     const camber_database_kind kind = camber_database_get_kind(path);
     if (kind == CAMBER_DATABASE_INTERRUPTED || kind == CAMBER_DATABASE_LOGGED)
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: it has a log beside it: somebody writes, or was interrupted; close the one, or open it "
-                           "once with what may write (sqlite3 FILE .tables), which puts it right",
+                           "%s: it has a log beside it, so a program is writing to it or was interrupted; close that "
+                           "program, or open the file once with write access (sqlite3 FILE .tables) to repair it",
                            path);
     if (!context->desc.access.vrt && camber_database_is_virtual(path))
         return camber_fail(
@@ -263,7 +263,7 @@ static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, b
     VSIStatBufL about;
     if (directory)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
-                           "%s: a directory without data that GDAL reads; name a file in it", path);
+                           "%s: a folder without data that GDAL can read; name a file in it", path);
     const char *driver = camber_gdal_refused(dataset->context, path);
     if (driver)
         return fail_driver(dataset, driver);
@@ -280,11 +280,12 @@ static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, b
                            cure->after ? path : "", cure->after ? cure->after : "");
     if (ends_with(path, ".pmtiles") && dataset->desc->where)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
-                           "%s: this GDAL filters no PMTiles; leave out the filter, or convert them to MBTiles", path);
+                           "%s: this GDAL cannot filter PMTiles; leave out the filter, or convert the file to MBTiles",
+                           path);
     if (dataset->errors.failures == 0 || strstr(said, "not recognized as "))
         return camber_fail(
             dataset->context, CAMBER_ERROR_INPUT,
-            "%s: no map in a format that camber reads; name another file (camber info lists the formats)", path);
+            "%s: not a map in a format that camber reads; name another file (camber info lists the formats)", path);
     leave_out_quotes(dataset->errors.message);
     return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again", path,
                        said);
@@ -325,7 +326,7 @@ static char *gdal_path(camber_context *context, const char *path, bool directory
 
 camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name) {
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: it or its coordinate system leads to another file; convert it to GeoJSON or GeoPackage",
+                       "%s: it or its coordinate system refers to another file; convert it to GeoJSON or GeoPackage",
                        name);
 }
 
@@ -366,8 +367,8 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     }
     if (!directory && is_bare_tile(dataset->handle)) {
         status = camber_fail(context, CAMBER_ERROR_INPUT,
-                             "%s: a vector tile whose path does not say which; name it as ZOOM/COLUMN/ROW.pbf, or draw "
-                             "it by a style with a source of \"tiles\": [\"tiles/{z}/{x}/{y}.pbf\"]",
+                             "%s: a vector tile whose path does not say which one; name it ZOOM/COLUMN/ROW.pbf, or "
+                             "draw it by a style that has a source with \"tiles\": [\"tiles/{z}/{x}/{y}.pbf\"]",
                              desc->path);
         goto done;
     }

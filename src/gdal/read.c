@@ -405,7 +405,7 @@ static void warn_of_losses(const reader *self) {
     const char *path = self->desc->path;
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,
-                   "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
+                   "%s: %zu damaged features (the first: %s); their readable parts are kept", path,
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", path,
@@ -549,12 +549,12 @@ static camber_status check_order(const camber_features *features, const camber_s
     if (!camber_osm_xml_is_unordered(desc->path))
         return CAMBER_OK;
     if (features->feature_count == before)
-        return camber_fail(features->context, CAMBER_ERROR_INPUT,
-                           "%s: no lines: nodes come behind the ways that name them, or ways behind relations; sort it "
-                           "by osmium sort",
-                           desc->path);
+        return camber_fail(
+            features->context, CAMBER_ERROR_INPUT,
+            "%s: no lines: nodes come after the ways that use them, or ways after relations; sort it with osmium sort",
+            desc->path);
     camber_log(features->context, CAMBER_LOG_WARNING,
-               "%s: nodes come behind ways, or ways behind relations; some may be left out: sort it by osmium sort",
+               "%s: nodes come after ways, or ways after relations; some may be left out: sort it with osmium sort",
                desc->path);
     return CAMBER_OK;
 }
@@ -572,11 +572,10 @@ static camber_status read_file(camber_features *features, const camber_source_de
         status = read_once(features, desc, &unsorted);
     camber_gdal_release(features->context, &confined);
     if (status == CAMBER_OK && confined.refused)
-        camber_log(
-            features->context, CAMBER_LOG_WARNING,
-            "%s: leads to the network, which nothing is fetched from; what it wants from there is left out: allow "
-            "it (--allow-remote) if you trust it",
-            desc->path);
+        camber_log(features->context, CAMBER_LOG_WARNING,
+                   "%s: refers to the network, and network access is off; what it needs from there is left out: allow "
+                   "it (--allow-remote) if you trust it",
+                   desc->path);
     return status == CAMBER_OK ? check_order(features, desc, before) : status;
 }
 

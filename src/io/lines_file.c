@@ -24,8 +24,8 @@ static camber_status check_file(camber_context *context, const unsigned char *by
     const uint64_t wanted = 12 + 4 * (n + 1) + 8 * p;
     if (size_bytes != wanted)
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: %zu bytes, but its head promises %llu; it is cut off or damaged, write it again", name,
-                           size_bytes, (unsigned long long)wanted);
+                           "%s: %zu bytes, but its header announces %llu; it is cut off or damaged, write it again",
+                           name, size_bytes, (unsigned long long)wanted);
     uint32_t before = 0;
     for (uint64_t i = 0; i <= n; i++) {
         const uint32_t offset = get_u32(bytes + 12 + 4 * i);

@@ -57,7 +57,7 @@ static void say_unread(sentence *s, const camber_features *features) {
     const camber_features_stats *stats = &features->stats;
     if (stats->missing_nodes)
         say(s,
-            ": its ways name %zu nodes that are not in the file; make the extract with them (osmium extract "
+            ": its ways refer to %zu nodes that are not in the file; make the extract with them (osmium extract "
             "--strategy=complete_ways, osmium getid --add-referenced)",
             stats->missing_nodes);
     else if (features->has_region)

@@ -585,7 +585,7 @@ static camber_status match_dot(const camber_view *view, camber_plan *plan, cambe
         return CAMBER_ERROR_MEMORY;
     if (plan->row_count >= MOST_ROWS)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
-                           "style: more than %zu different widths and colours; let them depend on fewer properties",
+                           "style: more than %zu different widths and colours; make them depend on fewer properties",
                            MOST_ROWS);
     rows->by_class.rows[at] = intern_row(plan, set, table);
     return rows->by_class.rows[at] == CAMBER_NO_ROW ? CAMBER_ERROR_MEMORY : CAMBER_OK;
@@ -666,9 +666,10 @@ static camber_status number_pairs(const camber_features *features, camber_plan *
     for (size_t i = 0; i < plan->set_count * column_count; i++)
         total += by_class->rows[i] != CAMBER_NO_ROW;
     if (total >= MOST_ROWS)
-        return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
-                           "style: more than %zu combinations of layers and properties; let filters depend on fewer",
-                           MOST_ROWS);
+        return camber_fail(
+            plan->context, CAMBER_ERROR_LIMIT,
+            "style: more than %zu combinations of layers and properties; make its filters depend on fewer properties",
+            MOST_ROWS);
     if (!(plan->pair_rows = camber_alloc(plan->context, total, sizeof *plan->pair_rows)) ||
         !(plan->pair_keys = camber_alloc(plan->context, total, sizeof *plan->pair_keys)) ||
         !(plan->pair_dots = camber_alloc(plan->context, total, sizeof *plan->pair_dots)))

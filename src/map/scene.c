@@ -189,7 +189,7 @@ static camber_status tell_undrawn(const camber_scene *scene) {
     if (has_patterns(&scene->zoom->plan))
         return CAMBER_OK;
     if (undrawn && undrawn < all)
-        camber_log(scene->context, CAMBER_LOG_INFO, "style: draws nothing of %zu of %zu features", undrawn, all);
+        camber_log(scene->context, CAMBER_LOG_INFO, "style: no layer draws %zu of the %zu features", undrawn, all);
     if (!undrawn || undrawn < all)
         return CAMBER_OK;
     const camber_status status = camber_plan_explain_nothing(features, zoom, zoom, why, sizeof why, &draws);
@@ -207,8 +207,8 @@ static void tell_pitch(const camber_scene *scene) {
             (paint->pitch_alignment == CAMBER_TRANSLATE_MAP && paint->pitch_scale == CAMBER_TRANSLATE_MAP))
             continue;
         camber_log(scene->context, CAMBER_LOG_WARNING,
-                   "style: with a pitch circles lie flat on the map, as circle-pitch-alignment and circle-pitch-scale "
-                   "\"map\" have it; give these to layer \"%.64s\" if that is meant",
+                   "style: with a pitch, circles lie flat on the map, as if circle-pitch-alignment and "
+                   "circle-pitch-scale were \"map\"; set these in layer \"%.64s\" if that is meant",
                    plan->layers[i].look.layer->id);
         return;
     }
@@ -236,7 +236,7 @@ static camber_status create(const camber_features *features, const camber_scene_
     tell_pitch(made);
     if (made->zoom->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
-                   "style: its patterns are left out, for its sprites are not read; read them with the features");
+                   "style: its patterns are left out, because its sprites were not read; read them with the features");
     *scene = made;
     return CAMBER_OK;
 }

@@ -121,7 +121,7 @@ static void warn_of_losses(const camber_sources *sources, const char *what, size
                            size_t skipped) {
     if (damaged)
         camber_log(sources->context, CAMBER_LOG_WARNING,
-                   "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
+                   "%s: %zu damaged features (the first: %s); their readable parts are kept", what, damaged, damage);
     if (skipped)
         camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", what,
                    camber_features_left_out(camber_schema_kinds(sources->features->schema, false)), skipped);
@@ -203,7 +203,7 @@ static camber_status open_template(camber_sources *sources, source *one, const j
     camber_url url = {0};
     if (!text)
         return camber_fail(sources->context, CAMBER_ERROR_INPUT,
-                           "%s: no %s\"tiles\" that names any; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", pointer,
+                           "%s: no %s\"tiles\" with a URL; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", pointer,
                            is_style ? "\"url\" and no " : "");
     camber_status status = camber_url_resolve(sources->context, pointer, text, base_path, &url);
     if (status == CAMBER_OK && url.kind != CAMBER_URL_FILE) {

@@ -153,9 +153,9 @@ static void take_error(unsigned error, void *user) {
 }
 
 camber_status camber_triangulator_tell_missing(camber_context *context) {
-    return camber_fail(context, CAMBER_ERROR_DEVICE,
-                       "mesh: areas need GLU (Debian: libglu1-mesa); install it, or name a style of lines alone with "
-                       "--style");
+    return camber_fail(
+        context, CAMBER_ERROR_DEVICE,
+        "mesh: areas need GLU (Debian: libglu1-mesa); install it, or name a style that has only lines with --style");
 }
 
 camber_status camber_triangulator_create(camber_context *context, camber_triangulator **triangulator) {

@@ -207,8 +207,8 @@ static bool read_file_header(camber_wire wire, camber_osm_box *box, camber_osm_f
         }
         const camber_wire name = camber_wire_bytes(&wire);
         if (is_text(name, "HistoricalInformation"))
-            return camber_osm_refuse(failure, "a history file, which has each node and way as often as it was changed; "
-                                              "make a map of it by osmium time-filter");
+            return camber_osm_refuse(failure, "a history file, which has every version of each node and way; make a "
+                                              "map from it with osmium time-filter");
         if (!wire.bad && !is_text(name, "OsmSchema-V0.6") && !is_text(name, "DenseNodes"))
             return camber_osm_decline(failure);
     }
@@ -295,7 +295,7 @@ camber_status camber_osm_file_open(camber_context *context, const char *path, ca
     status = camber_osm_pass_run(&desc, declined);
     camber_osm_unpacked_free(context, &list.unpacked);
     if (status == CAMBER_OK && list.passed_over)
-        camber_log(context, CAMBER_LOG_INFO, "%s: passed over %zu blobs of types that the format does not have", path,
+        camber_log(context, CAMBER_LOG_INFO, "%s: skipped %zu blobs of types that the format does not have", path,
                    list.passed_over);
     if (status != CAMBER_OK || *declined)
         camber_osm_file_close(&made);

@@ -162,13 +162,14 @@ static size_t most_bytes(size_t packed_bytes) {
 
 static bool fail_codec(camber_osm_codec codec, const codec_facts *facts, camber_osm_failure *failure) {
     if (facts)
-        return camber_osm_refuse(failure,
-                                 "packed by %s, and this camber was built without %s; pack it anew by osmium cat -f "
-                                 "pbf,pbf_compression=zlib, or build camber with %s",
-                                 facts->name, facts->library, facts->library);
+        return camber_osm_refuse(
+            failure,
+            "compressed with %s, and this camber was built without %s; compress it again with osmium cat -f "
+            "pbf,pbf_compression=zlib, or build camber with %s",
+            facts->name, facts->library, facts->library);
     if (codec == CAMBER_OSM_CODEC_BZIP2)
-        return camber_osm_refuse(failure, "packed by bzip2, which PBF has given up; have it written anew, packed by "
-                                          "zlib");
+        return camber_osm_refuse(failure,
+                                 "compressed with bzip2, which PBF no longer allows; have it written again with zlib");
     return camber_osm_fail(failure, "a blob that does not parse");
 }
 

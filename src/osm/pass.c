@@ -130,8 +130,7 @@ static camber_status report(const camber_osm_pass *pass, const camber_osm_failur
         return CAMBER_OK;
     if (failure->status == CAMBER_ERROR_MEMORY)
         return camber_fail(pass->desc->context, CAMBER_ERROR_MEMORY,
-                           "%s: memory: a part of it takes more than what is allowed; allow more memory",
-                           pass->desc->name);
+                           "%s: memory: a part of it needs more than is allowed; allow more memory", pass->desc->name);
     if (failure->told)
         return camber_fail(pass->desc->context, failure->status, "%s: %s", pass->desc->name, failure->text);
     return camber_fail(pass->desc->context, failure->status, "%s: cut off or damaged: %s; get the file again",

@@ -502,8 +502,8 @@ static camber_status read_places(reader *self, camber_osm_file *file, bool *decl
         status = read_kinds(self, file, true, declined);
     if (status == CAMBER_OK && !*declined)
         camber_log(self->context, CAMBER_LOG_INFO,
-                   "%s: nodes, ways and relations are in no order, so all of it was read once for each; osmium sort "
-                   "makes it faster",
+                   "%s: nodes, ways and relations are not sorted, so the whole file was read once for each; osmium "
+                   "sort makes this faster",
                    file->path);
     return status;
 }
@@ -512,10 +512,11 @@ static camber_status check_result(const reader *self, size_t features_before) {
     if (self->features->feature_count > features_before)
         return CAMBER_OK;
     if (self->nodes > 0 && self->missing == self->nodes)
-        return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                           "%s: none of the %zu nodes that its ways name is in it; cut it anew with them, as osmium "
-                           "extract and osmium getid -r do",
-                           self->desc->path, self->nodes);
+        return camber_fail(
+            self->context, CAMBER_ERROR_INPUT,
+            "%s: it has none of the %zu nodes that its ways refer to; extract it again with them, as osmium "
+            "extract and osmium getid -r do",
+            self->desc->path, self->nodes);
     if (self->skipped == 0)
         return CAMBER_OK;
     return camber_fail(self->context, CAMBER_ERROR_INPUT,
@@ -591,7 +592,7 @@ static void add_stats(const reader *self) {
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
                    camber_features_left_out(camber_schema_kinds(features->schema, false)), self->skipped);
     if (self->missing)
-        camber_log(self->context, CAMBER_LOG_INFO, "%s: ways name %zu nodes that are not in it", self->desc->path,
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: ways refer to %zu nodes that are not in it", self->desc->path,
                    self->missing);
     if (self->clamped)
         camber_log(self->context, CAMBER_LOG_WARNING, "%s: %zu points beyond latitude 85.051129 are moved there",
@@ -638,14 +639,14 @@ static camber_status leave(camber_context *context, const camber_source_desc *de
     char packing[32];
     snprintf(packing, sizeof packing, "packing by %s", camber_osm_codec_get_name(beyond.codec));
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: GDAL has to read this layer, filter or style of it, and GDAL does not know %s; %s",
+                       "%s: only GDAL can read it for this layer, filter or style, and GDAL does not know %s; %s",
                        desc->path,
                        beyond.codec       ? packing
                        : beyond.no_size   ? "blobs without their size"
                        : beyond.unordered ? "any other order than nodes, ways, relations"
                                           : "places on ways",
-                       beyond.codec || beyond.no_size ? "pack it anew by osmium cat -f pbf,pbf_compression=zlib"
-                       : beyond.unordered             ? "sort it by osmium sort"
+                       beyond.codec || beyond.no_size ? "compress it again with osmium cat -f pbf,pbf_compression=zlib"
+                       : beyond.unordered             ? "sort it with osmium sort"
                                                       : "do without, or use the file that osmium "
                                                         "add-locations-to-ways was given");
 }

@@ -81,8 +81,8 @@ camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *k
     if (camber_mesh_evict_for(mesh, keep, more_bytes, false))
         return CAMBER_OK;
     return camber_fail(device->context, CAMBER_ERROR_LIMIT,
-                       "meshes hold %llu bytes that cannot go, %llu more are needed, and %llu are allowed; allow more "
-                       "memory, or destroy meshes",
+                       "meshes hold %llu bytes that cannot be freed, %llu more are needed, and %llu are allowed; allow "
+                       "more memory, or destroy meshes",
                        (unsigned long long)device->held_bytes, (unsigned long long)more_bytes,
                        (unsigned long long)device->memory_bytes);
 }

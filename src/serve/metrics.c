@@ -78,7 +78,7 @@ void camber_metrics_write(camber_metrics *metrics, const camber_metrics_now *now
     write_requests(metrics, file);
     write_one(file, "sent_bytes_total", "counter", "Bytes of answers, without their headers.",
               (double)metrics->sent_bytes);
-    write_one(file, "requests_in_flight", "gauge", "Requests that are not answered yet, with this one.",
+    write_one(file, "requests_in_flight", "gauge", "Requests that are not answered yet, including this one.",
               (double)now->in_flight);
     write_one(file, "connections", "gauge", "Connections that are open.", (double)metrics->connections);
     write_one(file, "queue", "gauge", "Pictures that wait to be drawn.", (double)metrics->queued);
@@ -88,10 +88,10 @@ void camber_metrics_write(camber_metrics *metrics, const camber_metrics_now *now
     write_histogram(&metrics->draw, file, "draw_seconds", "Seconds that a picture took to be drawn.");
     write_histogram(&metrics->encode, file, "encode_seconds", "Seconds that a tile took to be encoded.");
     write_one(file, "cache_hits_total", "counter", "Tiles that were found in memory.", (double)now->cache.hits);
-    write_one(file, "cache_folder_hits_total", "counter", "Tiles that were found in the folder alone.",
+    write_one(file, "cache_folder_hits_total", "counter", "Tiles that were found only in the folder.",
               (double)now->cache.folder_hits);
-    write_one(file, "cache_misses_total", "counter", "Tiles that were not.", (double)now->cache.misses);
+    write_one(file, "cache_misses_total", "counter", "Tiles that were found in neither.", (double)now->cache.misses);
     write_one(file, "cache_tiles", "gauge", "Tiles in memory.", (double)now->cache.tiles);
-    write_one(file, "cache_bytes", "gauge", "Bytes that they take.", (double)now->cache.size_bytes);
+    write_one(file, "cache_bytes", "gauge", "Bytes of the tiles in memory.", (double)now->cache.size_bytes);
     write_one(file, "resident_bytes", "gauge", "Memory of the process.", resident_bytes());
 }

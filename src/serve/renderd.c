@@ -137,7 +137,7 @@ static int write_metatile(camber_renderd *renderd, const char *name, const cambe
     pthread_mutex_destroy(&m.mutex);
     if (cause) {
         char message[512];
-        snprintf(message, sizeof message, "%s: %s; free some space, or let it be written to", renderd->desc.folder,
+        snprintf(message, sizeof message, "%s: %s; free some space, or make it writable", renderd->desc.folder,
                  strerror(cause));
         renderd->desc.failed(renderd->desc.user, message);
     }

@@ -70,7 +70,7 @@ void camber_tile_folder_put(camber_tile_folder *folder, uint64_t input, camber_t
                           : ENAMETOOLONG;
     if (atomic_exchange(&folder->fails, cause != 0) || !cause)
         return;
-    snprintf(message, sizeof message, "%s: %s; free some space, or let it be written to; tiles are served all the same",
+    snprintf(message, sizeof message, "%s: %s; free some space, or make it writable; tiles are still served",
              folder->path, strerror(cause));
     folder->failed(folder->user, message);
 }

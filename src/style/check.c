@@ -65,15 +65,15 @@ static void find_in_layer(camber_document *d, const camber_style_layer *layer, c
                              layer->min_zoom, layer->max_zoom);
     if (!layer->source) {
         if (c->style->source_count && camber_document_first_time(d, "source"))
-            camber_compiler_warn(c, "the layer names no source; name one, or it is drawn of files given as input only");
+            camber_compiler_warn(c, "the layer names no source; name one, or it is drawn only from input files");
         return;
     }
     if (layer->source_index == CAMBER_NO_SOURCE)
         return;
     const json_t *source = c->style->sources[layer->source_index].json;
     if (strcmp(type, "vector") == 0 && !layer->source_layer)
-        camber_compiler_warn(c,
-                             "the layer names no \"source-layer\", as vector sources want; it is drawn of all of them");
+        camber_compiler_warn(
+            c, "the layer names no \"source-layer\", which vector sources require; it is drawn from all of them");
     for (unsigned i = 0; i < CAMBER_PROPERTIES; i++)
         if (layer->properties[i] && camber_property_rows[i].needs_line_metrics &&
             !json_is_true(json_object_get(source, "lineMetrics")))
@@ -210,7 +210,7 @@ static bool is_remote(const json_t *json) {
 }
 
 static const char *find_trouble(const camber_style_source *source) {
-    static const char *const remote = "it lies on a network, which is not read; save it as a file and name that";
+    static const char *const remote = "it is on a network, which is not read; save it as a file and name that";
     const bool geojson = strcmp(source->type, "geojson") == 0;
     if (!geojson && strcmp(source->type, "vector") != 0)
         return "sources of this type have neither lines nor areas; draw those of a geojson or vector source";

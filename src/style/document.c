@@ -117,7 +117,7 @@ static bool read_version(camber_document *d) {
     if (!json_object_get(d->root, "constants"))
         return true;
     camber_compiler_enter_key(c, "constants");
-    return camber_compiler_fail(c, "constants went with version 8; write their values where they are used") ||
+    return camber_compiler_fail(c, "version 8 has no constants; write their values where they are used") ||
            camber_document_goes_on(d, depth);
 }
 

@@ -12,7 +12,7 @@ bool camber_document_first_time(camber_document *d, const char *what) {
         return false;
     d->warned[d->warned_count++] = what;
     if (d->warned_count == CAMBER_WARNING_LIMIT)
-        camber_compiler_warn(&d->compiler, "more is not drawn; warnings end here");
+        camber_compiler_warn(&d->compiler, "there are more problems; further warnings are left out");
     return d->warned_count < CAMBER_WARNING_LIMIT;
 }
 

@@ -13,7 +13,7 @@ bool camber_evaluate_fail(camber_evaluation *e, const char *cause) {
 }
 
 bool camber_evaluate_no_memory(camber_evaluation *e) {
-    return camber_evaluate_fail(e, "its texts and arrays take too much memory");
+    return camber_evaluate_fail(e, "its strings and arrays take too much memory");
 }
 
 bool camber_evaluate_work(camber_evaluation *e, size_t amount) {
@@ -28,7 +28,7 @@ bool camber_evaluate_number(camber_evaluation *e, const camber_node *node, uint3
     if (!camber_evaluate_operand(e, node, operand, &value))
         return false;
     *number = value.number;
-    return value.type == CAMBER_VALUE_NUMBER || camber_evaluate_fail(e, "a number is wanted and the value is not one");
+    return value.type == CAMBER_VALUE_NUMBER || camber_evaluate_fail(e, "expected a number, and the value is not one");
 }
 
 bool camber_evaluate_string(camber_evaluation *e, const camber_node *node, uint32_t operand, const char **string) {
@@ -36,7 +36,7 @@ bool camber_evaluate_string(camber_evaluation *e, const camber_node *node, uint3
     if (!camber_evaluate_operand(e, node, operand, &value))
         return false;
     *string = value.string;
-    return value.type == CAMBER_VALUE_STRING || camber_evaluate_fail(e, "a string is wanted and the value is not one");
+    return value.type == CAMBER_VALUE_STRING || camber_evaluate_fail(e, "expected a string, and the value is not one");
 }
 
 bool camber_evaluate_bool(camber_evaluation *e, const camber_node *node, uint32_t operand, bool *boolean) {
@@ -44,7 +44,7 @@ bool camber_evaluate_bool(camber_evaluation *e, const camber_node *node, uint32_
     if (!camber_evaluate_operand(e, node, operand, &value))
         return false;
     *boolean = value.boolean;
-    return value.type == CAMBER_VALUE_BOOL || camber_evaluate_fail(e, "a boolean is wanted and the value is not one");
+    return value.type == CAMBER_VALUE_BOOL || camber_evaluate_fail(e, "expected a boolean, and the value is not one");
 }
 
 /* ---- From outside ---- */

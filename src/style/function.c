@@ -220,7 +220,7 @@ static void warn_of_twin(function *f, const json_t *input) {
     if (f->c->held_count >= CAMBER_HELD_LIMIT)
         return;
     f->c->held_count++;
-    camber_compiler_warn(f->c, "the stop before is at %.64s, too, and this one counts; leave one of them out",
+    camber_compiler_warn(f->c, "the previous stop is at %.64s too, and this one is used; leave one of them out",
                          json_is_number(input)   ? number
                          : json_is_string(input) ? json_string_value(input)
                          : json_is_true(input)   ? "true"

@@ -118,11 +118,10 @@ static bool compile_interpolate(camber_compiler *c, const camber_operator *row, 
     if (camber_is_interpolated(prototype.type))
         return true;
     char name[CAMBER_TYPING_TEXT_SIZE];
-    return camber_compiler_fail(
-        c,
-        "outputs are interpolated where they are numbers, colours or arrays of so many numbers, "
-        "found %s; use \"step\", or \"to-number\" or \"to-color\" on them",
-        camber_typing_name(prototype.type, name));
+    return camber_compiler_fail(c,
+                                "only numbers, colours and arrays of equally many numbers are interpolated, found %s; "
+                                "use \"step\", or \"to-number\" or \"to-color\" on them",
+                                camber_typing_name(prototype.type, name));
 }
 
 /* ---- When evaluated ---- */
@@ -147,7 +146,7 @@ static uint32_t count_stops(const camber_expression *expression, const camber_no
 static bool evaluate_input(camber_evaluation *e, const camber_node *node, double *input) {
     if (!camber_evaluate_number(e, node, 0, input))
         return false;
-    return !isnan(*input) || fail(e, "a number is wanted and the value is not one");
+    return !isnan(*input) || fail(e, "expected a number, and the value is not one");
 }
 
 bool camber_evaluate_step(camber_evaluation *e, const camber_node *node, camber_value *value) {
@@ -200,11 +199,11 @@ static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camb
     if (!items)
         return camber_evaluate_no_memory(e);
     if (high->count != count)
-        return fail(e, "two arrays of one length are wanted");
+        return fail(e, "expected two arrays of the same length");
     for (uint32_t i = 0; i < count; i++) {
         const camber_value *a = &low->items[i], *b = &high->items[i];
         if (a->type != CAMBER_VALUE_NUMBER || b->type != CAMBER_VALUE_NUMBER)
-            return fail(e, "arrays of numbers are wanted");
+            return fail(e, "expected arrays of numbers");
         items[i] = camber_value_number(a->number + t * (b->number - a->number));
     }
     *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .count = count, .items = items};
@@ -220,7 +219,7 @@ static bool mix_values(camber_evaluation *e, const camber_node *node, const camb
     if (low->type == CAMBER_VALUE_ARRAY && high->type == CAMBER_VALUE_ARRAY)
         return mix_arrays(e, low, high, t, value);
     if (low->type != CAMBER_VALUE_COLOR || high->type != CAMBER_VALUE_COLOR)
-        return fail(e, "two numbers, two colours or two arrays of numbers are wanted");
+        return fail(e, "expected two numbers, two colours or two arrays of numbers");
     *value = (camber_value){.type = CAMBER_VALUE_COLOR,
                             .color = camber_color_mix(low->color, high->color, t, (camber_color_space)node->space)};
     return true;

@@ -162,7 +162,7 @@ bool camber_evaluate_comparison(camber_evaluation *e, const camber_node *node, c
     const bool numbers = a.type == CAMBER_VALUE_NUMBER && b.type == CAMBER_VALUE_NUMBER;
     const bool order = is_order(node->index);
     if (order && !strings && !numbers)
-        return camber_evaluate_fail(e, "two numbers or two strings are wanted");
+        return camber_evaluate_fail(e, "expected two numbers or two strings");
     if (strings) {
         const int sign = compare_strings(a.string, b.string, node->count > 2 ? &collator : NULL);
         *value = camber_value_bool(holds(node->index, sign < 0, sign == 0));

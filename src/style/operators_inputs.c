@@ -86,7 +86,7 @@ static bool evaluate_member(camber_evaluation *e, const camber_node *node, const
     if (node->count > 1 && !camber_evaluate_operand(e, node, 1, &object))
         return false;
     if (node->count > 1 && object.type != CAMBER_VALUE_OBJECT)
-        return camber_evaluate_fail(e, "an object is wanted and the value is not one");
+        return camber_evaluate_fail(e, "expected an object, and the value is not one");
     *found = camber_object_get(&object, key);
     return true;
 }

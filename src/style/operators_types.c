@@ -30,12 +30,11 @@ bool camber_evaluate_assert(camber_evaluation *e, const camber_node *node, cambe
         if (camber_typing_fits(node->type, camber_typing_of_value(value)))
             return true;
     }
-    return fail(e, node->type.type == CAMBER_TYPE_NUMBER   ? "a number is wanted and the value is not one"
-                   : node->type.type == CAMBER_TYPE_STRING ? "a string is wanted and the value is not one"
-                   : node->type.type == CAMBER_TYPE_BOOL   ? "a boolean is wanted and the value is not one"
-                   : node->type.type == CAMBER_TYPE_ARRAY
-                       ? "an array of another type or length is wanted than the value is"
-                       : "an object is wanted and the value is not one");
+    return fail(e, node->type.type == CAMBER_TYPE_NUMBER   ? "expected a number, and the value is not one"
+                   : node->type.type == CAMBER_TYPE_STRING ? "expected a string, and the value is not one"
+                   : node->type.type == CAMBER_TYPE_BOOL   ? "expected a boolean, and the value is not one"
+                   : node->type.type == CAMBER_TYPE_ARRAY ? "expected an array of another type or length than the value"
+                                                          : "expected an object, and the value is not one");
 }
 
 bool camber_evaluate_typeof(camber_evaluation *e, const camber_node *node, camber_value *value) {
@@ -260,7 +259,7 @@ static bool evaluate_to_rgba(camber_evaluation *e, const camber_node *node, camb
     if (!camber_evaluate_operand(e, node, 0, value))
         return false;
     if (value->type != CAMBER_VALUE_COLOR)
-        return fail(e, "a colour is wanted and the value is not one");
+        return fail(e, "expected a colour, and the value is not one");
     camber_value *items = camber_arena_alloc(e->arena, 4 * sizeof *items);
     if (!items)
         return camber_evaluate_no_memory(e);

@@ -60,7 +60,7 @@ bool camber_property_check(camber_compiler *c, const camber_property *property, 
     if (value->type == CAMBER_VALUE_STRING && property->values)
         return check_name(c, property, value->string);
     if (value->type == CAMBER_VALUE_ARRAY && property->length == 0 && value->count > CAMBER_DASH_LENGTHS_MAX)
-        camber_compiler_warn(c, "of %u lengths the first %d are drawn; write fewer", value->count,
+        camber_compiler_warn(c, "of %u lengths only the first %d are drawn; write fewer", value->count,
                              CAMBER_DASH_LENGTHS_MAX);
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
         if (!check_range(c, property, &value->items[i]))

@@ -48,7 +48,7 @@ static sample sample_at(sampler *s, double place) {
     if (camber_expression_evaluate(s->expression, &evaluation, &value) && value.type == CAMBER_VALUE_COLOR) {
         made.color = value.color;
     } else if (!*s->cause) {
-        *s->cause = evaluation.cause ? evaluation.cause : "a colour is wanted";
+        *s->cause = evaluation.cause ? evaluation.cause : "expected a colour";
         *s->failed_at = place;
     }
     s->work -= s->cost + evaluation.work;

@@ -57,7 +57,8 @@ static camber_status load_sheet(camber_context *context, const char *path, cambe
     if (png_image_begin_read_from_memory(&image, bytes, size_bytes))
         status = decode_png(context, path, &image, sheet);
     else
-        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no PNG (%s); get the sprite again", path, image.message);
+        status =
+            camber_fail(context, CAMBER_ERROR_INPUT, "%s: not a PNG (%s); get the sprite again", path, image.message);
     png_image_free(&image);
     camber_free(context, bytes);
     return status;
@@ -98,7 +99,7 @@ static camber_status add_image(index_reader *r, const char *name, const json_t *
                            r->path, name);
     if (image.x + image.width > sheet->width || image.y + image.height > sheet->height)
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: /%.64s: %u x %u px at %u, %u lie beside its sheet of %u x %u px; get the sprite again",
+                           "%s: /%.64s: %u x %u px at %u, %u lie outside its sheet of %u x %u px; get the sprite again",
                            r->path, name, image.width, image.height, image.x, image.y, sheet->width, sheet->height);
     image.image = (camber_image){sheet->rgba + 4 * ((size_t)sheet->width * image.y + image.x), image.width,
                                  image.height, 4 * (size_t)sheet->width};
@@ -286,7 +287,7 @@ bool camber_sprites_miss(camber_sprites *sprites, const char *name) {
     sprites->missed[sprites->missed_count++] = kept;
     camber_log(sprites->context, CAMBER_LOG_WARNING,
                "sprite: there is no image \"%.64s\"; what is drawn with it is left out%s", name,
-               sprites->missed_count == MISSED_MAX ? ", and so are others that are not told" : "");
+               sprites->missed_count == MISSED_MAX ? ", and so are others that are not listed" : "");
     return true;
 }
 

@@ -244,9 +244,9 @@ camber_status camber_features_save(const camber_features *features, uint64_t inp
 /* ---- Reading ---- */
 
 static camber_status fail_damaged(const stream *from) {
-    return camber_fail(from->context, CAMBER_ERROR_INPUT,
-                       "%s: is damaged, or of another input; make it anew with --dry-run --schedule --force",
-                       from->path);
+    return camber_fail(
+        from->context, CAMBER_ERROR_INPUT,
+        "%s: is damaged, or was made from another input; make it again with --dry-run --schedule --force", from->path);
 }
 
 static camber_status get(stream *from, void *bytes, uint64_t size_bytes) {

@@ -225,8 +225,8 @@ camber_status camber_mesh_tile_number(camber_mesh_tile *tile, uint32_t row, uint
     if (!tile->row_slots[row]) {
         if (tile->row_count == INT16_MAX)
             return camber_fail(tile->context, CAMBER_ERROR_LIMIT,
-                               "tiles: more than %d kinds of lines and areas in a mesh tile; let the style tell fewer "
-                               "apart, or begin at a higher --min-zoom",
+                               "tiles: more than %d kinds of lines and areas in a mesh tile; make the style "
+                               "distinguish fewer, or begin at a higher --min-zoom",
                                INT16_MAX);
         if (!camber_grow(tile->context, &tile->rows, &tile->row_capacity, tile->row_count + 1, sizeof *tile->rows))
             return CAMBER_ERROR_MEMORY;

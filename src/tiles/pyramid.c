@@ -481,8 +481,9 @@ static camber_status check_desc(const pyramid *p) {
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT, "tiles: part %u of %u; choose 1 to %u", desc->shard,
                            desc->shards, desc->shards);
     if (desc->renew && (desc->shards || desc->resume || desc->dry_run || desc->schedule))
-        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
-                           "tiles: an archive is renewed at once; leave out shards, resuming, dry runs and schedules");
+        return camber_fail(
+            p->context, CAMBER_ERROR_ARGUMENT,
+            "tiles: renewing cannot be combined with shards, resuming, a dry run or a schedule; leave those out");
     if (p->engine->desc.on_demand_side)
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: the engine draws tiles on demand; make one without on_demand_side");
@@ -513,7 +514,7 @@ static camber_status save_schedule(pyramid *p, uint64_t input, camber_box data) 
 
 static camber_status fail_renewed(const pyramid *p, const char *names) {
     return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                       "%s: differs in its %s; renew it with the options that it was drawn with, or draw it anew",
+                       "%s: differs in its %s; renew it with the options that it was drawn with, or draw it again",
                        p->desc->output, names);
 }
 
@@ -526,7 +527,7 @@ static camber_status open_renewed(pyramid *p) {
     const camber_archive *there = p->renewed;
     if (!there->fingerprint)
         return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                           "%s: does not say what it is made of, so its tiles cannot be renewed; draw it anew",
+                           "%s: does not record what it was drawn from, so its tiles cannot be renewed; draw it again",
                            p->desc->output);
     if (there->type != type_of(p))
         return fail_renewed(p, "format");
@@ -544,8 +545,8 @@ static camber_status keep_list(pyramid *p, camber_box data) {
     const double *bounds = there->has_bounds && !box_asked ? there->bounds : NULL;
     if (there->has_bounds && !camber_tiles_bounds_meet(there->bounds, data))
         return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                           "%s: the input lies outside of its bounds, and its tiles would go; give what it was drawn "
-                           "of, or draw it anew",
+                           "%s: the input lies outside the archive's bounds, so its tiles would be deleted; use the "
+                           "original input, or draw a new archive",
                            desc->output);
     p->stats.left_out = camber_tiles_area_keep(&p->area, zooms_asked ? desc->min_zoom : there->min_zoom,
                                                zooms_asked ? desc->max_zoom : there->max_zoom, bounds);
@@ -591,8 +592,8 @@ static camber_status take_schedule(pyramid *p) {
     camber_fingerprint_write(p->engine, p->desc, &p->area, given->input, p->fingerprint);
     if (strcmp(p->fingerprint, given->fingerprint) != 0)
         return camber_fail(p->context, CAMBER_ERROR_INPUT,
-                           "tiles: the schedule is of another style, other options, tiles or version; give what it was "
-                           "made with, or make it anew");
+                           "tiles: the schedule was made with another style, options, tiles or version; give the same "
+                           "ones, or make a new schedule");
     p->schedule = given->schedule;
     if (!(p->schedule.tasks = camber_alloc(p->context, given->schedule.count, sizeof *p->schedule.tasks)))
         return CAMBER_ERROR_MEMORY;

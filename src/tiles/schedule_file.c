@@ -222,7 +222,7 @@ camber_status camber_tiles_schedule_read(camber_context *context, const char *pa
     if (status == CAMBER_OK && files != made->files)
         status =
             camber_fail(context, CAMBER_ERROR_INPUT,
-                        "%s: is the schedule of another input; make it anew with --dry-run --schedule --force", path);
+                        "%s: is the schedule of another input; make it again with --dry-run --schedule --force", path);
     if (status == CAMBER_OK && !camber_schedule_name_features(path, made->features, sizeof made->features))
         made->features[0] = 0;
     if (status == CAMBER_OK)

@@ -287,7 +287,7 @@ write("secret.geojson", "SECRET:x:0:0:" + LINE)
 styled("a file that is no map", lambda: write("style.json", STYLE_OUTSIDE), "no JSON at line 1")
 for name, path in (("there", "../secret.geojson"), ("not there", "../none"), ("a link", "link")):
     styled("beyond the root, " + name, lambda: (os.symlink("../secret.geojson", "link"), write(
-        "style.json", style(DATA % path))), "beyond which a style may name none", options=("--root", "."))
+        "style.json", style(DATA % path))), "a style may name files only there", options=("--root", "."))
 styled("a sprite's index that is no map", lambda: (write("s.json", "{SECRET"), shutil.copy("../one.png", "s.png"), write(
     "style.json", style('"type":"geojson","data":' + LINE, root=',"sprite":"s"', paint=',"line-pattern":"x"'))), "line 1, column")
 styled("within the root", lambda: (write("a.geojson", LINE), write("style.json", style(DATA % "a.geojson"))), "", 0,
@@ -295,7 +295,7 @@ styled("within the root", lambda: (write("a.geojson", LINE), write("style.json",
 styled("tiles within the root that are not there", lambda: write("style.json", style(
     '"type":"vector","tiles":["t/{z}/{x}/{y}.pbf"]')), "", 0, options=("--root", "."))
 styled("tiles beyond the root", lambda: write("style.json", style('"type":"vector","tiles":["../{z}/{x}/{y}.pbf"]')),
-       "beyond", options=("--root", "."))
+       "only there", options=("--root", "."))
 
 # ---- Files that OUT may be ----
 
@@ -325,13 +325,13 @@ refused("a server", lambda: write("in.xml", "<OGRWFSDataSource><URL>http://127.0
         "--allow-remote", 65, "in.xml")
 refused("an address", lambda: None, "--allow-remote", 65, "http://127.0.0.1:9/a.geojson")
 refused("a database's address", lambda: None, "--allow-remote", 65, "PG:host=127.0.0.1 port=9")
-refused("a grid of a shapefile", lambda: shapefile("in", GRID), "leads to another file", 65, "in.shp")
+refused("a grid of a shapefile", lambda: shapefile("in", GRID), "refers to another file", 65, "in.shp")
 DOCTYPE = '<?xml version="1.0"?><!DOCTYPE TRANSFER SYSTEM "%s"><TRANSFER xmlns="http://www.interlis.ch/INTERLIS2.3"/>'
 for ending in ("xtf", "xml", "gml"):
     refused("a DOCTYPE that is a pipe, " + ending, lambda: (os.mkfifo("pipe"), write("in." + ending, DOCTYPE % os.path.realpath(
         "pipe"))), "", 65, "in." + ending)
 refused("a table of tables", lambda: write("in.tab", '!table\n!version 300\nDefinition Table\nopen table "b.tab"\n'),
-        "leads to another file", 65, "in.tab")
+        "refers to another file", 65, "in.tab")
 refused("an ordinary shapefile", lambda: shapefile("in", GRID.replace(',EXTENSION["PROJ4_GRIDS","/etc/passwd"]', "")), "", 0,
         "in.shp")
 
@@ -346,7 +346,7 @@ def bomb(head=b"", name="in.geojson.gz"):
 
 
 refused("properties that take longer and longer", lambda: write("in.geojson", '{"type":"Feature","geometry":%s,"properties":{%s}}' % (
-    LINE, ",".join('"k%d":1' % i for i in range(150000)))), "its reader has worked for 8 s", 65, "in.geojson")
+    LINE, ",".join('"k%d":1' % i for i in range(150000)))), "reading it has taken 8 s", 65, "in.geojson")
 refused("two gigabytes of blanks", bomb, "", 65, "in.geojson.gz")
 refused("two gigabytes of XML's blanks", lambda: bomb(b"<osm version='0.6'>", "in.osm.gz"), "", 65, "in.osm.gz")
 styled("thirty million arrays", lambda: (write("a.geojson", '{"type":"LineString","coordinates":[' + "[]," * 10**7 + "[]]}"),

@@ -386,7 +386,7 @@ static void test_renewed(void **state) {
     assert_true(sizes[0] == sizes[1] && memcmp(before, after, sizes[0]) == 0);
     desc.dry_run = true;
     assert_int_equal(camber_tiles_draw(map.engine, &desc, NULL), CAMBER_ERROR_ARGUMENT);
-    assert_story(&s->h, "dry runs");
+    assert_story(&s->h, "a dry run");
     map_close(&map);
     folder_remove(folder);
     free(after);

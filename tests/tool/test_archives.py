@@ -221,19 +221,19 @@ def broken_pmtiles():
     yield "a directory: its compression", archive(good, tile, root=0)
     yield "its metadata: its compression", patched(archive(good, tile), 24, 0)
     yield "its metadata: it lies past", patched(archive(good, tile), 24, 10 ** 6)
-    yield "section of tiles ends behind the file", archive(good, tile, tiles_size=10 ** 6)
+    yield "section of tiles ends past the end of the file", archive(good, tile, tiles_size=10 ** 6)
     yield "and the section of leaf directories overlap", patched(archive(good, tile, leaves_size=10), 40, 130)
-    yield "behind the first 16384 bytes", archive(good, tile, root=20000).ljust(20000, b"x") + directory(good)
+    yield "past the first 16384 bytes", archive(good, tile, root=20000).ljust(20000, b"x") + directory(good)
     yield "clustered is 2", archive(good, tile, clustered=2)
     yield "its sections make", archive(good, tile) + b"x"
-    yield "ends behind the section of tiles", archive([(0, 1, n, 0), (1, 4, n, 7)], tile)
+    yield "ends past the section of tiles", archive([(0, 1, n, 0), (1, 4, n, 7)], tile)
     yield "order of a clustered archive", archive([(0, 1, n, n), (1, 4, n, 0)], two)
     yield "comes twice", archive([(0, 2, n, 0), (1, 4, n, 0)], tile, addressed=6)
     yield "addressed tiles are said", archive(good, tile, addressed=6)
     yield "entries are said", archive(good, tile, entries=3)
     yield "contents are said", archive(good, tile, contents=2)
-    yield "lowest zoom is said", archive(good[1:], tile, addressed=4, entries=1)
-    yield "highest zoom is said", archive(good, tile, high=2)
+    yield "lowest zoom is given", archive(good[1:], tile, addressed=4, entries=1)
+    yield "highest zoom is given", archive(good, tile, high=2)
     yield "centre's zoom", archive(good, tile, zoom=2)
     yield "centre's zoom", archive(good[1:], tile, addressed=4, entries=1, low=1)
     yield "have no area", archive(good, tile, east=-1800000000)
@@ -243,25 +243,25 @@ def broken_pmtiles():
     yield "outside the bounds", archive(good, tile, west=10000000, south=10000000, longitude=20000000,
                                         latitude=20000000)
     yield "has no bytes", archive([(0, 1, 0, 0), (1, 4, n, 0)], tile, contents=1)
-    yield "no tile's", archive(good, two)
+    yield "belong to no tile", archive(good, two)
     yield "overlap", archive([(0, 1, n, 0), (1, 4, n, n - 1)], two[:-1])
     yield "not a JSON object", archive(good, tile, metadata=b"[]")
-    yield "is not a text", archive(good, tile, metadata=b'{"name":3}')
+    yield "is not a string", archive(good, tile, metadata=b'{"name":3}')
     yield "no vector_layers", archive(good, tile, type=1)
     yield "type 9", archive(good, tile, type=9)
-    yield "zooms make no sense", archive(good, tile, low=2)
+    yield "zooms are out of range", archive(good, tile, low=2)
     yield "a checksum does not fit", archive(good, bad)
     yield "is not a PNG", archive(good, b"x" * n)
     yield "is not a WebP", archive(good, tile, type=4)
     yield "not compressed", archive(good, tile, tile_packed=2)
     yield "is cut off", archive(good, tile[:-12] + b"0" * 12)
     yield "not in order", archive([(1, 1, n, 0), (1, 4, n, 0)], tile)
-    yield "no PMTiles", b"x" * 300
+    yield "not a PMTiles archive", b"x" * 300
     leaf = directory([(1, 4, n, 0)])
     pointer = [(0, 1, n, 0), (1, 0, len(leaf), 0)]
     yield None, archive(pointer, tile, [leaf], addressed=5, entries=2, contents=1)
-    yield "are in none", archive(pointer, tile, [leaf, b"rest"], addressed=5, entries=2, contents=1)
-    yield "begins behind it", archive([(0, 1, n, 0), (2, 0, len(leaf), 0)], tile, [leaf], addressed=5, entries=2,
+    yield "belong to none", archive(pointer, tile, [leaf, b"rest"], addressed=5, entries=2, contents=1)
+    yield "begins after it", archive([(0, 1, n, 0), (2, 0, len(leaf), 0)], tile, [leaf], addressed=5, entries=2,
                                       contents=1)
     yield "outside the section of leaves", archive([(0, 1, n, 0), (1, 0, len(leaf), 50)], tile, [leaf])
     yield "lies past the end", archive([(0, 0, 99, 10 ** 6)], tile)
@@ -298,14 +298,14 @@ def test_mbtiles_rules():
         ("no bounds", "DELETE FROM metadata WHERE name = 'bounds'"),
         ("no minzoom", "DELETE FROM metadata WHERE name = 'minzoom'"),
         ("not four numbers", "UPDATE metadata SET value = '1,2,3' WHERE name = 'bounds'"),
-        ("none of pbf", "UPDATE metadata SET value = 'bmp' WHERE name = 'format'"),
+        ("neither pbf", "UPDATE metadata SET value = 'bmp' WHERE name = 'format'"),
         ("twice", "DROP INDEX metadata_index; INSERT INTO metadata VALUES ('name', 'y')"),
         ("no table metadata", "DROP TABLE metadata"),
         ("no such", "DROP VIEW tiles"),
         ("no such column or row", "UPDATE map SET tile_row = 99 WHERE zoom_level = 1 AND tile_row = 1"),
-        ("there twice", "DROP INDEX map_index; INSERT INTO map SELECT * FROM map WHERE zoom_level = 0"),
+        ("occurs twice", "DROP INDEX map_index; INSERT INTO map SELECT * FROM map WHERE zoom_level = 0"),
         ("highest zoom", "UPDATE metadata SET value = '9' WHERE name = 'maxzoom'"),
-        ("no tile's", "INSERT INTO images VALUES ('spare', x'00')"),
+        ("belong to no tile", "INSERT INTO images VALUES ('spare', x'00')"),
         ("have no image", "DELETE FROM images WHERE tile_id = '3'"),
         ("ids of images", "DROP INDEX images_index; INSERT INTO images SELECT * FROM images LIMIT 1"),
         ("is not a PNG", "UPDATE images SET tile_data = x'0011' WHERE tile_id = '3'"),
@@ -337,7 +337,7 @@ def test_folder_rules():
     change("is not a tile by its name", lambda: os.mkdir("rule/maps"))
     change("no such column or row", lambda: write("rule/1/0/2.png", tile))
     change("not named as a tile of type", lambda: os.rename("rule/1/0/0.png", "rule/1/0/0.webp"))
-    change("there twice", lambda: write("rule/1/0/0.webp", tile))
+    change("occurs twice", lambda: write("rule/1/0/0.webp", tile))
     change("no metadata.json", lambda: os.unlink("rule/metadata.json"))
     change("is a PNG that is cut off", lambda: write("rule/1/0/0.png", tile[:-4]))
     change("highest zoom", lambda: shutil.rmtree("rule/4"))
@@ -524,7 +524,7 @@ def test_resume():
     make("calm.pmtiles", count, "force")
     stop_half_way("part.pmtiles", count)
     line = make("part.pmtiles", count, "resume", "style=other", status=65)
-    expect("differ in their style" in line, line)
+    expect("differs in its style" in line, line)
     # Torn ends, damaged bytes and damaged records: what is whole is kept, and the rest is drawn again.
     for damage in range(6):
         shutil.copy("part.pmtiles.camber-tiles", "t")

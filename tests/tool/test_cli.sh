@@ -167,7 +167,7 @@ for gl in '--backend egl' '--backend osmesa' '--sharing copy'; do
     for verb in "render $osm -o a.png" "compare $osm" "bench $osm" info; do
         # shellcheck disable=SC2086
         expect 2 "OpenCL draws, and $gl: $verb" $verb --draw cl $gl
-        says "--draw cl and ${gl% *}: .* without any GL; leave out ${gl% *}, or give --draw gl"
+        says "--draw cl and ${gl% *}: .* without GL; leave out ${gl% *}, or give --draw gl"
     done
 done
 expect 2 "OpenCL draws, and a back end is checked" validate --draw cl --backend egl
@@ -268,7 +268,7 @@ run "${without_gl[@]}" "$tool" info
 name="info without GL"
 verify 0
 has "$tmp/stdout" '^GL *egl: not available: .*; install' '^GL *osmesa: not available: .*; install' '^draw *cl: ' \
-    '^sharing *none: no GL takes part'
+    '^sharing *none: GL is not used'
 
 # ---- Render ----
 
@@ -571,7 +571,7 @@ else
     echo "skipped: what compare counts: no python3 to read its JSON"
 fi
 expect 0 "compare in OpenCL, as a table" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --draw cl
-has "$tmp/stdout" 'drawn in OpenCL' "are GL's alone"
+has "$tmp/stdout" 'drawn in OpenCL' "exist only in GL"
 lacks "$tmp/stdout" 'fragments: shaded'
 expect 0 "compare counts in GL, unless asked" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json
 has "$tmp/stdout" '"draw": "gl"'
@@ -664,7 +664,7 @@ expect 73 "a folder as the JUnit file" validate --polylines "$lines" --junit "$t
 expect 2 "JUnit to standard output" validate --junit -
 expect 2 "too few windows" validate --windows 7
 expect 2 "no such group of checks" validate --polylines "$lines" --only 'no such'
-says "^camber: --only no such: no group of checks has that in its name; "
+says "^camber: --only no such: no group of checks has this in its name; "
 expect 2 "no group of checks" validate --polylines "$lines" --only devices
 expect 0 "one group of checks" validate --polylines "$lines" --size 256x256 --only ': meshes' --method strip
 has "$tmp/stdout" '^ok .*: meshes as the CPU twin.s: [0-9]* checks$'
@@ -765,7 +765,7 @@ printf 'root:x:0:0:root:/root:/bin/sh\n' >"$tmp/in/text"
 cp "$tmp/in/text" "$tmp/in/text.geojson"
 for file in text text.geojson; do
     expect 65 "text that never was a map: $file" render "$tmp/in/$file" -o a.png
-    says "$file: no map in a format that camber reads; name another file (camber info lists the formats)\$"
+    says "$file: not a map in a format that camber reads; name another file (camber info lists the formats)\$"
     lacks "$tmp/stderr" root
 done
 # Files that are known by their first bytes, and that GDAL does not open: each with its cure.
@@ -774,16 +774,16 @@ refused() { # NAME BYTES SAYS
     expect 65 "$1" render "$tmp/in/$1" -o a.png
     says "in/$1: $3\$"
 }
-refused a.osm.bz2 'BZh91AY&SY' "packed by bzip2, .*; draw it by bzcat $tmp/in/a.osm.bz2 | camber render - -o OUT"
-refused a.osm.xz '\3757zXZ\0' "packed by xz, .*; draw it by xzcat $tmp/in/a.osm.xz | camber render - -o OUT"
-refused a.osm.zst '\50\265\57\375' "packed by zstd, .*; draw it by zstdcat $tmp/in/a.osm.zst | camber render - -o OUT"
+refused a.osm.bz2 'BZh91AY&SY' "compressed with bzip2, .*; draw it by bzcat $tmp/in/a.osm.bz2 | camber render - -o OUT"
+refused a.osm.xz '\3757zXZ\0' "compressed with xz, .*; draw it by xzcat $tmp/in/a.osm.xz | camber render - -o OUT"
+refused a.osm.zst '\50\265\57\375' "compressed with zstd, .*; draw it by zstdcat $tmp/in/a.osm.zst | camber render - -o OUT"
 refused a.zip 'PK\3\4' "a zip archive; name what is in it, as /vsizip/$tmp/in/a.zip/NAME .*"
-refused a.o5m '\377\340\4o5m2\376' "OpenStreetMap's data as o5m, .*; convert it by osmium cat -o OUT.osm.pbf $tmp/in/a.o5m"
-refused a.fgb 'fgb\2fgb\0\0\0\0\0' "version 2 of FlatGeobuf, .*; make it again by ogr2ogr -f FlatGeobuf .*"
-"$tool" info | grep -q Parquet || refused a.parquet 'PAR1\0\0\0\0PAR1' "Parquet, whose driver this GDAL lacks; convert it by ogr2ogr .*"
+refused a.o5m '\377\340\4o5m2\376' "OpenStreetMap's data as o5m, .*; convert it with osmium cat -o OUT.osm.pbf $tmp/in/a.o5m"
+refused a.fgb 'fgb\2fgb\0\0\0\0\0' "version 2 of FlatGeobuf, .*; make it again from its source with ogr2ogr -f FlatGeobuf .*"
+"$tool" info | grep -q Parquet || refused a.parquet 'PAR1\0\0\0\0PAR1' "Parquet, whose driver this GDAL lacks; convert it with ogr2ogr .*"
 # A vector tile that has the layer "a" with a line: GDAL places tiles by their paths.
 tile='\32\26x\2\12\1a\22\14\30\2\42\10\11dd\12\320\17\320\17\50\200\40'
-refused a.pbf "$tile" 'a vector tile whose path does not say which; name it as ZOOM/COLUMN/ROW.pbf, or draw it by a style .*'
+refused a.pbf "$tile" 'a vector tile whose path does not say which one; name it ZOOM/COLUMN/ROW.pbf, or draw it by a style .*'
 mkdir -p "$tmp/in/3/4"
 printf '%b' "$tile" >"$tmp/in/3/4/2.pbf"
 expect 0 "a vector tile of a set" render "$tmp/in/3/4/2.pbf" -o a.png --size 64x64
@@ -813,7 +813,7 @@ echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$rail]}" >"$tmp/in/rai
 expect 0 "a line that the style leaves out" render "$tmp/in/rail.geojson" -o a.png --size 64x64 --style "$tmp/in/primary.json"
 lacks "$tmp/stderr" '^camber: '
 expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geojson" -o a.png -f --size 64x64 -v --style "$tmp/in/primary.json"
-says '^camber: info: style: draws nothing of 1 of 2 features$'
+says '^camber: info: style: no layer draws 1 of the 2 features$'
 echo "{\"type\":\"FeatureCollection\",\"features\":[$rail,${line/primary/nothing of a road}]}" >"$tmp/in/undrawn.geojson"
 expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64 --style "$tmp/in/primary.json"
 says '^camber: warning: nothing is drawn: 2 lines of [0-9]* bytes read, but no layer of the style draws any of it: it goes by highway; name a style'
@@ -1171,7 +1171,7 @@ done
 name="a copy of 10 KB"
 run bash -c "ulimit -f 10; '$tool' render - -o a.png <'$osm'"
 verify 74
-says '^camber: standard input: no copy in .*File too large.*ulimit -f'
+says '^camber: standard input: cannot be copied to .*File too large.*ulimit -f'
 if [ -n "$faulty" ]; then # a sanitizer takes more for itself
     name="100 MB of memory"
     limited "-v 100000" render "$osm" -o a.png

@@ -435,7 +435,7 @@ def test_stopped():
         time.sleep(0.005)
     child.send_signal(signal.SIGINT)
     told = child.communicate()[1]
-    expect("--resume goes on with what is finished, which is kept in kept.pmtiles.camber-tiles" in told, told)
+    expect("--resume continues with the finished tiles, which are kept in kept.pmtiles.camber-tiles" in told, told)
 
 
 def test_other_run():
@@ -477,7 +477,7 @@ def test_renew():
     with open("list", "w") as file:
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
-    expect(re.search(r"^1 tile taken out", said, re.M) and "1 tile of the list lies outside" in said, said)
+    expect(re.search(r"^1 tile removed", said, re.M) and "1 tile of the list lies outside" in said, said)
     made = archive("map.mbtiles")
     wanted = {**old, **{key: new.get(key) for key in listed}}
     expect(made == {key: data for key, data in wanted.items() if data}, "renewed tiles, and no others, are new")
@@ -488,7 +488,7 @@ def test_renew():
         tiles(*options, "-o", name, "--tiles", "list")  # the former name of --renew
         expect(archive(name) == new, "all tiles renewed are not all tiles drawn")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
-    expect("taken out" not in said and "left out" not in said, said)
+    expect("removed" not in said and "left out" not in said, said)
     with open("outside", "w") as file:
         file.write(f"{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2000}/{ROW}\n2/1/1\n")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside").stderr
@@ -518,7 +518,7 @@ def test_renew():
     # Another input, by mistake: it would empty the archive.
     write_lines("far.geojson", [(1, [(COLUMN + 901.5, ROW + 1.5), (COLUMN + 903.5, ROW + 1.5)])])
     said = tiles("far.geojson", *options[1:], "-o", "map.mbtiles", "--renew", "list", status=65).stderr
-    expect("lies outside of its bounds" in said and archive("map.mbtiles") == new, said)
+    expect("lies outside the archive's bounds" in said and archive("map.mbtiles") == new, said)
     with open("list", "w") as file:
         file.write("13/1/1\n13/1\n")
     line = tiles(*options, "-o", "map.mbtiles", "--renew", "list", status=65).stderr

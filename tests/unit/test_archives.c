@@ -244,10 +244,10 @@ static void test_tilesets(void **state) {
         const char *command, *told;
         bool error;
     } rows[] = {{"true", NULL, false},
-                {"rm 10/1/0.glb", "subtrees/6.0.0.subtree tells of other tiles than there are", true},
-                {"rm 10/1023/1023.glb", "subtrees/0.0.0.subtree tells of other tiles than there are", true},
-                {"rm 10/1023/1023.glb", "subtrees/6.63.63.subtree tells of no tile", true},
-                {"cp subtrees/6.0.0.subtree subtrees/x", "subtrees/x tells of no tile", true},
+                {"rm 10/1/0.glb", "subtrees/6.0.0.subtree lists other tiles than there are", true},
+                {"rm 10/1023/1023.glb", "subtrees/0.0.0.subtree lists other tiles than there are", true},
+                {"rm 10/1023/1023.glb", "subtrees/6.63.63.subtree lists no tile", true},
+                {"cp subtrees/6.0.0.subtree subtrees/x", "subtrees/x lists no tile", true},
                 {"rm subtrees/6.63.63.subtree", "subtrees/6.63.63.subtree is missing", true},
                 {"rm -r subtrees", "subtrees/0.0.0.subtree is missing", true},
                 {"rm tileset.json", "tileset.json is missing", false},

@@ -136,7 +136,7 @@ static void test_cut_off_everywhere(void **state) {
     file.size = whole;
     for (int i = 0; i < 9; i++) {
         assert_true(byte_list_write(&file, "x", 1)); /* bytes left over */
-        assert_refused(context, &h, &file, "promises");
+        assert_refused(context, &h, &file, "announces");
     }
     free(file.bytes);
     host_done(&h, context);
@@ -187,7 +187,7 @@ static void test_counts_that_overflow(void **state) {
             put_word(&file, counts[n]);
             put_word(&file, counts[p]);
             for (int i = 0; i < 8; i++) {
-                assert_refused(context, &h, &file, "promises");
+                assert_refused(context, &h, &file, "announces");
                 put_word(&file, 0);
             }
             free(file.bytes);

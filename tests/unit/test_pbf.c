@@ -99,13 +99,13 @@ static void test_packings(void **state) {
             continue;
         }
         char words[64];
-        snprintf(words, sizeof words, "packed by %s, and this camber was built without", all[i / 4].name);
+        snprintf(words, sizeof words, "compressed with %s, and this camber was built without", all[i / 4].name);
         expect_refused(it, words);
         assert_non_null(strstr(it->on.error, "pbf_compression=zlib"));
         print_message("built without %s\n", all[i / 4].name);
     }
     make_road(it, (pbf_packing){PBF_BZIP2, 0}, false);
-    expect_refused(it, "packed by bzip2");
+    expect_refused(it, "compressed with bzip2");
 }
 
 /* Damaged bytes of each packing, with the size told or not. */
@@ -366,7 +366,7 @@ static void test_missing(void **state) {
         pbf_relation(&it->block, wood, (const pbf_member[]){{5, "outer"}}, 1);
         pbf_end_block(&it->file, &it->block);
         if (!some) {
-            expect_refused(it, "none of the 6 nodes that its ways name");
+            expect_refused(it, "none of the 6 nodes that its ways refer to");
             continue;
         }
         write_road(it);
@@ -388,7 +388,7 @@ static void test_left_to_gdal(void **state) {
     } all[] = {
         {{"NWR", PBF_ZLIB}, NULL},
         {{"NWR", PBF_RAW}, NULL},
-        {{"NWR", PBF_LZ4}, "packing by lz4; pack it anew by osmium cat"},
+        {{"NWR", PBF_LZ4}, "packing by lz4; compress it again with osmium cat"},
         {{"NWR", PBF_ZLIB, true}, "blobs without their size"},
         {{"NNWWR", PBF_ZLIB, .places = ON_WAYS}, "places on ways"},
         {{"WRN", PBF_ZLIB}, "osmium sort"},

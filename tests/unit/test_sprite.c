@@ -119,9 +119,9 @@ static void test_lies(void **state) {
     static const struct {
         const char *sheet, *index, *said;
     } lies[] = {
-        {NULL, "{\"a\": {\"x\": 9, \"y\": 0, \"width\": 4, \"height\": 4}}", "beside its sheet of 12 x 4 px"},
-        {NULL, "{\"a\": {\"x\": 0, \"y\": 1, \"width\": 4, \"height\": 4}}", "beside its sheet"},
-        {NULL, "{\"a\": {\"x\": 16384, \"y\": 0, \"width\": 16384, \"height\": 1}}", "beside its sheet"},
+        {NULL, "{\"a\": {\"x\": 9, \"y\": 0, \"width\": 4, \"height\": 4}}", "outside its sheet of 12 x 4 px"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 1, \"width\": 4, \"height\": 4}}", "outside its sheet"},
+        {NULL, "{\"a\": {\"x\": 16384, \"y\": 0, \"width\": 16384, \"height\": 1}}", "outside its sheet"},
         {NULL, "{\"a\": {\"x\": -1, \"y\": 0, \"width\": 4, \"height\": 4}}", "whole pixels"},
         {NULL, "{\"a\": {\"x\": 4294967296, \"y\": 0, \"width\": 4, \"height\": 4}}", "whole pixels"},
         {NULL, "{\"a\": {\"x\": 0.5, \"y\": 0, \"width\": 4, \"height\": 4}}", "whole pixels"},
@@ -138,9 +138,9 @@ static void test_lies(void **state) {
         {NULL, "{\"a\": {\"x\": NaN, \"y\": 0, \"width\": 4, \"height\": 4}}", "line 1, column"},
         {NULL, "[1]", "an object of images"},
         {NULL, "{\"a\": ", "line 1, column"},
-        {"", "{}", "no PNG"},
-        {"\x89PNG\r\n\x1a\n", "{}", "no PNG"},
-        {"GIF89a and what comes behind", "{}", "no PNG"},
+        {"", "{}", "not a PNG"},
+        {"\x89PNG\r\n\x1a\n", "{}", "not a PNG"},
+        {"GIF89a and what comes behind", "{}", "not a PNG"},
     };
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
         desk d;

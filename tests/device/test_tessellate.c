@@ -474,9 +474,12 @@ int main(void) {
         cmocka_unit_test(test_real_lines),
     };
     int failed = 77;
+    char pocl_cache[64];
+    pocl_cache_apart(pocl_cache); /* without memory kernels are not saved, and compiled for one size of work-groups */
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
     else
         puts("skipped: no OpenCL device");
+    folder_remove(pocl_cache);
     return failed;
 }

@@ -10,6 +10,11 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
     CAMBER_GEOMETRY_POINT,   /* lines of one point each */
+    /* What symbol layers label: the same geometry once more, in classes of its own, since names would split those of
+     * lines and areas. Nothing else is drawn of it. */
+    CAMBER_GEOMETRY_LABEL_LINE,
+    CAMBER_GEOMETRY_LABEL_AREA, /* rings as those of AREA */
+    CAMBER_GEOMETRY_LABEL_POINT,
     CAMBER_GEOMETRY_KINDS
 } camber_geometry_kind;
 
@@ -19,11 +24,20 @@ enum {
     CAMBER_KIND_POLYGON = 1 << CAMBER_GEOMETRY_POLYGON,
     CAMBER_KIND_AREA = 1 << CAMBER_GEOMETRY_AREA,
     CAMBER_KIND_POINT = 1 << CAMBER_GEOMETRY_POINT,
+    CAMBER_KIND_LABEL_LINE = 1 << CAMBER_GEOMETRY_LABEL_LINE,
+    CAMBER_KIND_LABEL_AREA = 1 << CAMBER_GEOMETRY_LABEL_AREA,
+    CAMBER_KIND_LABEL_POINT = 1 << CAMBER_GEOMETRY_LABEL_POINT,
 };
 
 /* The type that a style's filters know a kind by. */
 static inline const char *camber_geometry_type(camber_geometry_kind kind) {
-    return kind == CAMBER_GEOMETRY_LINE ? "LineString" : kind == CAMBER_GEOMETRY_POINT ? "Point" : "Polygon";
+    switch (kind) {
+    case CAMBER_GEOMETRY_LINE:
+    case CAMBER_GEOMETRY_LABEL_LINE: return "LineString";
+    case CAMBER_GEOMETRY_POINT:
+    case CAMBER_GEOMETRY_LABEL_POINT: return "Point";
+    default: return "Polygon";
+    }
 }
 
 /* A feature as an expression reads it. */

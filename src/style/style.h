@@ -21,9 +21,10 @@ typedef enum camber_layer_kind {
     CAMBER_LAYER_LINE,
     CAMBER_LAYER_FILL,
     CAMBER_LAYER_CIRCLE,
+    CAMBER_LAYER_SYMBOL,
 } camber_layer_kind;
 
-enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_CIRCLE + 1 };
+enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_SYMBOL + 1 };
 
 /* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
 typedef enum camber_property_id {

@@ -1,0 +1,65 @@
+/* Labels: which texts and icons are shown in a view, and where each of their glyphs stands.
+ *
+ *     features, view -> label_layout (texts and icons, anchors) -> placement (what is shown) -> items
+ *     items -> label_shapes: rings and passes
+ */
+#ifndef CAMBER_MAP_LABELS_H
+#define CAMBER_MAP_LABELS_H
+
+#include "camber_text.h"
+#include "map/plan.h"
+#include "style/sprite.h"
+
+/* How items are drawn: the same for all glyphs of a label's section. */
+typedef struct camber_label_look {
+    camber_color color; /* straight; alpha includes all opacities */
+    camber_color halo_color;
+    float halo_width_px, halo_blur_px; /* device px */
+    bool flat;                         /* it lies on the map: a pitch tilts it */
+} camber_label_look;
+
+/* A glyph or an icon of a label that is shown. */
+typedef struct camber_label_item {
+    uint32_t glyph; /* of the fonts; CAMBER_NO_GLYPH: an icon */
+    const camber_sprite_image *icon;
+    uint32_t look; /* index of the labels' looks */
+    uint32_t label;
+    /* From em (of an icon: from shares of its width and height) to device px of the picture:
+     * px = (x + xx * u + xy * v, y + yx * u + yy * v). If the look is flat, px are of the map's plane; else they are of
+     * the picture as it is seen, whatever the pitch. */
+    float x, y, xx, xy, yx, yy;
+} camber_label_item;
+
+/* A label that is shown. */
+typedef struct camber_label {
+    uint32_t feature;
+    camber_box box; /* around its parts, device px of the picture */
+} camber_label;
+
+/* The items of a layer of the style, in drawing order: icons, then text. */
+typedef struct camber_label_layer {
+    size_t layer; /* of the style */
+    size_t first_icon, icon_count;
+    size_t first_glyph, glyph_count;
+} camber_label_layer;
+
+typedef struct camber_labels {
+    camber_context *context;
+    camber_label_layer *layers; /* layer_count of them, in drawing order */
+    size_t layer_count;
+    camber_label_item *items;
+    size_t item_count;
+    camber_label_look *looks;
+    size_t look_count;
+    camber_label *labels;
+    size_t label_count;
+} camber_labels;
+
+/* Places the labels of a view. The result depends neither on the number of threads nor on the order of the features.
+ * fonts may make new outlines. sprites may be NULL. Free it with camber_labels_free, also after a failure.
+ * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
+camber_status camber_labels_place(const camber_features *features, const camber_view *view, camber_fonts *fonts,
+                                  const camber_sprites *sprites, camber_labels *labels);
+void camber_labels_free(camber_labels *labels);
+
+#endif

@@ -1,0 +1,114 @@
+/* What a symbol layer says of a feature's label: its text, its icon, where they go, and how they are drawn. */
+#ifndef CAMBER_STYLE_SYMBOL_H
+#define CAMBER_STYLE_SYMBOL_H
+
+#include "camber_text.h"
+#include "style/arena.h"
+#include "style/style.h"
+
+typedef enum camber_symbol_placement {
+    CAMBER_SYMBOL_POINT = 0,
+    CAMBER_SYMBOL_LINE,
+    CAMBER_SYMBOL_LINE_CENTER,
+} camber_symbol_placement;
+
+typedef enum camber_symbol_order {
+    CAMBER_SYMBOL_ORDER_AUTO = 0,   /* by sort key if there is one, else by the position on the screen */
+    CAMBER_SYMBOL_ORDER_VIEWPORT_Y, /* by the position on the screen if labels may overlap */
+    CAMBER_SYMBOL_ORDER_SOURCE,
+} camber_symbol_order;
+
+typedef enum camber_symbol_overlap {
+    CAMBER_OVERLAP_NEVER = 0,
+    CAMBER_OVERLAP_ALWAYS,
+    CAMBER_OVERLAP_COOPERATIVE, /* with others that are cooperative or always */
+} camber_symbol_overlap;
+
+/* What text or an icon turns and tilts with. AUTO has been resolved by the placement. */
+typedef enum camber_symbol_alignment {
+    CAMBER_ALIGN_MAP = 0,
+    CAMBER_ALIGN_VIEWPORT,
+    CAMBER_ALIGN_VIEWPORT_GLYPH, /* of text along lines: glyphs stand upright beside each other along the line */
+} camber_symbol_alignment;
+
+typedef enum camber_icon_text_fit {
+    CAMBER_FIT_NONE = 0,
+    CAMBER_FIT_WIDTH = 1,
+    CAMBER_FIT_HEIGHT = 2,
+    CAMBER_FIT_BOTH = 3,
+} camber_icon_text_fit;
+
+/* What text and icons have in common. Lengths are CSS px if the name does not say otherwise. */
+typedef struct camber_symbol_part {
+    camber_symbol_overlap overlap;
+    bool ignore_placement; /* others may be placed over it */
+    bool optional;         /* the other part may be shown without it */
+    camber_symbol_alignment rotation_alignment, pitch_alignment;
+    double rotate_deg;
+    bool keep_upright;
+    double padding_px[4]; /* top, right, bottom, left */
+    camber_color color;   /* the alpha includes the opacity, as that of the halo */
+    camber_color halo_color;
+    double halo_width_px, halo_blur_px;
+    double translate_px[2];
+    camber_translate_anchor translate_anchor;
+    double opacity;
+} camber_symbol_part;
+
+/* A part of a text, or an image in it: one section of "format". */
+typedef struct camber_symbol_section {
+    const char *text;  /* after text-transform. NULL: an image */
+    const char *image; /* its name. NULL: text */
+    const char *const *fonts; /* font_count names */
+    size_t font_count;
+    double scale;
+    bool has_color;
+    camber_color color; /* with has_color: in place of the text's; the alpha includes the opacity */
+    camber_text_align align;
+} camber_symbol_section;
+
+#define CAMBER_SYMBOL_ANCHORS_MAX 9
+
+typedef struct camber_symbol {
+    camber_symbol_placement placement;
+    camber_symbol_order order;
+    double spacing_px;
+    bool avoid_edges;
+    bool has_sort_key;
+    double sort_key;
+
+    const char *icon_image; /* NULL: no icon */
+    double icon_size;
+    double icon_offset_px[2]; /* in px of the icon before icon_size */
+    camber_text_anchor icon_anchor;
+    camber_icon_text_fit text_fit;
+    double text_fit_padding_px[4]; /* top, right, bottom, left */
+    camber_symbol_part icon;
+
+    camber_symbol_section *sections; /* section_count of them. 0: no text */
+    size_t section_count;
+    double text_size_px;
+    double max_width_em, line_height_em, letter_spacing_em;
+    camber_text_justify justify;
+    camber_text_anchor text_anchor;
+    double text_offset_em[2];
+    bool has_radial_offset;
+    double radial_offset_em;
+    /* Anchors to try in turn, each with its offset. 0: text_anchor with text_offset_em or the radial offset. */
+    camber_text_anchor variable_anchors[CAMBER_SYMBOL_ANCHORS_MAX];
+    double variable_offsets_em[CAMBER_SYMBOL_ANCHORS_MAX][2];
+    bool has_variable_offsets; /* the list gave them; else they follow from the text's offset or radial offset */
+    size_t variable_anchor_count;
+    double max_angle_deg;
+    bool horizontal, vertical; /* writing modes that are allowed */
+    bool vertical_first;       /* vertical is preferred if both are */
+    camber_symbol_part text;
+} camber_symbol;
+
+/* Evaluates the layout and paint of a symbol layer for a feature at the look's zoom. images: which images exist, for
+ * "image" and "coalesce"; NULL: any. Strings and sections live in the arena, or in the style. A property that cannot be
+ * evaluated has its default. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_layer_look_symbol(const camber_layer_look *look, const camber_feature_view *feature,
+                                       const camber_style_images *images, camber_arena *arena, camber_symbol *symbol);
+
+#endif

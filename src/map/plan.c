@@ -63,8 +63,8 @@ bool camber_plan_takes(const camber_features *features, const camber_style_layer
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
     const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
                       (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
-    return layer->kind != CAMBER_LAYER_BACKGROUND && fits && comes_to(features, layer, class) &&
-           camber_style_layer_matches(layer, zoom, &feature);
+    return layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && fits &&
+           comes_to(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
@@ -182,7 +182,7 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         return CAMBER_ERROR_MEMORY;
     for (size_t i = find_first(style, zoom); i < style->layer_count && !plan->patterns.failed; i++) {
         const camber_style_layer *layer = style->layers + i;
-        if (!is_active(layer, zoom))
+        if (!is_active(layer, zoom) || layer->kind == CAMBER_LAYER_SYMBOL)
             continue;
         if (layer->kind == CAMBER_LAYER_BACKGROUND) {
             camber_plan_patterns_add_background(&plan->patterns, layer, view, plan->layer_count, &plan->background);

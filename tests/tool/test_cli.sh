@@ -816,7 +816,7 @@ expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geoj
 says '^camber: info: style: no layer draws 1 of the 2 features$'
 echo "{\"type\":\"FeatureCollection\",\"features\":[$rail,${line/primary/nothing of a road}]}" >"$tmp/in/undrawn.geojson"
 expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64 --style "$tmp/in/primary.json"
-says '^camber: warning: nothing is drawn: 2 lines of [0-9]* bytes read, but no layer of the style draws any of it: it goes by highway; name a style'
+says '^camber: warning: nothing is drawn: 2 lines of [0-9]* bytes read, but no layer of the style draws any of it: it reads highway; choose a style'
 [ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
 rm -f a.png
 point='{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}}'

@@ -247,7 +247,7 @@ def check_overlaps():
         check(len(colors(pictures[0])) < 40, f"{kernels}: overlaps of one colour darken")
     refused = write_style("dark.json", {**FILL, "metadata": {"camber:overlap": "accumulate"}})
     text = run("render", "areas.geojson", "-o", "out.png", "-f", "--style", refused)[1]
-    check("/layers/0/metadata/camber:overlap: is of line layers" in text, text)
+    check("/layers/0/metadata/camber:overlap: applies only to line layers" in text, text)
 
 
 def check_worlds():

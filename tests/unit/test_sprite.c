@@ -156,10 +156,10 @@ static void test_lies(void **state) {
         {NULL, "{\"a\": {\"x\": \"0\", \"y\": 0, \"width\": 4, \"height\": 4}}", "whole pixels"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 0}}", "pixelRatio"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": \"2\"}}", "pixelRatio"},
-        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 0, \"height\": 4}}", "from 1 on"},
-        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": -4}}", "from 1 on"},
-        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4}}", "from 1 on"},
-        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 1e300, \"height\": 4}}", "from 1 on"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 0, \"height\": 4}}", "at least 1"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": -4}}", "at least 1"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4}}", "at least 1"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 1e300, \"height\": 4}}", "at least 1"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 1e-300}}", "pixelRatio"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": -1}}", "pixelRatio"},
 #define SMALL(more) "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, " more "}}"
@@ -173,7 +173,7 @@ static void test_lies(void **state) {
         {NULL, SMALL("\"content\": [0, -1, 4, 4]"), "lists of [from, to]"},
         {NULL, SMALL("\"content\": [0, null, 4, 4]"), "lists of [from, to]"},
 #undef SMALL
-        {NULL, "{\"a\": 7}", "from 1 on"},
+        {NULL, "{\"a\": 7}", "at least 1"},
         {NULL, "{\"a\": {\"x\": NaN, \"y\": 0, \"width\": 4, \"height\": 4}}", "line 1, column"},
         {NULL, "[1]", "an object of images"},
         {NULL, "{\"a\": ", "line 1, column"},

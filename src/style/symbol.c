@@ -251,7 +251,8 @@ static void read_anchors_with_offsets(const reader *r, const camber_value *value
     camber_symbol *symbol = &r->to->symbol;
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i + 1 < value->count; i += 2) {
         const camber_value *offset = value->items + i + 1;
-        if (!add_anchor(symbol, value->items + i))
+        if (!isfinite(offset->items[0].number) || !isfinite(offset->items[1].number) ||
+            !add_anchor(symbol, value->items + i))
             break;
         symbol->variable_offsets_em[symbol->variable_anchor_count - 1][0] = offset->items[0].number;
         symbol->variable_offsets_em[symbol->variable_anchor_count - 1][1] = offset->items[1].number;

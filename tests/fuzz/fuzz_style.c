@@ -3,7 +3,7 @@
 #include "fuzz_scene.h"
 
 #include "features/features.h"
-#include "style/style.h"
+#include "style/symbol.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -100,6 +100,56 @@ static void check_layers(const camber_style *style, const camber_features *featu
     }
 }
 
+static bool is_padding(const double px[4]) {
+    return isfinite(px[0]) && isfinite(px[1]) && isfinite(px[2]) && isfinite(px[3]);
+}
+
+static bool is_part(const camber_symbol_part *part) {
+    return is_padding(part->padding_px) && isfinite(part->rotate_deg) && part->halo_width_px >= 0.0 &&
+           isfinite(part->halo_width_px) && isfinite(part->halo_blur_px) && part->color.a >= 0.0f &&
+           part->color.a <= 1.0f && part->pitch_alignment <= CAMBER_ALIGN_VIEWPORT &&
+           part->rotation_alignment <= CAMBER_ALIGN_VIEWPORT_GLYPH && part->overlap <= CAMBER_OVERLAP_COOPERATIVE;
+}
+
+static void check_symbol(const camber_symbol *symbol) {
+    REQUIRE(is_part(&symbol->icon) && is_part(&symbol->text) && is_padding(symbol->text_fit_padding_px));
+    REQUIRE(symbol->spacing_px >= 1.0 && isfinite(symbol->spacing_px) && isfinite(symbol->sort_key));
+    REQUIRE(symbol->icon_size >= 0.0 && isfinite(symbol->icon_size) && symbol->text_size_px >= 0.0 &&
+            isfinite(symbol->text_size_px));
+    REQUIRE(symbol->placement <= CAMBER_SYMBOL_LINE_CENTER && symbol->text_anchor <= CAMBER_ANCHOR_BOTTOM_RIGHT);
+    REQUIRE(symbol->variable_anchor_count <= CAMBER_SYMBOL_ANCHORS_MAX && (symbol->horizontal || symbol->vertical));
+    REQUIRE(!symbol->icon_image || symbol->icon_image[0]);
+    for (size_t i = 0; i < symbol->variable_anchor_count; i++)
+        REQUIRE(isfinite(symbol->variable_offsets_em[i][0]) && isfinite(symbol->variable_offsets_em[i][1]));
+    for (size_t i = 0; i < symbol->section_count; i++) {
+        const camber_symbol_section *section = symbol->sections + i;
+        REQUIRE(!section->text != !section->image && (section->text ? section->text : section->image)[0]);
+        REQUIRE(section->scale >= 0.0 && isfinite(section->scale));
+        for (size_t k = 0; k < section->font_count; k++)
+            REQUIRE(section->fonts[k]);
+    }
+}
+
+/* Symbol layers have a symbol for each feature, or memory is short. */
+static void check_symbols(fuzz_run *run, const camber_style *style, const camber_features *features) {
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        const camber_layer_look look = camber_style_layer_look(layer, 9.75);
+        for (size_t c = 0; c < features->class_count && layer->kind == CAMBER_LAYER_SYMBOL; c++) {
+            const camber_feature_view feature = {
+                .values = features->values ? features->values + features->classes[c].first_value : NULL,
+                .geometry_type = "Point",
+                .all = c % 3 ? &all_properties : NULL};
+            camber_arena arena = {.context = run->context, .limit = 1 << 20};
+            camber_symbol symbol;
+            camber_style_layer_may_label(layer, &feature);
+            if (fuzz_done(run, camber_layer_look_symbol(&look, &feature, NULL, &arena, &symbol)))
+                check_symbol(&symbol);
+            camber_arena_free(&arena);
+        }
+    }
+}
+
 static void use_style(fuzz_run *run, const camber_style *style) {
     static const double zooms[] = {0.0, 10.0, 14.5, 24.0};
     camber_features *features = NULL;
@@ -107,6 +157,7 @@ static void use_style(fuzz_run *run, const camber_style *style) {
         return;
     if (add_features(run, features)) {
         check_layers(style, features);
+        check_symbols(run, style, features);
         const camber_view_desc fitted = {.width = 64, .height = 48, .ratio = run->hash & 1 ? 2.0 : 0.0};
         const camber_view_desc centred = {.kind = CAMBER_VIEW_CENTER, .zoom = zooms[run->hash >> 4 & 3], .width = 300};
         fuzz_scene(run, features, &(camber_scene_desc){.view = fitted});

@@ -711,14 +711,46 @@ static void test_memory(void **state) {
     teardown(&f);
 }
 
+/* The same while a style is read. */
+static void test_memory_of_styles(void **state) {
+    (void)state;
+    static const char *const layer =
+        LAYOUT("\"text-field\": [\"format\", \"a\", {\"text-font\": [\"literal\", [\"F\"]], \"font-scale\": 2}, "
+               "[\"image\", \"b\"]], \"icon-padding\": [1, 2], \"text-variable-anchor-offset\": [\"top\", [0, 1]], "
+               "\"icon-image\": \"{a}_{b}\", \"text-size\": [\"number-format\", 7, {}]");
+    fixture f;
+    setup(&f);
+    camber_status status = CAMBER_ERROR_MEMORY;
+    for (size_t count = 0; count < 400 && status == CAMBER_ERROR_MEMORY; count++) {
+        f.allocations_left = count;
+        f.message_count = 0;
+        status = parse_layer(&f, layer);
+        assert_true(status != CAMBER_OK && f.message_count == 1);
+    }
+    assert_int_equal(status, CAMBER_ERROR_INPUT); /* a text is no size */
+    f.allocations_left = SIZE_MAX;
+    teardown(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain),   cmocka_unit_test(test_reference), cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_layout),  cmocka_unit_test(test_paint),     cmocka_unit_test(test_alignments),
-        cmocka_unit_test(test_overlap), cmocka_unit_test(test_anchors),   cmocka_unit_test(test_writing_modes),
-        cmocka_unit_test(test_texts),   cmocka_unit_test(test_format),    cmocka_unit_test(test_images),
-        cmocka_unit_test(test_wants),   cmocka_unit_test(test_takes),     cmocka_unit_test(test_document),
+        cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_paint),
+        cmocka_unit_test(test_alignments),
+        cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_anchors),
+        cmocka_unit_test(test_writing_modes),
+        cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_format),
+        cmocka_unit_test(test_images),
+        cmocka_unit_test(test_wants),
+        cmocka_unit_test(test_takes),
+        cmocka_unit_test(test_document),
         cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_memory_of_styles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -378,7 +378,8 @@ static bool read_icon(const reader *r) {
 camber_status camber_layer_look_symbol(const camber_layer_look *look, const camber_feature_view *feature,
                                        const camber_style_images *images, camber_arena *arena, camber_symbol *symbol) {
     camber_evaluation evaluation;
-    evaluated made = defaults;
+    evaluated made;
+    memcpy(&made, &defaults, sizeof made); /* and so its padding, since symbols are compared byte by byte */
     const reader r = {look->layer, &evaluation, arena, &made};
     camber_evaluation_begin(&evaluation, look->zoom, feature);
     evaluation.images = images;
@@ -392,7 +393,7 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
                            "layer \"%.64s\": its labels take too much memory; give it more, or shorten them",
                            look->layer->id);
     resolve(&made);
-    *symbol = made.symbol;
+    memcpy(symbol, &made.symbol, sizeof *symbol);
     return CAMBER_OK;
 }
 

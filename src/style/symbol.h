@@ -108,7 +108,8 @@ typedef struct camber_symbol {
 
 /* Evaluates the layout and paint of a symbol layer for a feature at the look's zoom. images: which images exist, for
  * "image" and "coalesce"; NULL: any. Strings and sections live in the arena, or in the style. A property that cannot be
- * evaluated has its default. Returns CAMBER_ERROR_MEMORY. */
+ * evaluated has its default. Symbols of equal values are equal byte by byte, except for their pointers.
+ * Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_layer_look_symbol(const camber_layer_look *look, const camber_feature_view *feature,
                                        const camber_style_images *images, camber_arena *arena, camber_symbol *symbol);
 /* Whether a symbol layer may have a text or an icon for a feature at any zoom. */

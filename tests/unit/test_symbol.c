@@ -680,6 +680,27 @@ static void test_document(void **state) {
     teardown(&f);
 }
 
+/* Symbols that differ only in their texts are the same bytes, so that they can be compared. */
+static void test_bytes(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    const char *members =
+        LAYOUT("\"text-field\": \"{a}\", \"text-variable-anchor\": [\"top\"], \"text-size\": [\"get\", "
+               "\"s\"], \"icon-padding\": [\"get\", \"p\"]");
+    assert_int_equal(parse_layer(&f, members), CAMBER_OK);
+    const camber_feature_view view = view_of(&f, "{\"a\": \"x\", \"s\": 7}");
+    const camber_layer_look look = camber_style_layer_look(f.style->layers, 10.0);
+    camber_symbol symbols[2];
+    for (int i = 0; i < 2; i++) {
+        memset(symbols + i, 17 * i, sizeof *symbols);
+        assert_int_equal(camber_layer_look_symbol(&look, &view, NULL, &f.arena, symbols + i), CAMBER_OK);
+        symbols[i].sections = NULL;
+    }
+    assert_memory_equal(symbols, symbols + 1, sizeof *symbols);
+    teardown(&f);
+}
+
 /* ---- Memory ---- */
 
 /* With any number of allocations the symbol is there, or memory is said to be short. */
@@ -734,23 +755,12 @@ static void test_memory_of_styles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain),
-        cmocka_unit_test(test_reference),
-        cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_layout),
-        cmocka_unit_test(test_paint),
-        cmocka_unit_test(test_alignments),
-        cmocka_unit_test(test_overlap),
-        cmocka_unit_test(test_anchors),
-        cmocka_unit_test(test_writing_modes),
-        cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_format),
-        cmocka_unit_test(test_images),
-        cmocka_unit_test(test_wants),
-        cmocka_unit_test(test_takes),
-        cmocka_unit_test(test_document),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_memory_of_styles),
+        cmocka_unit_test(test_plain),   cmocka_unit_test(test_reference), cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_layout),  cmocka_unit_test(test_paint),     cmocka_unit_test(test_alignments),
+        cmocka_unit_test(test_overlap), cmocka_unit_test(test_anchors),   cmocka_unit_test(test_writing_modes),
+        cmocka_unit_test(test_texts),   cmocka_unit_test(test_format),    cmocka_unit_test(test_images),
+        cmocka_unit_test(test_wants),   cmocka_unit_test(test_takes),     cmocka_unit_test(test_document),
+        cmocka_unit_test(test_bytes),   cmocka_unit_test(test_memory),    cmocka_unit_test(test_memory_of_styles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -266,9 +266,10 @@ static camber_status load_either_density(camber_sprites *sprites, const camber_s
         status = find_file(sprites->context, path, ".png", &small);
     if (status != CAMBER_OK || large || small)
         return status == CAMBER_OK ? load_density(sprites, sprite, path, large) : status;
-    return camber_fail(sprites->context, CAMBER_ERROR_NOT_FOUND,
-                       "sprite \"%s\": %s.png: no such file; check the path in the style, or take its patterns out",
-                       sprite->id, path);
+    return camber_fail(
+        sprites->context, CAMBER_ERROR_NOT_FOUND,
+        "sprite \"%s\": %s.png: no such file; check the path in the style, or take its patterns and icons out",
+        sprite->id, path);
 }
 
 /* Warns of a sprite on the network. */

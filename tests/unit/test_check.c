@@ -236,9 +236,38 @@ static void test_memory(void **state) {
     host_done(&h, context);
 }
 
+static void test_symbols(void **state) {
+    (void)state;
+    static const char *const json =
+        "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"symbol\", \"metadata\": {\"camber:overlap\": "
+        "\"unite\"}, \"layout\": {\"text-field\": \"{name}\", \"text-size\": -1, \"text-anchor\": \"middle\", "
+        "\"text-sise\": 3, \"text-color\": \"red\"}, \"paint\": {\"icon-color\": [\"match\", [\"get\", \"k\"], \"a\", "
+        "\"red\"]}}, {\"id\": \"b\", \"type\": \"symbol\"}, {\"id\": \"c\", \"type\": \"hillshade\"}]}";
+    static const char *const errors[] = {"/layers/0/layout/text-size", "/layers/0/layout/text-anchor",
+                                         "/layers/0/paint/icon-color"};
+    static const char *const warnings[] = {"/layers/0/metadata/camber:overlap", "/layers/0/layout/text-sise",
+                                           "/layers/0/layout/text-color", "/layers/2"};
+    host h;
+    camber_context *context = host_context(&h);
+    camber_style_report *report = NULL;
+    assert_int_equal(check(context, json, &report), CAMBER_OK);
+    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++)
+        if (!find(report, errors[i], true))
+            fail_msg("%s is not found", errors[i]);
+    for (size_t i = 0; i < sizeof warnings / sizeof *warnings; i++)
+        if (!find(report, warnings[i], false))
+            fail_msg("%s is not found", warnings[i]);
+    assert_int_equal(report->finding_count, 7);
+    assert_string_equal(report->types[0].type, "symbol");
+    assert_true(report->types[0].drawn && report->types[0].layers == 2);
+    assert_false(report->types[1].drawn);
+    camber_style_report_destroy(report);
+    host_done(&h, context);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_places),
-                                       cmocka_unit_test(test_root), cmocka_unit_test(test_what_is_drawn),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors),    cmocka_unit_test(test_symbols),
+                                       cmocka_unit_test(test_places),        cmocka_unit_test(test_root),
+                                       cmocka_unit_test(test_what_is_drawn), cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

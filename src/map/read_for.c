@@ -47,8 +47,9 @@ static double reach_of_style(const camber_style *style, const camber_view *view,
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
-        const bool counts = layer->kind == CAMBER_LAYER_CIRCLE || (!circles_only && layer->kind != CAMBER_LAYER_SYMBOL);
-        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->visible && !out && counts)
+        const bool counts = layer->kind == CAMBER_LAYER_CIRCLE || !circles_only;
+        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && layer->visible && !out &&
+            counts)
             reach = fmax(reach, reach_of(layer, view));
     }
     return reach;

@@ -40,6 +40,10 @@ struct camber_sources {
 static unsigned kinds_of(const camber_style_layer *layer) {
     switch (layer->kind) {
     case CAMBER_LAYER_BACKGROUND: return 0;
+    case CAMBER_LAYER_SYMBOL:
+        return (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LABEL_LINE : 0u) |
+               (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_LABEL_AREA : 0u) |
+               (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_LABEL_POINT : 0u);
     case CAMBER_LAYER_LINE:
         return (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
                (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
@@ -47,10 +51,6 @@ static unsigned kinds_of(const camber_style_layer *layer) {
         return (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_POINT : 0u) |
                (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
                (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
-    case CAMBER_LAYER_SYMBOL:
-        return (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_LABEL_POINT : 0u) |
-               (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LABEL_LINE : 0u) |
-               (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_LABEL_AREA : 0u);
     case CAMBER_LAYER_FILL: break;
     }
     return CAMBER_KIND_AREA | (layer->properties[CAMBER_FILL_OUTLINE_COLOR] ? CAMBER_KIND_POLYGON : 0u);

@@ -20,7 +20,7 @@ typedef struct camber_sprite_image {
     float (*stretch_x)[2], (*stretch_y)[2];
     size_t stretch_x_count, stretch_y_count;
     bool has_content;
-    float content[4]; /* left, top, right, bottom, px of the image: a text goes there. All of it without has_content */
+    float content[4]; /* left, top, right, bottom, px of the image: where a text goes. All of it without has_content */
 } camber_sprite_image;
 
 typedef struct camber_sprites {

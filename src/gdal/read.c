@@ -215,6 +215,14 @@ static camber_status read_kind(reader *self, OGRFeatureH feature, camber_geometr
                                                                        : status;
 }
 
+/* Whether a geometry may be a label's of a kind: a collection may be of each. way: it is the ring of an area. */
+static bool may_have(OGRGeometryH geometry, camber_geometry_kind kind, bool way) {
+    const int dimension = way ? 2 : OGR_G_GetDimension(geometry);
+    if (!way && wkbFlatten(OGR_G_GetGeometryType(geometry)) == wkbGeometryCollection)
+        return true;
+    return dimension == (kind == CAMBER_GEOMETRY_LABEL_POINT ? 0 : kind == CAMBER_GEOMETRY_LABEL_LINE ? 1 : 2);
+}
+
 /* Reads a feature for symbol layers, if one takes it. Whatever is odd about it was counted when it was read to be
  * drawn. */
 static camber_status read_label(reader *self, OGRFeatureH feature, camber_geometry_kind kind, bool way) {
@@ -223,6 +231,8 @@ static camber_status read_label(reader *self, OGRFeatureH feature, camber_geomet
     camber_features_stats ignored = {0};
     uint32_t index;
     bool kept;
+    if (!may_have(OGR_F_GetGeometryRef(feature), kind, way))
+        return CAMBER_OK;
     camber_status status = find_class(self, feature, kind, &index, &kept);
     if (status != CAMBER_OK || !kept)
         return status;

@@ -10,7 +10,7 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
     CAMBER_GEOMETRY_POINT,   /* lines of one point each */
-    /* What symbol layers label: the same geometry once more, in classes of its own, since names would split those of
+    /* Symbol layers label these: the same geometry once more, in classes of its own, since names would split those of
      * lines and areas. Nothing else is drawn of it. */
     CAMBER_GEOMETRY_LABEL_LINE,
     CAMBER_GEOMETRY_LABEL_AREA, /* rings as those of AREA */

@@ -8,6 +8,7 @@
 #include "map/plan.h"
 #include "pbf_file.h"
 #include "tilemaker.h"
+#include "tiles/features_file.h"
 
 #include <math.h>
 
@@ -483,10 +484,46 @@ static void test_suit(void **state) {
     }
 }
 
+/* A set that is kept in a file has its labels when it is loaded. */
+static void test_saved(void **state) {
+    file_reading *it = *state;
+    char path[128];
+    write_pbf(it, "file.pbf");
+    draw(it, 7);
+    camber_features *set = read_labelled(it, it->path, NULL, true), *loaded = create(it, false);
+    snprintf(path, sizeof path, "%s", in_folder(it, "kept"));
+    expect_ok(it, camber_features_save(set, 7, path, true));
+    expect_ok(it, camber_features_load(loaded, NULL, 0, 7, path));
+    assert_true(loaded->wants_labels);
+    expect_same_lines(loaded, set);
+    expect_labels(loaded, 2, 2, 2);
+    assert_int_equal(loaded->stats.features, set->stats.features);
+    assert_int_equal(loaded->stats.points, set->stats.points);
+    camber_features_destroy(loaded);
+    camber_features_destroy(set);
+}
+
+/* A label may reach into a picture from farther than a line. */
+static void test_margin(void **state) {
+    const camber_scene_desc scene = {
+        .view = {.kind = CAMBER_VIEW_CENTER, .longitude = 5, .latitude = 5, .zoom = 10, .width = 200, .height = 200}};
+    file_reading *it = *state;
+    double widths[2];
+    for (int labels = 0; labels < 2; labels++) {
+        camber_features *set = create(it, labels);
+        expect_ok(it, camber_features_read_for(set, &scene));
+        assert_true(set->has_region);
+        widths[labels] = set->region.x1 - set->region.x0;
+        camber_features_destroy(set);
+    }
+    assert_true(widths[1] > 1.5 * widths[0] && widths[1] < 4.0 * widths[0]);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_osm),    TEST(test_region), TEST(test_real_files), TEST(test_geojson),
-                                       TEST(test_source), TEST(test_tiles),  TEST(test_plan),       TEST(test_suit)};
+                                       TEST(test_source), TEST(test_tiles),  TEST(test_plan),       TEST(test_suit),
+                                       TEST(test_saved),  TEST(test_margin)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whether a file with this suffix exists beside the database and is not empty. */
+/* Whether a file with this suffix exists next to the database and is not empty. */
 static bool has_beside(const char *path, const char *ending) {
     char name[4096];
     struct stat about;
@@ -15,7 +15,7 @@ static bool has_beside(const char *path, const char *ending) {
            about.st_size > 0;
 }
 
-/* Whether the header says that writers keep a log. */
+/* Whether the database is in WAL mode, according to its header. */
 static bool keeps_log(const char *path) {
     unsigned char head[20] = "";
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);

@@ -162,7 +162,7 @@ static bool parse_name(const char *text, bool file, name *made) {
 }
 
 /* Whether a file with this name may be in the folder in addition to the tiles. */
-static bool is_beside(const char *entry, bool has_tileset) {
+static bool is_companion(const char *entry, bool has_tileset) {
     return strcmp(entry, "metadata.json") == 0 ||
            (has_tileset && (strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0));
 }
@@ -193,7 +193,7 @@ camber_status camber_folder_may_go(camber_context *context, const char *path) {
         name zoom;
         is_empty = is_empty && is_dots(entry->d_name);
         has_metadata = has_metadata || strcmp(entry->d_name, "metadata.json") == 0;
-        if (!is_dots(entry->d_name) && !is_beside(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
+        if (!is_dots(entry->d_name) && !is_companion(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
             status =
                 camber_fail(context, CAMBER_ERROR_IO,
                             "%s: has %s, which is not part of an archive of tiles, and would be lost; name another "
@@ -244,7 +244,7 @@ static camber_status list(const camber_folder_visitor *visitor, const char *fold
     const struct dirent *entry;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
         name made;
-        if (is_dots(entry->d_name) || (top && is_beside(entry->d_name, visitor->has_tileset)))
+        if (is_dots(entry->d_name) || (top && is_companion(entry->d_name, visitor->has_tileset)))
             continue;
         if (!parse_name(entry->d_name, files, &made))
             status = tell_stranger(visitor, folder, entry->d_name);

@@ -16,7 +16,7 @@ typedef struct grid {
 
 /* Whether a tile is wholly on the outer side of one of the quadrangle's sides. The quadrangle's bounding box was tested
  * before. */
-static bool is_beside(const grid *g, double column, double row) {
+static bool is_outside(const grid *g, double column, double row) {
     const double *c = g->cover->corners;
     double area = 0;
     for (int i = 0; i < 4; i++) {
@@ -43,7 +43,7 @@ static bool is_seen(const grid *g, double column, double row) {
     const double at = column - floor(column / g->side) * g->side;
     return column >= g->west && column < g->west + g->columns && row >= g->north && row < g->north + g->rows &&
            at < g->wanted[2] && at + 1 > g->wanted[0] && row < g->wanted[3] && row + 1 > g->wanted[1] &&
-           !is_beside(g, column, row);
+           !is_outside(g, column, row);
 }
 
 static unsigned open_sides(const grid *g, double column, double row) {

@@ -24,9 +24,8 @@ typedef struct interner {
     size_t string_slots, string_count;
     uint32_t *classes; /* index + 1; 0: free */
     size_t class_slots;
-    camber_value
-        *read;      /* scratch: the values of a class while it is being looked up. NULL: no class was looked up yet */
-    uint32_t layer; /* the layer of the last lookup, and whether the style's layers name it */
+    camber_value *read; /* scratch: the values of a class that is looked up. NULL: none was yet */
+    uint32_t layer;     /* the layer of the last lookup, and whether the style's layers name it */
     bool layer_is_named;
 } interner;
 

@@ -11,8 +11,7 @@ typedef struct camber_tile_stitcher camber_tile_stitcher;
 enum { CAMBER_SIDE_WEST = 1, CAMBER_SIDE_EAST = 2, CAMBER_SIDE_NORTH = 4, CAMBER_SIDE_SOUTH = 8 };
 
 typedef struct camber_tile_feature {
-    uint32_t column,
-        row; /* the tile, counted from the north-west; a column beyond the last belongs to the next copy of the world */
+    uint32_t column, row; /* the tile, from the north-west; columns may be in the next copy of the world */
     uint32_t class_index;
     bool outline; /* it is a polygon's: lines along the border were made by the tile, and are left out */
     bool area;    /* its lines are rings as described in rings.h; each is cut to the tile, at open sides, too */

@@ -17,8 +17,7 @@ typedef struct camber_tile_address {
 typedef struct camber_mvt_desc {
     camber_features *features;
     camber_tile_stitcher *stitcher;
-    const char *const
-        *layers; /* the names of the wanted layers. NULL: read none, and only list the layers that the tiles contain */
+    const char *const *layers; /* names of the wanted layers. NULL: only list the layers of the tiles */
     size_t layer_count;
     const unsigned *layer_kinds; /* layer_count: CAMBER_KIND_*, the kinds to read from each. NULL: decided by unsorted
                                     and no_schema */

@@ -34,8 +34,7 @@ typedef struct box_reader {
     bool split_only;           /* only lines that were split at the antimeridian are wanted */
     int64_t *keys;             /* by feature of the set: its number in the file */
     size_t key_capacity;
-    int64_t
-        *taken; /* a hash table of feature numbers; -1: free. Its size is a power of two, and at most half are in use */
+    int64_t *taken; /* hash table of feature numbers; -1: free. A power of two, at most half in use */
     size_t slot_count, taken_count;
 } box_reader;
 

@@ -27,8 +27,7 @@ static const size_t MOST_PROBED = (size_t)1 << 31;
 typedef struct way_start {
     uint64_t place;
     uint32_t way;
-    uint32_t
-        used_count; /* if it is the first way that begins at its place: how many ways from it on are already used */
+    uint32_t used_count; /* for the first way that begins at its place: how many from it on are used */
     bool used;
 } way_start;
 

@@ -63,9 +63,8 @@ typedef struct arranger {
     uint32_t *twins, *nodes; /* by half-edge: the same edge from its other end; the index of its place */
     uint32_t *first;         /* by node, and one more at the end: its first half-edge */
     uint32_t node_count;
-    uint32_t *parts; /* by node: its connected part; NONE */
-    uint8_t
-        *leaves; /* by half-edge: 1 if a ring leaves its place along it, 0 if a ring arrives along it; 2: not known */
+    uint32_t *parts;  /* by node: its connected part; NONE */
+    uint8_t *leaves;  /* by half-edge: 1 if a ring leaves along it, 0 if one arrives along it; 2: not known */
     uint32_t *stack;  /* of nodes, or of the half-edges of a walk */
     uint32_t *walked; /* by node: its position on the walk; NONE */
 } arranger;

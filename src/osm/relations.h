@@ -22,9 +22,8 @@ typedef struct camber_osm_member_way {
     size_t first_place;
     uint32_t place_count; /* 0: the file does not have it */
     uint32_t set;         /* index of its own set of tags, + 1; 0: it has none */
-    uint32_t
-        listed; /* the last relation for which it was listed, + 1, so that a way that is named twice is a member once */
-    bool is_outer; /* a relation has its tags and is filled instead of it */
+    uint32_t listed;      /* the last relation that listed it, + 1: a way named twice is a member once */
+    bool is_outer;        /* a relation has its tags and is filled instead of it */
 } camber_osm_member_way;
 
 typedef struct camber_osm_relations {

@@ -55,8 +55,7 @@ typedef struct camber_osm_ways {
 
     camber_osm_way *ways;
     size_t way_count, way_capacity;
-    uint32_t *
-        ids; /* node_count: index of a leaf of the block, times 2^CAMBER_OSM_LEAF_BITS, plus the lower bits of the id */
+    uint32_t *ids; /* node_count: leaf of the block * 2^CAMBER_OSM_LEAF_BITS + the id's lower bits */
     size_t id_capacity;
     uint32_t *leaves; /* the leaves of the blocks, one block after the other, as indices of leaves of the node set */
     size_t leaf_count, leaf_capacity;

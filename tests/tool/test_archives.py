@@ -227,11 +227,11 @@ def broken_pmtiles():
     yield "clustered is 2", archive(good, tile, clustered=2)
     yield "its sections add up", archive(good, tile) + b"x"
     yield "ends past the section of tiles", archive([(0, 1, n, 0), (1, 4, n, 7)], tile)
-    yield "order of a clustered archive", archive([(0, 1, n, n), (1, 4, n, 0)], two)
+    yield "is out of order, although", archive([(0, 1, n, n), (1, 4, n, 0)], two)
     yield "occurs twice", archive([(0, 2, n, 0), (1, 4, n, 0)], tile, addressed=6)
     yield "addressed tiles: the header says", archive(good, tile, addressed=6)
-    yield "entries are said", archive(good, tile, entries=3)
-    yield "contents are said", archive(good, tile, contents=2)
+    yield "entries: the header says", archive(good, tile, entries=3)
+    yield "contents: the header says", archive(good, tile, contents=2)
     yield "lowest zoom is given", archive(good[1:], tile, addressed=4, entries=1)
     yield "highest zoom is given", archive(good, tile, high=2)
     yield "centre's zoom", archive(good, tile, zoom=2)
@@ -263,7 +263,7 @@ def broken_pmtiles():
     yield "belong to none", archive(pointer, tile, [leaf, b"rest"], addressed=5, entries=2, contents=1)
     yield "begins after it", archive([(0, 1, n, 0), (2, 0, len(leaf), 0)], tile, [leaf], addressed=5, entries=2,
                                       contents=1)
-    yield "outside the section of leaves", archive([(0, 1, n, 0), (1, 0, len(leaf), 50)], tile, [leaf])
+    yield "outside the section of leaf directories", archive([(0, 1, n, 0), (1, 0, len(leaf), 50)], tile, [leaf])
     yield "ends past the end", archive([(0, 0, 99, 10 ** 6)], tile)
     inner = directory([(1, 0, len(leaf), 0)])
     yield "lead to others", archive([(0, 1, n, 0), (1, 0, len(inner), len(leaf))], tile, [leaf, inner], addressed=5,
@@ -336,7 +336,7 @@ def test_folder_rules():
     change("does not have the name of a tile", lambda: write("rule/1/0/01.png", tile))
     change("does not have the name of a tile", lambda: os.mkdir("rule/maps"))
     change("no such column or row", lambda: write("rule/1/0/2.png", tile))
-    change("not named as a tile of type", lambda: os.rename("rule/1/0/0.png", "rule/1/0/0.webp"))
+    change("does not have the name of a tile of type", lambda: os.rename("rule/1/0/0.png", "rule/1/0/0.webp"))
     change("occurs twice", lambda: write("rule/1/0/0.webp", tile))
     change("no metadata.json", lambda: os.unlink("rule/metadata.json"))
     change("is a PNG that is cut off", lambda: write("rule/1/0/0.png", tile[:-4]))

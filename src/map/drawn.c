@@ -1,7 +1,7 @@
-/* Tells what of a set of features is drawn between two zooms, and where it lies.
+/* Finds which features are drawn between two zooms, and the box around them.
  *
- * Input: features and zooms. Output: for a class whether it is drawn, and the box of all that is. A class is asked at
- * the last zoom first, where most styles draw everything. */
+ * Input: features and zooms. Output: whether a class is drawn, and the box of everything that is drawn. A class is
+ * tested at the last zoom first, because most styles draw everything there. */
 #include "features/mercator.h"
 #include "map/plan.h"
 
@@ -36,7 +36,7 @@ bool camber_plan_draws(const camber_features *features, const camber_feature_cla
     return any;
 }
 
-/* ---- Where it lies ---- */
+/* ---- The box ---- */
 
 static void add_polyline(const camber_features *features, size_t polyline, double shift, camber_box *box) {
     for (size_t i = features->offsets[polyline]; i < features->offsets[polyline + 1]; i++)
@@ -44,7 +44,7 @@ static void add_polyline(const camber_features *features, size_t polyline, doubl
             camber_box_add(box, features->points[2 * i] + shift, features->points[2 * i + 1]);
 }
 
-/* Whether the polyline lies in the western half of the world. */
+/* Whether the polyline is in the western half of the world. */
 static bool is_western(const camber_features *features, size_t polyline) {
     camber_box box = CAMBER_BOX_EMPTY;
     add_polyline(features, polyline, 0.0, &box);
@@ -53,7 +53,7 @@ static bool is_western(const camber_features *features, size_t polyline) {
 
 camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom,
                                     camber_box *box) {
-    camber_box moved = CAMBER_BOX_EMPTY; /* the western half of the world behind the eastern one */
+    camber_box moved = CAMBER_BOX_EMPTY; /* with the western half of the world moved east of the eastern half */
     bool *drawn = camber_alloc_zero(features->context, features->class_count, sizeof *drawn);
     *box = CAMBER_BOX_EMPTY;
     if (!drawn)

@@ -1,14 +1,15 @@
-/* Says why nothing of a set of features is drawn: what was read, what hides it, and the cure.
+/* Explains why a picture is empty: how much was read, what hides it, and what to do.
  *
- * Input: features, and the zooms that were to be drawn. Output: one sentence. The first cause that holds for all
- * features is told: none was read, the style takes none, it draws none at this zoom, none lies in the view. */
+ * Input: features, and the zooms that were to be drawn. Output: one sentence. It names the first cause that applies to
+ * all features: none were read, no layer of the style takes them, the style draws none at this zoom, or none are in the
+ * view. */
 #include "map/plan.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* More classes than these are not asked for the zooms that they are drawn at. */
+/* At most this many classes are tested at each zoom. */
 enum { MOST_CLASSES = 256, LAST_ZOOM = 22 };
 
 typedef struct sentence {
@@ -36,7 +37,8 @@ static size_t most(size_t a, size_t b) {
     return a > b ? a : b;
 }
 
-/* "2 lines, 1 area (0.3 MB) were read". An area whose outline is drawn, too, or which is labelled, is one area. */
+/* Writes, for example, "2 lines, 1 area of 0.3 MB read". An area whose outline is also drawn, or which is labelled,
+ * counts once. */
 static void say_read(sentence *s, const camber_features *features) {
     size_t kinds[CAMBER_GEOMETRY_KINDS] = {0};
     bool any = false;
@@ -65,9 +67,9 @@ static void say_unread(sentence *s, const camber_features *features) {
             "--strategy=complete_ways, osmium getid --add-referenced)",
             stats->missing_nodes);
     else if (features->has_region)
-        say(s, ": nothing lies in the view; without --bbox and --center all of it is shown");
+        say(s, ": nothing is in the view; leave out --bbox and --center to show everything");
     else if (stats->skipped_features)
-        say(s, ": %zu features are of a geometry that the style does not draw; choose another one with --style",
+        say(s, ": the style does not draw the geometry of %zu features; choose another style with --style",
             stats->skipped_features);
     else
         say(s, "; check that this is the file you mean");
@@ -93,8 +95,8 @@ static bool any_at(const camber_features *features, double zoom) {
     return false;
 }
 
-/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. Those that lines and circles of any source
- * layer go by come first. */
+/* Lists up to eight of the keys that the style reads: "highway, MTFCC, ...", or nothing. Keys that lines and circles of
+ * any source layer use come first. */
 static void list_properties(const camber_style *style, sentence *s) {
     const size_t count = style->schema.property_count;
     size_t listed = 0;
@@ -104,7 +106,7 @@ static void list_properties(const camber_style *style, sentence *s) {
         const bool is_first = readers && readers[i].kinds & CAMBER_KIND_LINE;
         if (is_first != (k < count))
             continue;
-        say(s, "%s%.64s", listed ? ", " : ": it goes by ", listed == 8 ? "..." : style->schema.properties[i]);
+        say(s, "%s%.64s", listed ? ", " : ": it reads ", listed == 8 ? "..." : style->schema.properties[i]);
         listed++;
     }
 }
@@ -116,7 +118,7 @@ static bool any_between(const camber_features *features, double min_zoom, double
     return any;
 }
 
-/* The style draws nothing of the features at these zooms. */
+/* Says that the style draws none of the features at these zooms. */
 static void say_hidden(sentence *s, const camber_features *features, double min_zoom, double max_zoom) {
     int first = 0, last = LAST_ZOOM;
     char zooms[64];
@@ -126,13 +128,13 @@ static void say_hidden(sentence *s, const camber_features *features, double min_
     while (last > first && !any_at(features, last))
         last--;
     if (first <= LAST_ZOOM && last < LAST_ZOOM)
-        say(s, ", but the style draws none of it at %s; it does from zoom %d to %d", zooms, first, last);
+        say(s, ", but the style draws none of it at %s; it draws some from zoom %d to %d", zooms, first, last);
     else if (first <= LAST_ZOOM)
-        say(s, ", but the style draws none of it at %s; it does from zoom %d on", zooms, first);
+        say(s, ", but the style draws none of it at %s; it draws some from zoom %d on", zooms, first);
     else {
         say(s, ", but no layer of the style draws any of it");
         list_properties(features->style, s);
-        say(s, "; name a style that does with --style");
+        say(s, "; choose a style that does with --style");
     }
 }
 
@@ -141,10 +143,10 @@ static camber_status say_elsewhere(sentence *s, const camber_features *features,
     double bounds[4];
     const camber_status status = camber_plan_drawn_box(features, min_zoom, max_zoom, &box);
     if (camber_plan_unproject_box(&box, bounds))
-        say(s, ", but none of it lies in the view; --bbox %.6g,%.6g,%.6g,%.6g shows it", bounds[0], bounds[1],
-            bounds[2], bounds[3]);
+        say(s, ", but none of it is in the view; --bbox %.6g,%.6g,%.6g,%.6g shows it", bounds[0], bounds[1], bounds[2],
+            bounds[3]);
     else
-        say(s, ", but none of it lies in the view; without --bbox and --center all of it is shown");
+        say(s, ", but none of it is in the view; leave out --bbox and --center to show everything");
     return status;
 }
 

@@ -1,8 +1,15 @@
+/* Fits a view to everything that a style draws.
+ *
+ * Input: features, and a view whose size, ratio and bearing are set. Output: the moved view and its plan. The features
+ * that are drawn depend on the zoom, so the view is fitted to a first guess, and again if other features are drawn
+ * then.
+ */
 #include "map/plan.h"
 
 #include <math.h>
 
-/* A zoom at which practically every road style draws all of its classes: the first guess at what will be drawn. */
+/* Nearly every road style draws all of its classes at this zoom, so it is the first guess at which features will be
+ * drawn. */
 static const double FIRST_ZOOM = 14.0;
 static const double LARGEST_FIT_ZOOM = 22.0;
 static const double FILL = 0.96; /* a margin of 2 % on each side */
@@ -11,8 +18,8 @@ static bool is_empty(camber_box box) {
     return box.x0 > box.x1;
 }
 
-/* Bounds in the view's turned axes, twice: of the data as it is, and with the western half of the world moved behind
- * the eastern one. The latter are smaller for data on both sides of the antimeridian. */
+/* Two bounds of the same data in the view's rotated axes: as it is, and with the western half of the world moved east
+ * of the eastern half. The second one is smaller if the data is on both sides of the antimeridian. */
 typedef struct two_bounds {
     camber_box plain, moved;
 } two_bounds;
@@ -39,7 +46,7 @@ static void add_polyline(const camber_features *features, size_t polyline, const
     camber_box_add(&bounds->moved, box.x1 + du, box.y1 + dv);
 }
 
-/* The bounds of all features, with labels or without. */
+/* Returns the bounds of all features, with labels or without. */
 static two_bounds bounds_of_all(const camber_features *features, const camber_view *view, bool labels) {
     two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
     for (size_t p = 0; p < features->polyline_count; p++)
@@ -48,7 +55,7 @@ static two_bounds bounds_of_all(const camber_features *features, const camber_vi
     return bounds;
 }
 
-/* The bounds of what the plan draws. */
+/* Returns the bounds of what the plan draws. */
 static two_bounds bounds_of(const camber_features *features, const camber_view *view, const camber_plan *plan) {
     two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
     for (size_t s = 0; s < plan->set_count; s++)

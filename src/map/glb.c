@@ -1,33 +1,33 @@
-/* Binary glTF 2.0 of a mesh.
+/* Writes a mesh as binary glTF 2.0.
  *
- * One node and one mesh. Its lines are a primitive: TRIANGLES, or a TRIANGLE_STRIP whose restarts became degenerate
- * triangles (glTF has no restart index; as a list of triangles the indices would take three times the space). x points
- * right, y up, z is 0, one unit is a device pixel, and the picture's top left is the origin: everything is
- * camber_vertex mirrored at y = 0. The formulas of camber.h hold as they stand, in the mirrored frame.
+ * The file has one node with one mesh. Its lines are one primitive: TRIANGLES, or a TRIANGLE_STRIP in which degenerate
+ * triangles replace the restarts (glTF has no restart index, and as a list of triangles the indices would take three
+ * times the space). x points right, y up, z is 0, one unit is a device pixel, and the origin is the picture's top left:
+ * everything is camber_vertex mirrored at y = 0. The formulas of camber.h hold unchanged in the mirrored frame.
  *
- * Areas, where there are some, are another primitive before it, of TRIANGLES, with POSITION and COLOR_0. Layers of
- * areas lie at z = -1, -2 and so on, so that viewers see the first one lowest, and lines above all. The primitive's
- * extras.fills has {layer, color: straight sRGB RGBA, indices: [first, count]} in drawing order. The triangles of a
- * fill do not overlap.
+ * Areas, if there are any, are another primitive before it, of TRIANGLES, with POSITION and COLOR_0. Layers of areas
+ * are at z = -1, -2 and so on, so that viewers show the first one lowest and the lines above all of them. The
+ * primitive's extras.fills has {layer, color: straight sRGB RGBA, indices: [first, count]} in drawing order. The
+ * triangles of a fill do not overlap.
  *
  * Attributes of lines, interleaved:
  *     POSITION  VEC3 float      the stroke's true outline: the formula of camber_vertex with g = half the stroke's
- *                               width. Vertices at a butt end lie on the end point's normal: the limit that they
- *                               carry is the pad of anti-aliasing, which an outline does not have. Round caps and
- *                               joins are the boxes and kites that the arcs are drawn in.
- *     _CENTER   VEC2 float      P, the segment's end that the vertex belongs to
+ *                               width. Vertices at a butt end are on the normal of the end point, because the limit
+ *                               that they carry is padding for anti-aliasing, which an outline does not have. Round
+ *                               caps and joins are the boxes and kites that the arcs are drawn in.
+ *     _CENTER   VEC2 float      P, the end of the segment that the vertex belongs to
  *     _SEGMENT  VEC2 float      B - A; 0, 0 for a dot
  *     _EXTRUDE  VEC3 float      along and across in units of g, and the limit of along * g in pixels (3e38: none)
  *     _TURN     VEC2 short, normalised   tan(turn angle / 4) at A and at B, positive counter-clockwise as seen
- *     _ROW      SCALAR float    of the style table; rows are below 2^24, so a float holds them exactly (glTF allows
- *                               no 32-bit integers here)
+ *     _ROW      SCALAR float    row of the style table. Rows are below 2^24, so a float holds them exactly (glTF
+ *                               allows no 32-bit integers here)
  *     _FLAGS    SCALAR unsigned short    camber_vertex.flags: bits 0-2 the end at A, 3-5 at B (camber_end), 6: P is B,
  *                               7, 8: the line begins or ends one segment further
- *     COLOR_0   VEC4 unsigned short, normalised   the row's paint, linear as glTF wants it; absent without paints
+ *     COLOR_0   VEC4 unsigned short, normalised   the row's paint, linear as glTF requires; absent without paints
  *
- * In both modes the last (provoking) vertex of a triangle carries the segment that the triangle draws.
- * mesh.extras.rows is the style table: {width, join, cap, miterLimit, paint: {width, color: straight sRGB RGBA}}.
- * A mesh without vertices gives a file with an empty scene: glTF allows no empty accessors. */
+ * In both modes the last (provoking) vertex of a triangle carries the segment that the triangle draws. mesh.extras.rows
+ * is the style table: {width, join, cap, miterLimit, paint: {width, color: straight sRGB RGBA}}. A mesh without
+ * vertices becomes a file with an empty scene, because glTF allows no empty accessors. */
 #include "base/base.h"
 #include "camber_map.h"
 #include "camber_proof.h"
@@ -39,7 +39,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Numbers of glTF, which it takes from GL. */
+/* glTF's constants, which are those of OpenGL. */
 enum {
     GLTF_SHORT = 5122,
     GLTF_UNSIGNED_SHORT = 5123,
@@ -85,7 +85,7 @@ typedef struct writer {
     uint64_t taken, total; /* bytes */
     bool refused;
     float low[3], high[3];                 /* bounds of POSITION */
-    uint64_t index_count;                  /* written, restarts replaced */
+    uint64_t index_count;                  /* as written, with restarts replaced */
     uint64_t line_bytes[2], area_bytes[2]; /* of vertices and indices */
 } writer;
 
@@ -100,7 +100,7 @@ static void flush(writer *w) {
         camber_progress(w->context, "writing", (double)w->taken / (double)w->total);
 }
 
-/* Makes room for size_bytes, at most BLOCK_BYTES, in the block. */
+/* Makes room in the block for size_bytes, which is at most BLOCK_BYTES. */
 static void want(writer *w, size_t size_bytes) {
     if (w->used + size_bytes > BLOCK_BYTES)
         flush(w);
@@ -209,7 +209,7 @@ static void put_vertices(writer *w, const uint16_t *colors) {
 
 /* ---- Areas ---- */
 
-/* The height of a fill: the topmost layer lies at -1. */
+/* Returns the height of a fill. The topmost layer is at -1. */
 static float height_of(const camber_area_data *areas, const camber_area_fill *fill) {
     return (float)fill->level - (float)areas->fills[areas->fill_count - 1].level - 1.0f;
 }
@@ -245,8 +245,8 @@ static void put_index(writer *w, uint32_t index, bool count_only) {
     put_u32(w, index);
 }
 
-/* Finds the end of the strip that begins at an index: a restart, or the place where a tight join's start follows its
- * end. */
+/* Finds the end of the strip that begins at an index: a restart, or the position where the start of a tight join
+ * follows its end. */
 static size_t strip_end(const camber_mesh_data *mesh, size_t first) {
     const size_t count = mesh->info.index_count;
     size_t end = first;
@@ -261,8 +261,9 @@ static size_t strip_end(const camber_mesh_data *mesh, size_t first) {
     return end;
 }
 
-/* Joins two strips a and b into one without drawing between them: it repeats the last index of a and the first of b.
- * The latter comes twice if b's triangles would otherwise change places from even to odd, and so their winding. */
+/* Joins two strips a and b into one without drawing anything between them, by repeating the last index of a and the
+ * first of b. The first of b is repeated twice if b's triangles would otherwise move from even to odd positions, which
+ * would reverse their winding. */
 static void put_indices(writer *w, bool count_only) {
     const uint32_t *indices = w->mesh->indices;
     const size_t count = w->mesh->info.index_count;
@@ -339,19 +340,19 @@ static bool is_translucent(const camber_glb_desc *desc, bool areas) {
 /* The material is unlit and seen from both sides. */
 static json_t *material(const camber_glb_desc *desc, bool areas, bool *ok) {
     json_t *pbr = json_pack("{s:f, s:f}", "metallicFactor", 0.0, "roughnessFactor", 1.0);
-    if (!areas && !desc->paints) /* grey is seen on a viewer's black and on its white */
+    if (!areas && !desc->paints) /* grey is visible both on a viewer's black and on its white */
         set(pbr, "baseColorFactor", json_pack("[f,f,f,f]", 0.5, 0.5, 0.5, 1.0), ok);
     return json_pack("{s:s, s:b, s:s, s:o, s:{s:{}}}", "name", areas ? "areas" : "lines", "doubleSided", 1, "alphaMode",
                      is_translucent(desc, areas) ? "BLEND" : "OPAQUE", "pbrMetallicRoughness", pbr, "extensions",
                      "KHR_materials_unlit");
 }
 
-/* Adds an accessor; its number. view: of the bufferView. */
+/* Adds an accessor of a bufferView, and returns its number. */
 static int add_accessor(json_t *root, size_t view, const attribute *a, uint64_t count, bool *ok) {
     json_t *list = json_object_get(root, "accessors");
     json_t *accessor = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", (json_int_t)view, "componentType", a->component,
                                  "count", (json_int_t)count, "type", a->type);
-    if (a->name) /* indices have a view of their own */
+    if (a->name) /* indices have a bufferView of their own */
         set(accessor, "byteOffset", json_integer(a->offset_bytes), ok);
     if (a->normalized)
         set(accessor, "normalized", json_true(), ok);
@@ -365,7 +366,7 @@ static void set_bounds(json_t *root, int accessor, const float low[3], const flo
     set(it, "max", json_pack("[f,f,f]", (double)high[0], (double)high[1], (double)high[2]), ok);
 }
 
-/* Adds a bufferView behind those that are there. stride: 0 of indices. */
+/* Adds a bufferView after the existing ones, and returns its number. stride is 0 for indices. */
 static size_t add_view(json_t *root, uint64_t start, uint64_t size_bytes, int stride, bool *ok) {
     json_t *views = json_object_get(root, "bufferViews");
     json_t *view = json_pack("{s:i, s:I, s:I, s:i}", "buffer", 0, "byteOffset", (json_int_t)start, "byteLength",
@@ -378,7 +379,7 @@ static size_t add_view(json_t *root, uint64_t start, uint64_t size_bytes, int st
 
 static const attribute INDEX = {NULL, "SCALAR", GLTF_UNSIGNED_INT, 0, false};
 
-/* Adds the primitive of the lines, whose bytes come first. */
+/* Adds the primitive of the lines. Their bytes come first. */
 static void describe_lines(json_t *root, json_t *primitives, const writer *w, bool *ok) {
     const size_t attribute_count = w->desc->paints ? ATTRIBUTE_COUNT : ATTRIBUTE_COUNT - 1;
     const size_t vertices = add_view(root, 0, w->line_bytes[0], w->desc->paints ? COLORED_STRIDE : PLAIN_STRIDE, ok);
@@ -398,7 +399,7 @@ static void describe_lines(json_t *root, json_t *primitives, const writer *w, bo
     append(materials, material(w->desc, false, ok), ok);
 }
 
-/* Adds the primitive of the areas, whose bytes lie behind those of the lines. */
+/* Adds the primitive of the areas. Their bytes come after those of the lines. */
 static void describe_areas(json_t *root, json_t *primitives, const writer *w, bool *ok) {
     static const attribute position = {"POSITION", "VEC3", GLTF_FLOAT, 0, false},
                            color = {"COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 12, true};
@@ -458,13 +459,14 @@ static void describe_mesh(json_t *root, const writer *w, bool *ok) {
     set(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)binary_bytes_of(w)), ok);
 }
 
-/* Returns the text of the JSON chunk; free it with camber_free. NULL: out of memory, and nothing has been logged. */
+/* Returns the text of the JSON chunk, to be freed with camber_free. NULL: out of memory, and nothing has been logged.
+ */
 static char *make_json(const writer *w) {
     bool ok = true;
     char generator[32];
     snprintf(generator, sizeof generator, "camber %s", camber_version());
     json_t *asset = json_pack("{s:s, s:s}", "version", "2.0", "generator", generator);
-    if (w->desc->copyright) /* what is optional to json_pack is left out where memory is short */
+    if (w->desc->copyright) /* json_pack would silently leave out an optional value if memory runs out */
         set(asset, "copyright", json_string(w->desc->copyright), &ok);
     json_t *scene = binary_bytes_of(w) ? json_pack("{s:[i]}", "nodes", 0) : json_object();
     json_t *root = json_pack("{s:o, s:i, s:[o]}", "asset", asset, "scene", 0, "scenes", scene);
@@ -482,7 +484,7 @@ static char *make_json(const writer *w) {
     return text;
 }
 
-/* Checks text by RFC 3629: shortest form, no surrogates, up to U+10FFFF. */
+/* Checks text according to RFC 3629: shortest form, no surrogates, up to U+10FFFF. */
 static bool is_utf8(const char *text) {
     static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
     for (const unsigned char *c = (const unsigned char *)text; *c;) {
@@ -510,7 +512,7 @@ static void put_chunk_head(writer *w, uint64_t size_bytes, uint32_t type) {
     put_u32(w, type);
 }
 
-/* Rejects numbers that JSON cannot hold: it has finite ones only. */
+/* Rejects infinity and NaN, which JSON cannot represent, and a copyright that is not UTF-8. */
 static camber_status check_desc(camber_context *context, const camber_glb_desc *desc) {
     if (desc->copyright && !is_utf8(desc->copyright))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "GLB: the copyright is not UTF-8; convert it");
@@ -587,7 +589,7 @@ camber_status camber_glb_write(camber_context *context, const camber_mesh_data *
         w.area_bytes[0] = (uint64_t)desc->areas->point_count * AREA_STRIDE;
         w.area_bytes[1] = (uint64_t)desc->areas->index_count * 4;
     }
-    status = check_size(context, binary_bytes_of(&w)); /* before the work */
+    status = check_size(context, binary_bytes_of(&w)); /* fails before any work is done */
     if (status != CAMBER_OK)
         goto done;
     status = CAMBER_ERROR_MEMORY;

@@ -1,21 +1,21 @@
-/* The plan of a scene: the style evaluated at a view's zoom, for each set of layers and each class of features once.
+/* Makes the plan of a scene: evaluates the style at a view's zoom, once for each set of layers and each class of
+ * features.
  *
- * Input: features with their style, and a view. Output: camber_plan. Layers that may share polylines are put into sets;
- * each set evaluates its layers for each class, and equal results become one row; then the polylines are listed by set,
- * as entries. Rows are few, since a city of 50,000 ways has some hundred classes, so what is evaluated does not grow
- * with the features.
- */
+ * Input: features with their style, and a view. Output: camber_plan. Layers that may share polylines are put into sets.
+ * Each set evaluates its layers for each class, and equal results become one row. Then the polylines are listed by set,
+ * as entries. A city of 50,000 ways has a few hundred classes, so there are few rows, and the number of evaluations
+ * does not grow with the number of features. */
 #include "map/plan.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The widest that a stroke may be: camber.h. */
+/* The largest width of a stroke, as in camber.h. */
 static const double WIDEST_PX = 16384.0;
 static const size_t MOST_ROWS = (size_t)1 << 24, MOST_MATCHES = (size_t)1 << 26;
 
-/* The part of camber_style_layer_matches that needs no feature. A max_zoom of 24 means no limit. */
+/* Does the part of camber_style_layer_matches that needs no feature. A max_zoom of 24 means no limit. */
 static bool is_active(const camber_style_layer *layer, double zoom) {
     return layer->visible && layer->min_zoom <= zoom && (zoom < layer->max_zoom || layer->max_zoom >= 24.0);
 }
@@ -29,8 +29,8 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
     };
 }
 
-/* Areas are filled; the outlines of polygons are lines too, and points the dots of plain layers' round caps. Circles
- * lie about all points of anything. */
+/* Areas are filled. The outlines of polygons are also lines. Points are drawn only by circles, and by plain layers as
+ * dots, which are round caps. Circles are drawn at all points of any geometry. */
 static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, camber_geometry_kind kind) {
     if (part == CAMBER_PLAN_AREA)
         return kind == CAMBER_GEOMETRY_AREA;
@@ -40,9 +40,9 @@ static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, c
     return kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POLYGON || (kind == CAMBER_GEOMETRY_POINT && points);
 }
 
-/* Whether features of the class come to the layer's filter. */
-static bool comes_to(const camber_features *features, const camber_style_layer *layer,
-                     const camber_feature_class *class) {
+/* Whether the layer's filter gets to see features of the class: whether its source and its source layer match. */
+static bool matches_source(const camber_features *features, const camber_style_layer *layer,
+                           const camber_feature_class *class) {
     if (layer->plain && !class->plain)
         return false;
     if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
@@ -50,7 +50,7 @@ static bool comes_to(const camber_features *features, const camber_style_layer *
     return !layer->source_layer || strcmp(layer->source_layer, features->layer_names[class->layer]) == 0;
 }
 
-/* The part of a layer that is named after it. */
+/* Returns the main part of a layer, the one that gives the layer type its name. */
 static camber_plan_part part_of(const camber_style_layer *layer) {
     return layer->kind == CAMBER_LAYER_FILL     ? CAMBER_PLAN_AREA
            : layer->kind == CAMBER_LAYER_CIRCLE ? CAMBER_PLAN_CIRCLES
@@ -60,7 +60,7 @@ static camber_plan_part part_of(const camber_style_layer *layer) {
 bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
                         const camber_feature_class *class) {
     const camber_feature_view feature = camber_plan_view_of(features, class);
-    return layer->kind == CAMBER_LAYER_SYMBOL && class->labelled && comes_to(features, layer, class) &&
+    return layer->kind == CAMBER_LAYER_SYMBOL && class->labelled && matches_source(features, layer, class) &&
            camber_style_layer_matches(layer, zoom, &feature);
 }
 
@@ -71,13 +71,13 @@ bool camber_plan_takes(const camber_features *features, const camber_style_layer
     const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
                       (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
     return layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && fits &&
-           comes_to(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
+           matches_source(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
                         const camber_feature_class *class) {
     const camber_style_layer *layer = drawn->look.layer;
-    if (!takes_kind(layer, drawn->part, class->geometry) || !comes_to(features, layer, class))
+    if (!takes_kind(layer, drawn->part, class->geometry) || !matches_source(features, layer, class))
         return false;
     const camber_feature_view feature = camber_plan_view_of(features, class);
     return camber_style_layer_matches(layer, camber_view_style_zoom(view), &feature);
@@ -112,8 +112,8 @@ static bool shares_polylines(const camber_plan_layer *one, const camber_plan_lay
            camber_layer_look_shares(&one->look, &other->look);
 }
 
-/* A hash table of sets, by what layers must agree in to share one, so that time grows only with the number of
- * layers. */
+/* A hash table of sets. The key is what layers must have in common to share one, so that the time grows only linearly
+ * with the number of layers. */
 typedef struct set_table {
     uint32_t *slots;   /* set + 1; 0: free */
     size_t slot_count; /* a power of two */
@@ -126,7 +126,7 @@ static uint64_t set_hash(const camber_style_layer *layer) {
     return camber_hash(hash, layer->filter_key, strlen(layer->filter_key));
 }
 
-/* Finds the slot of the set that the layer shares, or an empty slot for a new one. */
+/* Finds the slot of the set that the layer can share, or an empty slot for a new set. */
 static uint32_t *find_set(const camber_plan *plan, const set_table *table, const camber_plan_layer *layer) {
     const uint64_t hash = set_hash(layer->look.layer);
     size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
@@ -135,7 +135,7 @@ static uint32_t *find_set(const camber_plan *plan, const set_table *table, const
     return table->slots + at;
 }
 
-/* Computes the translation: one that is fixed to the map turns with it. */
+/* Computes the translation. If it is anchored to the map, it rotates with the map. */
 static void find_translation(const camber_layer_look *look, const camber_view *view, float translate_px[2]) {
     const bool turns = look->paint.translate_anchor == CAMBER_TRANSLATE_MAP;
     const double cosine = turns ? view->cosine : 1.0, sine = turns ? view->sine : 0.0;
@@ -181,7 +181,7 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
     set_table table = {.slot_count = 16};
     while (table.slot_count / 4 < style->layer_count)
         table.slot_count *= 2;
-    /* A line comes with its border, and an area with its outline. */
+    /* A line may add its border, and an area its outline. */
     if (!(plan->layers = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->layers)) ||
         !(plan->ramps = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->ramps)) ||
         !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, 2 * sizeof *plan->sets)) ||
@@ -209,19 +209,18 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
 
 /* ---- Rows ---- */
 
-/* The stroke of one class in a set, with its paints in all of the set's layers, and a hash table of rows to find
- * equal ones by. */
+/* The stroke of one class in a set, its paints in all of the set's layers, and a hash table to find equal rows. */
 typedef struct row_table {
     camber_stroke stroke;
     camber_paint *tuple;
-    camber_plan_fill *areas; /* the fills of the tuple, in a set of areas */
+    camber_plan_fill *areas; /* the fills of the tuple, if this is a set of areas */
     uint32_t *slots;         /* row + 1; 0: free */
     size_t slot_count;       /* a power of two */
-    bool failed;             /* no memory for dashes or patterns */
-    bool of_stroke;          /* of circles: the dot is that of the stroke */
+    bool failed;             /* out of memory for dashes or patterns */
+    bool of_stroke;          /* for circles: whether this dot is the stroke */
 } row_table;
 
-/* By set, class and dot: the row, CAMBER_NO_ROW where the set does not draw it, and the key in a sorted set. */
+/* By set, class and dot: the row, or CAMBER_NO_ROW if the set does not draw it, and the key if the set is sorted. */
 typedef struct plan_classes {
     uint32_t *rows;
     double *keys;
@@ -234,13 +233,14 @@ typedef struct class_rows {
     row_table table;
 } class_rows;
 
-/* The width that a paint covers, with its gap. */
+/* Returns the width that a paint covers, including its gap. */
 static float whole_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-/* The paint of a layer without its border, of the border alone, or of an area's outline, 1 px wide. The border is a
- * wider line below, or, where that would be seen through, two rails beside the line. */
+/* Returns the paint of one part of a layer: the line without its border, only the border, or an area's outline, which
+ * is 1 px wide. The border is a wider line below; if it would shine through the line, it is two rails next to the line
+ * instead. */
 static camber_layer_paint paint_of_part(const camber_plan_layer *layer, const camber_layer_paint *whole) {
     camber_layer_paint own = *whole;
     if (layer->part == CAMBER_PLAN_OUTLINE) {
@@ -267,11 +267,11 @@ static camber_layer_paint paint_of_part(const camber_plan_layer *layer, const ca
     return own;
 }
 
-/* Rows are compared by their paints' bytes, so those between the fields are 0 too. */
+/* Clears the whole struct first, including the padding, because rows are compared by the bytes of their paints. */
 static void put_paint(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio,
                       camber_paint *paint) {
     const camber_layer_paint own = paint_of_part(layer, whole);
-    const double widest_px = own.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
+    const double widest_px = own.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the largest width of one rail */
     memset(paint, 0, sizeof *paint);
     if (!(own.width * ratio > 0.0 && own.color.a > 0.0f && (float)own.layer_opacity > 0.0f))
         return;
@@ -286,17 +286,17 @@ static void put_paint(const camber_plan_layer *layer, const camber_layer_paint *
     paint->ramp = layer->ramp;
 }
 
-/* The half width of a dot for a circle of a radius, px. As in MapLibre circles fade within their radius, by a smooth
- * step over a pixel at least. A dot's edge is as sharp as pixels are: it has the area of what fades so, the integral of
- * 2 pi x step(r - x). Wider fades are the blur's. */
+/* Returns the half width of the dot that draws a circle of a radius, in px. As in MapLibre, circles fade out inside
+ * their radius, by a smooth step over at least one pixel. The edge of a dot is as sharp as pixels allow, so the dot
+ * gets the same area as the faded circle: the integral of 2 pi x step(r - x). Wider fades are drawn by the blur. */
 static double dot_radius(double radius, double blur) {
     if (blur > 1.0)
         return fmax(radius - 0.5, 0.0);
     return radius >= 1.0 ? sqrt(radius * (radius - 1.0) + 0.3) : radius * radius * sqrt(0.5 - 0.2 * radius);
 }
 
-/* A circle's fill is a dot, and its stroke a ring around that. Where both are opaque and sharp, the stroke is a whole
- * dot below the fill: along a ring what lies below would be seen through pixels that both cut. */
+/* A circle's fill is a dot, and its stroke is a ring around it. If both are opaque and sharp, the stroke is a full dot
+ * below the fill instead: with a ring, the background would show through pixels that both cut. */
 static void put_circle(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio, bool of_stroke,
                        camber_paint *paint) {
     const camber_color color = of_stroke ? whole->stroke_color : whole->color;
@@ -329,7 +329,7 @@ static size_t dash_slot(const camber_plan *plan, const camber_layer_dashes *dash
     return at;
 }
 
-/* At most half of the slots are in use. */
+/* Keeps at least half of the slots free. */
 static bool grow_dash_slots(camber_plan *plan) {
     if (plan->dash_slot_count > 2 * plan->dash_count)
         return true;
@@ -354,7 +354,7 @@ static camber_plan_dash *copy_dash(camber_context *context, const camber_layer_d
     return made;
 }
 
-/* Finds the plan's dash of these lengths, or adds it. NULL: memory ran out. */
+/* Finds the plan's dash of these lengths, or adds it. NULL: out of memory. */
 static const camber_dash *intern_dash(camber_plan *plan, const camber_layer_dashes *dashes) {
     if (!grow_dash_slots(plan))
         return NULL;
@@ -371,8 +371,8 @@ static const camber_dash *intern_dash(camber_plan *plan, const camber_layer_dash
     return &made->dash;
 }
 
-/* The width at the whole zoom below, scaled with the map: other engines draw dashes and patterns of that width up to
- * the next whole zoom. */
+/* Returns the width at the whole zoom below, scaled with the map. Other engines draw dashes and patterns in that width
+ * up to the next whole zoom. */
 static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
                            const camber_feature_view *feature) {
     const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
@@ -381,12 +381,12 @@ static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *vi
 }
 
 typedef struct pattern_choice {
-    bool patterned;            /* by the style */
-    const camber_image *image; /* NULL: one that is not there */
-    float one_px;              /* along the line */
+    bool patterned;            /* the style has a pattern */
+    const camber_image *image; /* NULL: the sprites do not have the image */
+    float one_px;              /* length of one image along the line, px */
 } pattern_choice;
 
-/* Chooses the pattern. With one, only the opacity of the colour counts, and dashes do not. */
+/* Chooses the pattern. With a pattern, only the opacity of the colour is used, and dashes are ignored. */
 static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
                                      const camber_feature_view *feature, camber_layer_paint *paint) {
     pattern_choice choice = {0};
@@ -415,7 +415,8 @@ static void put_pattern(const camber_plan_layer *layer, const pattern_choice *ch
     paint->image_px = choice->one_px;
 }
 
-/* Fills are compared by their bytes too. One that draws nothing has an alpha of 0. */
+/* Clears the whole struct first, because fills are also compared by their bytes. A fill that draws nothing has alpha 0.
+ */
 static void put_area(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
                      const camber_feature_view *feature, const camber_layer_paint *paint, camber_plan_fill *area) {
     const camber_sprite_image *image;
@@ -432,7 +433,7 @@ static void put_area(camber_plan *plan, const camber_plan_layer *layer, const ca
     }
 }
 
-/* A limit of 1 or less bevels every turn; 0 would mean the default. */
+/* Makes the stroke of a paint. A miter limit of 1 or less bevels every turn; 0 would mean the default. */
 static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
     return (camber_stroke){
         .join = paint->join,
@@ -442,7 +443,8 @@ static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
         .round_limit = paint->join == CAMBER_JOIN_ROUND ? (float)fmin(fmax(paint->round_limit, 0.0), 1e6) : 0.0f};
 }
 
-/* Miter tips of up to a quarter of a pixel are not worth what drawing miters costs: a tenth of a frame. */
+/* Returns the round limit, or 0 if it makes no visible difference: drawing miters takes a tenth of a frame, which is
+ * not worth it for tips of up to a quarter of a pixel. */
 static float round_limit_that_shows(const camber_stroke *stroke) {
     const double limit = (double)stroke->round_limit, half_px = 0.5 * (double)stroke->width_px;
     const double turn = limit > 1.0 ? 2.0 * acos(1.0 / limit) : 0.0;
@@ -457,7 +459,7 @@ static bool same_row(const camber_plan *plan, const camber_plan_set *set, const 
                                                       set->layer_count * sizeof *table->areas) == 0);
 }
 
-/* Adds the tuple's fills to those of the plan, at the place that its paints have. */
+/* Adds the tuple's fills to those of the plan, at the same index as its paints. */
 static bool add_areas(camber_plan *plan, const camber_plan_set *set, const row_table *table) {
     camber_plan_patterns *p = &plan->patterns;
     if (!camber_plan_is_area(plan, set))
@@ -469,7 +471,7 @@ static bool add_areas(camber_plan *plan, const camber_plan_set *set, const row_t
     return true;
 }
 
-/* Finds the row of the stroke and its paints, or adds one where no row of the set has them. */
+/* Finds the row of the stroke and its paints, or adds it if the set has no equal row. */
 static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *table) {
     const size_t size_bytes = set->layer_count * sizeof *table->tuple;
     uint64_t hash = camber_hash(CAMBER_HASH_START, &table->stroke, sizeof table->stroke);
@@ -495,7 +497,7 @@ static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *t
     return row;
 }
 
-/* Fills the paints of a class and its stroke; false where none of the set's layers draws it. */
+/* Computes the paints and the stroke of a class. false: no layer of the set draws it. */
 static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                        const camber_feature_view *feature, row_table *table, double *key) {
     bool *failed = &table->failed;
@@ -527,7 +529,8 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
     return table->stroke.width_px > 0.0f || *failed;
 }
 
-/* Fills the tuple of a class of areas, whose paints get their fills by link_areas; false where no layer draws it. */
+/* Computes the tuple of a class of areas; link_areas points the paints to their fills later. false: no layer draws it.
+ */
 static bool fill_areas(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                        const camber_feature_view *feature, row_table *table, double *key) {
     bool draws = false;
@@ -552,7 +555,7 @@ static bool fill_areas(camber_plan *plan, const camber_plan_set *set, const camb
     return draws || table->failed;
 }
 
-/* Fills the tuple of a class of circles for one of their dots; false where no layer draws it. */
+/* Computes the tuple of a class of circles for one of their dots. false: no layer draws it. */
 static bool fill_circles(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                          const camber_feature_view *feature, row_table *table, double *key) {
     size_t at = set->first_layer;
@@ -570,7 +573,7 @@ static bool fill_circles(camber_plan *plan, const camber_plan_set *set, const ca
     return table->stroke.width_px > 0.0f;
 }
 
-/* Points the paints of areas at their fills, which stay where they are from now on. */
+/* Points the paints of areas to their fills, which do not move any more. */
 static void link_areas(camber_plan *plan) {
     const camber_plan_fill *areas = plan->patterns.areas;
     for (size_t s = 0; s < plan->set_count && areas && plan->paints; s++) {
@@ -581,7 +584,7 @@ static void link_areas(camber_plan *plan) {
     }
 }
 
-/* Finds the row of one of a class's dots in a set that draws the class. */
+/* Finds the row of one dot of a class, in a set that draws the class. */
 static camber_status match_dot(const camber_view *view, camber_plan *plan, camber_plan_set *set,
                                const camber_feature_view *feature, size_t at, class_rows *rows) {
     row_table *table = &rows->table;
@@ -638,9 +641,9 @@ static camber_status match_set(const camber_features *features, const camber_vie
     return status;
 }
 
-/* ---- Entries: polylines by set, in input order, or in that of their features' keys where a set is sorted ---- */
+/* ---- Entries: polylines by set, in input order, or in the order of their features' keys if the set is sorted ---- */
 
-/* The place of a colour in an order that no input changes. */
+/* Returns the position of a colour in an order that does not depend on the input. */
 static double rank_of(camber_color color) {
     const float parts[4] = {color.r, color.g, color.b, color.a};
     double rank = 0.0;
@@ -649,8 +652,9 @@ static double rank_of(camber_color color) {
     return rank;
 }
 
-/* Translucent fills of several colours: areas of one colour are filled together wherever they stand in the file, or the
- * order of others between them would decide which of them overlap. A style's own order stays. */
+/* Sorts translucent fills of several colours by colour, so that areas of one colour are filled together wherever they
+ * are in the file. Otherwise the areas between them would determine which of them overlap. An order that the style asks
+ * for is kept. */
 static void rank_translucent(camber_plan *plan, camber_plan_set *set) {
     double *keys = plan->pair_keys + set->first_pair;
     bool translucent = false;
@@ -666,8 +670,8 @@ static void rank_translucent(camber_plan *plan, camber_plan_set *set) {
     }
 }
 
-/* Ends the pairs of a set. Where it is sorted, the plan's key includes the sort keys, since other keys mean another
- * order. */
+/* Completes the pairs of a set. If the set is sorted, the plan's key includes the sort keys, because other keys mean
+ * another order. */
 static void end_set(camber_plan *plan, camber_plan_set *set) {
     const double *keys = plan->pair_keys + set->first_pair;
     set->pair_count = plan->pair_count - set->first_pair;
@@ -678,9 +682,9 @@ static void end_set(camber_plan *plan, camber_plan_set *set) {
         plan->key = camber_hash(plan->key, keys, set->pair_count * sizeof *keys);
 }
 
-/* Numbers the pairs of sets and classes, by set. */
+/* Numbers the pairs of sets and classes, set by set. */
 static camber_status number_pairs(const camber_features *features, camber_plan *plan, const plan_classes *by_class) {
-    const size_t column_count = by_class->drawn_count * plan->dot_count; /* of classes and their dots */
+    const size_t column_count = by_class->drawn_count * plan->dot_count; /* classes times dots */
     size_t total = 0;
     for (size_t i = 0; i < plan->set_count * column_count; i++)
         total += by_class->rows[i] != CAMBER_NO_ROW;
@@ -732,7 +736,7 @@ static camber_status group_by_class(const camber_features *features, camber_plan
     by_class->pairs = camber_alloc(plan->context, total, sizeof *by_class->pairs);
     if (!by_class->pairs)
         return CAMBER_ERROR_MEMORY;
-    /* By set: each class takes its pairs in turn, as they are numbered. */
+    /* Pairs are numbered set by set, so each class gets its pairs in that order. */
     uint32_t pair = 0;
     for (size_t s = 0; s < plan->set_count; s++)
         for (size_t c = 0; c < drawn_count * dots; c++)
@@ -754,7 +758,7 @@ static int compare_keys(const void *left, const void *right) {
     return a->key < b->key ? -1 : a->key > b->key;
 }
 
-/* Sorts the entries of a set by their features' keys; entries of one key stay as they were. */
+/* Sorts the entries of a set by the keys of their features. The sort is stable. */
 static camber_status sort_entries(const camber_plan *plan, const camber_plan_set *set, camber_plan_entry *entries,
                                   size_t count) {
     keyed_pair *keyed = camber_alloc(plan->context, set->pair_count, sizeof *keyed);
@@ -785,7 +789,7 @@ static camber_status sort_entries(const camber_plan *plan, const camber_plan_set
     return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-/* The class of the n-th polyline of a choice, and in *polyline its number. */
+/* Returns the class of the n-th listed polyline, and sets *polyline to its number. */
 static uint32_t class_at(const camber_features *features, const uint32_t *polylines, size_t n, size_t *polyline) {
     *polyline = polylines ? polylines[n] : n;
     return features->feature_class[features->polyline_feature[*polyline]];
@@ -798,7 +802,7 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
     *list = (camber_plan_entries){.context = plan->context};
     if (!(list->first_entries = camber_alloc_zero(plan->context, plan->set_count + 2, sizeof *list->first_entries)))
         return CAMBER_ERROR_MEMORY;
-    size_t *firsts = list->first_entries + 1; /* while entries are put, firsts[set] is where its next one goes */
+    size_t *firsts = list->first_entries + 1; /* while entries are stored, firsts[set] is the index of its next one */
     for (size_t i = 0; i < polyline_count; i++) {
         const uint32_t class = class_at(features, polylines, i, &p);
         for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
@@ -830,7 +834,7 @@ void camber_plan_entries_free(camber_plan_entries *list) {
     *list = (camber_plan_entries){0};
 }
 
-/* Lists the polylines of each set, of all features. */
+/* Lists the polylines of each set, for all features. */
 static camber_status list_all(const camber_features *features, camber_plan *plan) {
     const camber_class_sets *by_class = &plan->by_class;
     const camber_status status = camber_plan_list(features, plan, NULL, features->polyline_count, &plan->all);
@@ -860,15 +864,16 @@ camber_status camber_plan_evaluate(const camber_features *features, const camber
     const size_t drawn_count = rows.by_class.drawn_count;
     if (plan->set_count > MOST_MATCHES / plan->dot_count / (drawn_count + 1)) {
         camber_free(context, rows.by_class.drawn);
-        return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "style: %zu layers that differ over %zu kinds of features; use fewer layers, or properties",
-                           plan->set_count, drawn_count);
+        return camber_fail(
+            context, CAMBER_ERROR_LIMIT,
+            "style: %zu different layers for %zu classes of features are too many; use fewer layers or properties",
+            plan->set_count, drawn_count);
     }
     row_table *table = &rows.table;
     while (table->slot_count / 2 < drawn_count * plan->dot_count)
         table->slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
-    /* More rows than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
+    /* One row more than needed, so that no array is empty. Classes are in memory, so their count cannot overflow. */
     const size_t count = (drawn_count + 1) * plan->dot_count;
     if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
         !(table->areas = camber_alloc(context, plan->layer_count, sizeof *table->areas)) ||
@@ -881,7 +886,7 @@ camber_status camber_plan_evaluate(const camber_features *features, const camber
         status = match_set(features, view, plan, plan->sets + s, &rows);
     link_areas(plan);
     if (status == CAMBER_OK && features->polyline_count > UINT32_MAX)
-        status = camber_fail(context, CAMBER_ERROR_LIMIT, "%zu polylines are more than 2^32; draw them in parts",
+        status = camber_fail(context, CAMBER_ERROR_LIMIT, "%zu polylines exceed the limit of 2^32; draw them in parts",
                              features->polyline_count);
     if (status == CAMBER_OK)
         status = number_pairs(features, plan, &rows.by_class);

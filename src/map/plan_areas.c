@@ -1,14 +1,14 @@
-/* Triangles of the areas that a plan draws, for meshes of one view.
+/* Makes triangles of the areas that a plan draws, for meshes of one view.
  *
- * Input: features, a plan and a view. Output: triangles in px of the picture, layer by layer. Main idea: the rings of a
- * layer that have one fill and follow each other are filled together, as they are one path for the kernels. */
+ * Input: features, a plan and a view. Output: triangles in px of the picture, layer by layer. Main idea: consecutive
+ * rings of a layer with the same fill are filled together, as the kernels fill them as one path. */
 #include "map/plan_areas.h"
 
 #include "map/triangulator.h"
 
 #include <math.h>
 
-/* Units a px; with the largest picture floats hold them exactly. */
+/* Units per px. Floats hold them exactly, even in the largest picture. */
 enum { UNITS = 256 };
 
 typedef struct area_maker {
@@ -17,14 +17,14 @@ typedef struct area_maker {
     const camber_view *view;
     float least_importance;
     camber_ring_window window;
-    camber_triangulator *triangulator; /* NULL: none was needed yet */
-    float *points;                     /* of a ring, pairs of px */
+    camber_triangulator *triangulator; /* NULL: not needed yet */
+    float *points;                     /* one ring, as pairs of px */
     size_t point_capacity;
     camber_area_data *areas;
-    size_t room[3]; /* for points, indices, fills */
+    size_t room[3]; /* capacities of points, indices and fills */
 } area_maker;
 
-/* Adds the ring of a copy of the world, as far as it comes into the window. */
+/* Adds a ring in one copy of the world, if it reaches into the window. */
 static camber_status add_ring(area_maker *m, size_t polyline, double shift, const camber_paint *paint) {
     const camber_features *f = m->features;
     const size_t first = f->offsets[polyline], end = f->offsets[polyline + 1];
@@ -52,7 +52,7 @@ static camber_status add_ring(area_maker *m, size_t polyline, double shift, cons
     return status == CAMBER_OK ? camber_triangulator_add(m->triangulator, m->points, count, &m->window) : status;
 }
 
-/* Puts the triangles of the rings that were added behind those that are there. */
+/* Appends the triangles of the rings that were added. */
 static camber_status end_fill(area_maker *m, const char *layer, uint32_t level, camber_color color) {
     camber_area_data *a = m->areas;
     camber_triangles made = {0};
@@ -85,7 +85,8 @@ static camber_paint paint_of(const area_maker *m, const camber_plan_layer *layer
     return camber_plan_paint(m->plan, m->plan->sets + layer->set, m->plan->pair_rows[pair], layer->slot);
 }
 
-/* Colours are made of bytes or of a style's numbers: equal ones have equal bits. */
+/* Comparing the bits is enough: colours are made from bytes or from the style's numbers, so equal colours have equal
+ * bits. */
 static bool is_same_fill(const camber_paint *a, const camber_paint *b) {
     return memcmp(&a->fill->color, &b->fill->color, sizeof a->fill->color) == 0 && a->fill->rule == b->fill->rule &&
            memcmp(&a->translate_x_px, &b->translate_x_px, sizeof(float)) == 0 &&
@@ -100,7 +101,7 @@ static camber_status fill_layer(area_maker *m, const camber_plan_layer *layer, c
     const size_t first = listed->first_entries[layer->set], end = listed->first_entries[layer->set + 1];
     const float opacity = (float)layer->look.paint.layer_opacity;
     const uint32_t level =
-        m->areas->fill_count ? m->areas->fills[m->areas->fill_count - 1].level + 1 : 0; /* layers below it */
+        m->areas->fill_count ? m->areas->fills[m->areas->fill_count - 1].level + 1 : 0; /* number of layers below it */
     camber_status status = CAMBER_OK;
     for (size_t i = first, next; i < end && status == CAMBER_OK; i = next) {
         const camber_paint paint = paint_of(m, layer, listed->entries[i].pair);

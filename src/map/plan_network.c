@@ -1,23 +1,22 @@
-/* Makes a network of what a plan draws, and on the host projects the lines of it that a camera sees.
+/* Makes a network of the polylines that a plan draws, and projects on the host the lines that a camera sees.
  *
  * Input: features, a view and its plan. Output: a network whose rows are the plan's pairs. Near the antimeridian, and
- * where the picture is wider than the world, a polyline has several entries: one for each copy of the world. The
- * network serves other views as long as their plans draw the same entries.
- */
+ * if the picture is wider than the world, a polyline has several entries, one for each copy of the world. The network
+ * can be used for other views as long as their plans draw the same entries. */
 #include "map/plan_network.h"
 
 #include "camber_proof.h"
 
 #include <math.h>
 
-/* A miter limit without reason must not undo the culling. */
+/* Bounds the reach, so that an absurd miter limit does not defeat culling. */
 static const double LARGEST_REACH_PX = 65536.0;
-/* Further worlds to both sides of a picture's centre are left out: they would take memory for dots. */
+/* Copies of the world farther from the picture's centre are left out: they would only take memory and show as dots. */
 static const double MOST_WORLDS = 8.0;
 
 static double reach_of(const camber_stroke *stroke) {
     const double half = 0.5 * (double)stroke->width_px;
-    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
+    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner is sqrt(2) away */
     if (stroke->join == CAMBER_JOIN_MITER)
         factor = fmax(factor, (double)stroke->miter_limit);
     if (stroke->join == CAMBER_JOIN_ROUND)
@@ -26,7 +25,7 @@ static double reach_of(const camber_stroke *stroke) {
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
-/* How far from its source line a stroke with an offset runs, at corners too. */
+/* Returns how far a stroke with an offset is from its source line, including at corners. */
 static double offset_of(const camber_stroke *stroke) {
     const double far = fabs((double)stroke->offset_px), limit = (double)stroke->miter_limit;
     return fmin(far * (stroke->join == CAMBER_JOIN_MITER ? fmax(limit, 1.1) : 1.1), fmax(far, LARGEST_REACH_PX));
@@ -45,8 +44,9 @@ double camber_plan_reach(const camber_plan *plan) {
 
 /* ---- Copies of the world ---- */
 
-/* Copies of the world, from the first to the last in the picture: a wide one repeats it, as web maps do. Of a window:
- * the part of the world, unrolled to the west and to the east, in which lines touch it. */
+/* The copies of the world that are in a picture, from the first to the last: a wide picture repeats the world, as web
+ * maps do. For a window they are a range of x in world coordinates, unrolled to the west and the east, in which lines
+ * touch the window. */
 typedef struct copies {
     double first, last;
     bool is_window;
@@ -79,7 +79,7 @@ static camber_box world_box(const double *points, size_t count) {
     return box;
 }
 
-/* The first and the last shift of a polyline; false where it has no points or is no place on earth. */
+/* Finds the first and the last shift of a polyline. false: it has no points, or it is not on earth. */
 static bool find_shifts(const camber_features *features, const copies *worlds, size_t polyline, double *first,
                         double *last) {
     const size_t begin = features->offsets[polyline], end = features->offsets[polyline + 1];
@@ -91,7 +91,7 @@ static bool find_shifts(const camber_features *features, const copies *worlds, s
         *last = floor(worlds->last - box.x0);
         return true;
     }
-    /* A line that ends on the border of two worlds lies in the western one. */
+    /* A line that ends on the border of two worlds belongs to the western one. */
     *first = worlds->first - fmax(ceil(box.x1) - 1.0, floor(box.x0));
     *last = worlds->last - floor(box.x0);
     return true;
@@ -189,7 +189,8 @@ void camber_plan_network_destroy(camber_plan_network *geometry) {
 
 /* ---- The visible part ---- */
 
-/* Counts polylines once a set, however often the world repeats and however many lines the camera cuts them into. */
+/* Counts each polyline once per set, however often the world repeats and however many pieces the camera cuts it into.
+ */
 static void count_set(const camber_features *features, const camber_plan_network *geometry, size_t first, size_t end,
                       camber_visible_lines *seen) {
     uint32_t before = UINT32_MAX, counted = UINT32_MAX;
@@ -199,14 +200,14 @@ static void count_set(const camber_features *features, const camber_plan_network
             continue;
         before = polyline;
         seen->points_in += camber_features_whole_count(features, polyline);
-        /* A later line of a feature counts where its first line is not seen. */
+        /* If a feature's first line is not visible, a later one counts for it. */
         const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
         seen->feature_count += count || feature == counted ? count : 1;
         counted = feature;
     }
 }
 
-/* Fills in the row of each polyline, and where each set begins. */
+/* Fills in the row of each polyline, and the first polyline of each set. */
 static camber_status fill_rows(const camber_plan_network *geometry, const camber_plan *plan,
                                camber_visible_lines *seen) {
     const size_t count = seen->lines.polyline_count;

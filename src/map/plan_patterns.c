@@ -1,8 +1,7 @@
-/* Chooses the images that a plan draws with, and lays backgrounds that are images onto the map.
+/* Chooses the images that a plan draws with, and places backgrounds made of images on the map.
  *
- * Input: the style's pattern properties and the sprites. Output: the images of lines, the fills of areas, and fills
- * that are drawn between layers.
- */
+ * Input: the style's pattern properties and the sprites. Output: the images of lines, the fills of areas, and fills of
+ * the whole picture that are drawn between layers. */
 #include "map/plan_patterns.h"
 
 #include <math.h>
@@ -18,7 +17,7 @@ static uint32_t find_image(void *user, const char *name) {
 static void note_missing_image(void *user, const char *name) {
     camber_plan_patterns *patterns = user;
     patterns->unread |= !patterns->sprites;
-    if (patterns->sprites && !camber_sprites_miss(patterns->sprites, name))
+    if (patterns->sprites && !camber_sprites_warn_missing(patterns->sprites, name))
         patterns->failed = true;
 }
 
@@ -49,7 +48,7 @@ static camber_color blend_over(camber_color top, camber_color below) {
                           (top.b * top.a + below.b * rest) / a, a};
 }
 
-/* Lays images onto the map, from the world's north-western corner, in their own size at the whole zoom below; up to
+/* Images are placed on the map from the world's north-western corner, in their own size at the whole zoom below. Up to
  * the next whole zoom they grow with the map. */
 void camber_plan_fill_place(camber_plan_fill *placed, const camber_view *view) {
     const camber_sprite_image *image = placed->image;

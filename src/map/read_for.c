@@ -1,8 +1,8 @@
-/* The region of the world that a scene needs.
+/* Computes the region of the world that a scene needs.
  *
- * Input: a style and a scene's view. Output: a box in world coordinates, outside of which no line of any feature
- * reaches the picture. Main idea: what the style can ask for at the view's zoom is bounded before a feature is read,
- * and the box is wider than that by far, since a line too many costs little. */
+ * Input: a style and a scene's view. Output: a box in world coordinates. No line outside it reaches the picture. Main
+ * idea: the widths and offsets that the style can produce at the view's zoom are bounded before any feature is read.
+ * The box is much larger than they require, because reading a few lines too many costs little. */
 #include "map/view.h"
 
 #include "base/perspective.h"
@@ -11,9 +11,9 @@
 
 #include <math.h>
 
-/* The same as in plan.c, and in projection.c. */
+/* The same values as in plan.c and projection.c. */
 static const double WIDEST_PX = 16384.0, LARGEST_REACH_PX = 65536.0;
-/* For what the camera does near a picture's edges, px. */
+/* A margin for effects of the camera near a picture's edges, px. */
 static const double SLACK_PX = 64.0;
 /* How far outside of a picture the middle of a label may be that reaches into it; CSS px. */
 static const double LABEL_PX = 256.0;
@@ -22,9 +22,9 @@ static double bound(const camber_style_layer *layer, camber_property_id property
     return camber_style_layer_bound(layer, property, zoom);
 }
 
-/* How far from its polyline a layer reaches at most, px. A line: half of its width, gap and both rails, at the tips of
- * its joins, and its offset, which joins lengthen too. Of a fill these are the defaults, enough for its outline. A
- * circle: its radius with the stroke. */
+/* Returns how far a layer reaches from its polylines at most, in px. For a line this is half of its width, its gap and
+ * both rails, at the tips of its joins, and its offset, which joins also lengthen. A fill has the defaults of these
+ * properties, which are enough for its outline. A circle reaches as far as its radius and its stroke. */
 static double reach_of(const camber_style_layer *layer, const camber_view *view) {
     const double zoom = camber_view_style_zoom(view), ratio = view->ratio;
     const double width = fmin(bound(layer, CAMBER_LINE_WIDTH, zoom) * ratio, WIDEST_PX);
@@ -42,7 +42,7 @@ static double reach_of(const camber_style_layer *layer, const camber_view *view)
            fmin(moved, WIDEST_PX);
 }
 
-/* The farthest of all layers, or of those of circles only. */
+/* Returns the reach of all layers, or only of those with circles. */
 static double reach_of_style(const camber_style *style, const camber_view *view, bool circles_only) {
     const double zoom = camber_view_style_zoom(view);
     double reach = 0.0;
@@ -57,7 +57,7 @@ static double reach_of_style(const camber_style *style, const camber_view *view,
     return reach;
 }
 
-/* With a pitch a pixel at the far plane is that much of the ground, px. */
+/* Returns how much of the ground a pixel at the far plane covers if the view has a pitch, in px. */
 static double far_pixel(const camber_view *view) {
     if (!(view->pitch_deg > 0.0))
         return 0.0;
@@ -95,8 +95,8 @@ camber_status camber_features_read_for(camber_features *features, const camber_s
     if (camber_features_label_kinds(features))
         margin = fmax(margin, LABEL_PX * view.ratio / view.scale_px);
     region = (camber_region){region.x0 - margin, region.y0 - margin, region.x1 + margin, region.y1 + margin};
-    /* A picture about as wide as the world needs all of it. */
+    /* A picture about as wide as the world needs everything. */
     features->region = region;
-    features->has_region = region.x1 - region.x0 < 0.5; /* false for what is not finite */
+    features->has_region = region.x1 - region.x0 < 0.5; /* false also if it is not finite */
     return CAMBER_OK;
 }

@@ -1,16 +1,17 @@
-/* A style's own sources, as a view sees them. */
+/* Reads the parts of a style's own sources that a view sees. */
 #include "formats/tile_reader.h"
 #include "map/sources.h"
 #include "map/view.h"
 
 #include <math.h>
 
-/* The same as in fit.c. */
+/* The same values as in fit.c. */
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
-/* No more tiles are read for larger circles, and for those whose size only features tell; CSS px. */
+/* The largest circle radius, in CSS px, for which more tiles are read. It also applies to circles whose size depends on
+ * the features. */
 static const double MOST_CIRCLE_PX = 256.0;
 
-/* Moves the view, where no camera is given, over all that the sources say they have. */
+/* Moves a view without a camera to show the bounds of all sources. */
 static void fit_bounds(const camber_sources *sources, camber_view *view) {
     double world[4];
     if (!camber_sources_bounds(sources, world))
@@ -23,8 +24,8 @@ static void fit_bounds(const camber_sources *sources, camber_view *view) {
     camber_view_frame(view, bounds, FILL, LARGEST_FIT_ZOOM);
 }
 
-/* The tiles that the view sees, and those from which circles reach into it: a point of a tile beside the view is in no
- * other one, while lines come with their tile's buffer. */
+/* Returns the tiles that the view sees, and those from which circles reach into it: a point is only in the tile that
+ * contains it, while a tile's buffer repeats the lines of its neighbours. */
 static camber_tile_cover cover_of(const camber_style *style, const camber_view *view) {
     camber_tile_cover cover = {.zoom = view->zoom};
     double centre[2] = {0.0, 0.0};

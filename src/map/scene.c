@@ -1,11 +1,11 @@
-/* Scenes: a view of features in a style, ready to tessellate and draw.
+/* Scenes: a view of features in a style, ready to be tessellated and drawn.
  *
- * Input: features and a view, or a plan of a zoom and a window of it. Output: a network of the lines that the style
- * draws there, the passes that a mesh of it is drawn with, and the camera. Main idea: the plan says which style layers
- * draw which features; the network is made once for a plan, and stays while the view moves and the plan does not
- * change. Of a window it has only the lines that reach into it, and the points that the zoom's simplification keeps, so
- * the memory that drawing takes does not grow with the data. camber_scene_project makes the same on the host, by the
- * CPU twin. */
+ * Input: features and a view, or a zoom's plan and a window of it. Output: a network of the lines that the style draws
+ * there, the passes that draw a mesh of it, and the camera. Main idea: the plan says which style layers draw which
+ * features. The network is made once per plan, and is kept while the view moves and the plan does not change. The
+ * network of a window has only the lines that reach into it and the points that the zoom's simplification keeps, so the
+ * memory for drawing does not grow with the data. camber_scene_project makes the same lines on the host, with the CPU
+ * twin. */
 #include "map/scene.h"
 #include "map/passes.h"
 #include "map/plan_areas.h"
@@ -20,21 +20,21 @@ struct camber_scene {
     camber_context *context;
     camber_scene_use use;
     camber_zoom_plan *zoom;
-    camber_zoom_plan *own; /* the same if it goes with the scene. NULL: it has other windows, too */
+    camber_zoom_plan *own; /* the same, if the scene owns it. NULL: the plan is shared with other windows */
 
     camber_view view;
     camber_plan_network geometry;
     camber_pass_list pair_passes;
 
-    /* On the host: nothing until camber_scene_project. */
+    /* On the host: empty until camber_scene_project. */
     bool is_projected;
     camber_visible_lines seen;
-    camber_scene_info counts; /* of what was projected, until the scene moves; the rest is 0 */
+    camber_scene_info counts; /* of the projected lines, until the scene moves; the other fields are 0 */
     camber_polylines *polylines;
     camber_pass_list passes;
 };
 
-/* Makes the passes over the network, where every pair has an entry somewhere. */
+/* Makes the passes over the network. A pair is used if it has an entry anywhere. */
 static camber_status make_pair_passes(camber_scene *scene) {
     size_t layer_count;
     const camber_plan *plan = &scene->zoom->plan;
@@ -44,8 +44,8 @@ static camber_status make_pair_passes(camber_scene *scene) {
     const size_t count = scene->geometry.first_entries[plan->set_count];
     for (size_t i = 0; i < count; i++)
         used[scene->geometry.entries[i].row] = true;
-    const camber_numbering n = {plan, true, scene->geometry.first_entries, used};
-    const camber_status status = camber_passes_make(scene->context, &n, &layer_count, &scene->pair_passes);
+    const camber_mesh_rows rows = {plan, true, scene->geometry.first_entries, used};
+    const camber_status status = camber_passes_make(scene->context, &rows, &layer_count, &scene->pair_passes);
     camber_free(scene->context, used);
     return status;
 }
@@ -72,7 +72,7 @@ static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method
                                       .has_arc_length = scene->zoom->plan.has_arc_length};
 }
 
-static void forget(camber_scene *scene) {
+static void release_projection(camber_scene *scene) {
     camber_passes_free(scene->context, &scene->passes);
     camber_polylines_destroy(scene->polylines);
     camber_visible_lines_destroy(&scene->seen);
@@ -88,8 +88,8 @@ static camber_status make_row_passes(camber_scene *scene) {
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < scene->seen.lines.polyline_count; i++)
         used[scene->seen.rows[i]] = true;
-    const camber_numbering n = {plan, false, scene->seen.first_polylines, used};
-    const camber_status status = camber_passes_make(scene->context, &n, &scene->counts.layers, &scene->passes);
+    const camber_mesh_rows rows = {plan, false, scene->seen.first_polylines, used};
+    const camber_status status = camber_passes_make(scene->context, &rows, &scene->counts.layers, &scene->passes);
     camber_free(scene->context, used);
     return status;
 }
@@ -111,7 +111,7 @@ camber_status camber_scene_project(camber_scene *scene) {
     if (status == CAMBER_OK)
         status = make_row_passes(scene);
     if (status != CAMBER_OK) {
-        forget(scene);
+        release_projection(scene);
         scene->counts = (camber_scene_info){0};
         return status;
     }
@@ -124,30 +124,31 @@ camber_status camber_scene_project(camber_scene *scene) {
 }
 
 void camber_scene_release_lines(camber_scene *scene) {
-    forget(scene);
+    release_projection(scene);
 }
 
 /* ---- The scene ---- */
 
-/* Makes the network. Points that the view leaves out go first, if those of the features may go: else most of them would
- * be in memory beside the network. */
-static camber_status make_geometry(camber_scene *scene, camber_features *spent) {
+/* Makes the network. consumed_features (or NULL) are features that may lose their points: points that the view does not
+ * need are dropped first, because otherwise most of them would be in memory together with the network. */
+static camber_status make_geometry(camber_scene *scene, camber_features *consumed_features) {
     camber_zoom_plan *zoom = scene->zoom;
     const bool stays = scene->use == CAMBER_SCENE_ONE_VIEW;
     camber_status status = CAMBER_OK;
-    if (spent && !zoom->plan.has_arc_length && !zoom->plan.has_corners)
-        status = camber_features_thin(spent, zoom->least_importance);
+    if (consumed_features && !zoom->plan.has_arc_length && !zoom->plan.has_corners)
+        status = camber_features_thin(consumed_features, zoom->least_importance);
     if (status == CAMBER_OK)
         status = camber_plan_network_create(zoom, &scene->view, stays ? CAMBER_NETWORK_VIEW : CAMBER_NETWORK_VIEWS,
                                             &zoom->plan.all, &scene->geometry);
-    if (status == CAMBER_OK && spent)
-        camber_features_release_points(spent);
+    if (status == CAMBER_OK && consumed_features)
+        camber_features_release_points(consumed_features);
     return status;
 }
 
-/* Makes the scene of a whole view. former: a network that is taken if it serves this view, too. */
-static camber_status look(camber_scene *scene, const camber_features *features, const camber_scene_desc *desc,
-                          camber_plan_network *former, camber_features *spent) {
+/* Makes the scene of a whole view. former: a network that is taken over if it can be used for this view, too. */
+static camber_status make_view_scene(camber_scene *scene, const camber_features *features,
+                                     const camber_scene_desc *desc, camber_plan_network *former,
+                                     camber_features *consumed_features) {
     camber_status status = camber_zoom_plan_create_view(features, &desc->view, desc->simplify_px, &scene->own);
     if (status != CAMBER_OK)
         return status;
@@ -158,13 +159,13 @@ static camber_status look(camber_scene *scene, const camber_features *features, 
         scene->geometry = *former;
         *former = (camber_plan_network){0};
     } else {
-        status = make_geometry(scene, spent);
+        status = make_geometry(scene, consumed_features);
     }
     return status == CAMBER_OK ? make_pair_passes(scene) : status;
 }
 
-static void empty(camber_scene *scene) {
-    forget(scene);
+static void release_contents(camber_scene *scene) {
+    release_projection(scene);
     camber_passes_free(scene->context, &scene->pair_passes);
     camber_plan_network_destroy(&scene->geometry);
     camber_zoom_plan_destroy(scene->own);
@@ -178,9 +179,9 @@ static bool has_patterns(const camber_plan *plan) {
     return false;
 }
 
-/* Warns where a style draws nothing at all; what else it leaves out is its own business. Images of patterns that are
- * not there were warned of already. */
-static camber_status tell_undrawn(const camber_scene *scene) {
+/* Warns if a style draws nothing at all; leaving out some features is up to the style. Missing images of patterns have
+ * already caused a warning. */
+static camber_status warn_if_nothing_is_drawn(const camber_scene *scene) {
     const camber_features *features = scene->zoom->features;
     const size_t undrawn = scene->zoom->plan.undrawn, all = camber_features_count_drawn(features);
     const double zoom = scene->view.zoom;
@@ -198,8 +199,8 @@ static camber_status tell_undrawn(const camber_scene *scene) {
     return status;
 }
 
-/* Says that circles lie on the map, unless their layers ask for that. */
-static void tell_pitch(const camber_scene *scene) {
+/* Warns that circles are drawn flat on the map, unless their layers ask for that. */
+static void warn_about_flat_circles(const camber_scene *scene) {
     const camber_plan *plan = &scene->zoom->plan;
     for (size_t i = 0; i < plan->layer_count && scene->view.pitch_deg > 0.0; i++) {
         const camber_layer_paint *paint = &plan->layers[i].look.paint;
@@ -214,26 +215,26 @@ static void tell_pitch(const camber_scene *scene) {
     }
 }
 
-static camber_status create(const camber_features *features, const camber_scene_desc *desc, camber_features *spent,
-                            camber_scene **scene) {
+static camber_status create(const camber_features *features, const camber_scene_desc *desc,
+                            camber_features *consumed_features, camber_scene **scene) {
     camber_context *context = features->context;
     if (!(desc->simplify_px >= 0.0 && isfinite(desc->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "scene: a simplification of %g px; choose 0 or a distance in pixels", desc->simplify_px);
+                           "scene: the simplification is %g px; choose 0 or a distance in pixels", desc->simplify_px);
     camber_scene *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     camber_plan_network none = {0};
     made->context = context;
     made->use = desc->use;
-    camber_status status = look(made, features, desc, &none, spent);
+    camber_status status = make_view_scene(made, features, desc, &none, consumed_features);
     if (status == CAMBER_OK)
-        status = tell_undrawn(made);
+        status = warn_if_nothing_is_drawn(made);
     if (status != CAMBER_OK) {
         camber_scene_destroy(made);
         return status;
     }
-    tell_pitch(made);
+    warn_about_flat_circles(made);
     if (made->zoom->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
                    "style: its patterns are left out, because its sprites were not read; read them with the features");
@@ -276,17 +277,17 @@ camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *vie
     assert(scene->own);
     const camber_scene_desc desc = {.view = *view, .simplify_px = scene->zoom->simplify_px};
     camber_scene moved = {.context = scene->context, .use = scene->use};
-    /* The network belongs to one of the two, never to both. */
+    /* The network always belongs to only one of the two scenes. */
     camber_plan_network geometry = scene->geometry;
-    const camber_status status = look(&moved, scene->zoom->features, &desc, &geometry, NULL);
+    const camber_status status = make_view_scene(&moved, scene->zoom->features, &desc, &geometry, NULL);
     if (status != CAMBER_OK) {
         if (!geometry.context)
             moved.geometry = (camber_plan_network){0};
-        empty(&moved);
+        release_contents(&moved);
         return status;
     }
     scene->geometry = geometry;
-    empty(scene);
+    release_contents(scene);
     *scene = moved;
     return CAMBER_OK;
 }
@@ -313,7 +314,7 @@ void camber_scene_destroy(camber_scene *scene) {
     if (!scene)
         return;
     camber_context *context = scene->context;
-    empty(scene);
+    release_contents(scene);
     camber_free(context, scene);
 }
 
@@ -356,7 +357,8 @@ const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t 
     return scene->zoom->plan.strokes;
 }
 
-/* Fills of a plan with other windows were planned for a view anywhere: those of images are moved to this one. */
+/* Moves fills of images to this window. A plan that is shared by several windows has placed them for a view at any
+ * position. */
 static void move_fills(camber_scene *scene) {
     camber_plan_patterns *patterns = &scene->zoom->plan.patterns;
     camber_plan_patterns_move(patterns, &scene->view);

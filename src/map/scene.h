@@ -1,13 +1,13 @@
-/* Scenes of windows: of one zoom's plan, for pictures that are parts of a larger one. */
+/* Scenes of windows: they share one zoom's plan, for pictures that are parts of a larger one. */
 #ifndef CAMBER_MAP_SCENE_H
 #define CAMBER_MAP_SCENE_H
 
 #include "map/zoom_plan.h"
 
-/* Makes a scene of a window: the zoom's view, moved to where it lies. The zoom must outlive it. It is tessellated and
- * drawn as any scene, but cannot move. polylines: ascending, and all that reach into the window; others may be among
- * them. The images of fills lie in its frame as in its window until a frame of another window is asked for.
- * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Makes a scene of a window: the zoom's view, moved to the window. The zoom must outlive it. It is tessellated and
+ * drawn like any scene, but cannot move. polylines: ascending, and at least those that reach into the window. The
+ * images of fills have their positions in the window until a frame of another window is requested. Returns
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window, const uint32_t *polylines,
                                          size_t polyline_count, camber_scene **scene);
 

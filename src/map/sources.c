@@ -1,8 +1,7 @@
-/* Opens the sources that a style's line and fill layers name, and reads them.
+/* Opens the sources that a style's layers name, and reads them.
  *
  * Input: the style, the folder that its relative paths start from, and the quadrangle that the view sees. Output:
- * features. GeoJSON is read when it is opened; tiles are read for the view, at the zoom that it has.
- */
+ * features. GeoJSON is read when it is opened; tiles are read for the view, at its zoom. */
 #include "map/sources.h"
 #include "features/mercator.h"
 #include "features/rings.h"
@@ -22,11 +21,11 @@ enum { JSON_BYTES_A_BYTE = 8 };
 typedef struct source {
     const camber_style_source *style;
     uint32_t index;
-    char what[160];       /* source "name" */
+    char what[160];       /* source "name", for messages */
     char pointer[1024];   /* STYLE: /sources/name, for messages about the style */
-    camber_tile_set *set; /* set for a vector source */
-    bool is_bounded;      /* the document has bounds: no tiles lie outside */
-    double bounds[4];     /* world coordinates; x0 > x1: not known */
+    camber_tile_set *set; /* only of a vector source */
+    bool is_bounded;      /* the document has bounds: there are no tiles outside */
+    double bounds[4];     /* world coordinates; x0 > x1: unknown */
 } source;
 
 struct camber_sources {
@@ -37,8 +36,8 @@ struct camber_sources {
     size_t count;
 };
 
-/* The kinds of features that a layer takes: CAMBER_KIND_*. A fill draws outlines where they have a colour. labels: the
- * kinds of labels that are read. */
+/* Returns the kinds of features that a layer takes: CAMBER_KIND_*. A fill draws outlines if they have a colour. labels:
+ * the kinds of labels that are read. */
 static unsigned kinds_of(const camber_style_layer *layer, unsigned labels) {
     switch (layer->kind) {
     case CAMBER_LAYER_BACKGROUND: return 0;
@@ -62,7 +61,7 @@ static bool is_drawn_from(const camber_style_layer *layer, uint32_t index, unsig
     return kinds_of(layer, labels) && layer->visible && layer->source_index == index;
 }
 
-/* The kinds of features that the style takes of a source. source_layer NULL: of all of it. */
+/* Returns the kinds of features that the style takes from a source. source_layer: NULL for the whole source. */
 static unsigned kinds_from(const camber_features *features, uint32_t index, const char *source_layer) {
     const camber_style *style = features->style;
     const unsigned labels = camber_features_label_kinds(features);
@@ -83,7 +82,8 @@ static camber_status load_json(camber_context *context, const char *what, const 
     camber_status status = camber_read_file(context, path, CAMBER_NAMED_BY_STYLE, &text, &size);
     if (status != CAMBER_OK)
         return status;
-    /* jansson's memory is not the context's: what it makes of coordinates takes some seven times their text. */
+    /* jansson's memory does not come from the context. Parsed coordinates take about seven times as much memory as
+     * their text. */
     if (!camber_budget_has(context, JSON_BYTES_A_BYTE * (uint64_t)size)) {
         camber_free(context, text);
         return camber_budget_fail(context, JSON_BYTES_A_BYTE * (uint64_t)size);
@@ -93,14 +93,14 @@ static camber_status load_json(camber_context *context, const char *what, const 
     if (status != CAMBER_ERROR_INPUT)
         return status;
     camber_json_unquote(&error);
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; %s", what, path,
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: invalid JSON at line %d, column %d: %s; %s", what, path,
                        error.line, error.column, error.text,
                        json_error_code(&error) == json_error_invalid_utf8 ? camber_json_cure(&error)
                                                                           : "get the file again");
 }
 
-/* Fails where a file is missing; the style says what to do, or the message tells to check its paths. */
-static camber_status check_there(const camber_sources *sources, const source *one, const char *path) {
+/* Fails if a file is missing. The message gives the style's own advice, if it has one, or says to check the path. */
+static camber_status check_exists(const camber_sources *sources, const source *one, const char *path) {
     struct stat about;
     if (!camber_file_is_reached(sources->context, path) || stat(path, &about) == 0 ||
         (errno != ENOENT && errno != ENOTDIR))
@@ -148,7 +148,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
         camber_url url = {0};
         status = camber_url_resolve(context, one->pointer, json_string_value(data), sources->desc.base_path, &url);
         if (status == CAMBER_OK)
-            status = check_there(sources, one, url.path);
+            status = check_exists(sources, one, url.path);
         if (status == CAMBER_OK)
             status = load_json(context, one->what, url.path, &loaded);
         camber_free(context, url.path);
@@ -185,13 +185,13 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
 /* ---- Vector tiles: opening ---- */
 
 static camber_status open_archive(camber_sources *sources, source *one, const camber_url *url) {
-    const camber_status there = check_there(sources, one, url->path);
-    if (there != CAMBER_OK)
-        return there;
+    const camber_status status = check_exists(sources, one, url->path);
+    if (status != CAMBER_OK)
+        return status;
     if (url->kind == CAMBER_URL_FILE || camber_tile_set_knows(url->path))
         return camber_tile_set_open(sources->context, url->path, CAMBER_NAMED_BY_STYLE, &one->set);
     return camber_fail(sources->context, CAMBER_ERROR_INPUT,
-                       "%s: %s ends neither in .mbtiles nor in .pmtiles; rename it", one->what, url->path);
+                       "%s: the name %s does not end in .mbtiles or .pmtiles; rename the file", one->what, url->path);
 }
 
 /* about: the style's own object, or the TileJSON file at base_path. */
@@ -219,10 +219,10 @@ static camber_status open_template(camber_sources *sources, source *one, const j
     return status;
 }
 
-/* about: the style's own object, laid over that of the TileJSON file. */
+/* about: the style's own object, whose members override those of the TileJSON file. */
 static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
     json_t *loaded = NULL;
-    camber_status status = check_there(sources, one, path);
+    camber_status status = check_exists(sources, one, path);
     if (status == CAMBER_OK)
         status = load_json(sources->context, one->what, path, &loaded);
     if (status != CAMBER_OK)
@@ -234,7 +234,7 @@ static camber_status open_tilejson(camber_sources *sources, source *one, const c
     return open_template(sources, one, about, base_path);
 }
 
-static void take_bounds(source *one) {
+static void set_bounds(source *one) {
     const double *degrees = one->set->bounds;
     if (!one->set->has_bounds)
         return;
@@ -265,7 +265,7 @@ static camber_status open_vector(camber_sources *sources, source *one) {
         goto done;
     status = camber_tile_set_describe(one->set, about);
     one->is_bounded = json_object_get(about, "bounds") != NULL;
-    take_bounds(one);
+    set_bounds(one);
     if (status == CAMBER_OK && one->set->min_zoom > one->set->max_zoom)
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d is greater than maxzoom %d; swap them",
                              one->what, one->set->min_zoom, one->set->max_zoom);
@@ -277,8 +277,8 @@ done:
 
 /* ---- All of them ---- */
 
-/* Merges and weighs the lines that one source added. They are not merged where dashes or line-progress begin anew
- * with each feature, or where the style wants overlapping ends to darken each other. */
+/* Merges the lines that one source added, and computes the importance of their points. Lines are not merged if dashes
+ * or line-progress restart with each feature, or if the style wants overlapping ends to darken each other. */
 static camber_status merge_and_weigh(camber_features *features, size_t first_polyline) {
     const camber_style *style = features->style;
     const bool merges = !style->schema.directed && !style->accumulates && !features->progress;
@@ -300,11 +300,12 @@ static camber_status open_source(camber_sources *sources, source *one) {
         return status == CAMBER_OK ? merge_and_weigh(features, first_polyline) : status;
     }
     camber_log(sources->context, CAMBER_LOG_WARNING,
-               "%s: of type %s, which has no lines; its layers are left out: use vector or geojson", one->what, type);
+               "%s: sources of type %s are not supported, so its layers are left out; use vector or geojson", one->what,
+               type);
     return CAMBER_OK;
 }
 
-/* Writes where the source stands; a style that is not a file goes by its own name. */
+/* Writes the source's position in the style. A style that is not a file is called by its own name. */
 static void write_pointer(source *one, const camber_style *style, const char *base_path) {
     const char *name = style->name && *style->name ? style->name : "style";
     snprintf(one->pointer, sizeof one->pointer, "%.800s: /sources/", base_path ? base_path : name);

@@ -1,11 +1,12 @@
 /* Makes triangles of areas.
  *
- * Input: rings in px, and the window that is wanted of them. Output: corners and triangles. Main idea: each ring is
- * clipped to the window, side by side, which leaves how often it winds around what is inside. Most rings are houses and
- * the like, which do not cross themselves and have nothing in common with others but sides: they are cut ear by ear.
- * What is left are groups of rings that overlap, have holes, or cross themselves. Each group is a polygon of GLU's
- * tessellator, whose time grows with what lies side by side in it. All tests are exact: units are whole. */
-#define _GNU_SOURCE /* RTLD_NODELETE: GLU stays for the next triangulator */
+ * Input: rings in px, and the window to clip them to. Output: corners and triangles. Main idea: each ring is clipped at
+ * each side of the window, which keeps the winding numbers inside the window. Most rings are buildings and the like,
+ * which do not cross themselves and share only sides with others: their ears are cut off one by one. The remaining
+ * rings overlap, have holes, or cross themselves. They are put into groups, and each group is a polygon of GLU's
+ * tessellator, whose time grows with the number of edges that are side by side. All tests are exact, because
+ * coordinates are whole units. */
+#define _GNU_SOURCE /* RTLD_NODELETE: GLU stays loaded for the next triangulator */
 
 #include "map/triangulator.h"
 
@@ -13,20 +14,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Directions in which rings are measured; and the points of a ring above which its edges are not compared with all
- * others. */
+/* The number of directions in which the extent of rings is measured. The edges of a ring with more points than
+ * MOST_COMPARED are not compared with all others. */
 enum { DIRECTIONS = 8, MOST_COMPARED = 256 };
 
 typedef struct ring {
-    size_t first, count;                       /* of the points */
+    size_t first, count;                       /* its points in corners */
     int32_t low[DIRECTIONS], high[DIRECTIONS]; /* by direction */
-    int side;                                  /* 1, -1: it does not cross itself, and runs clockwise or not; else 0 */
+    int side;                                  /* 1: clockwise, -1: counter-clockwise; 0: it may cross itself */
     bool convex;
-    uint32_t group; /* a ring of the same group that stands before; itself: none */
-    uint32_t next;  /* ring of the group, + 1; 0: none */
+    uint32_t group; /* an earlier ring of the same group, or itself */
+    uint32_t next;  /* number of the group's next ring, + 1; 0: none */
 } ring;
 
-/* Numbers of GLU; the callbacks are those with the polygon's data. */
+/* GLU's constants. The callbacks are those that get the polygon's data. */
 enum {
     GLU_VERTEX = 100107,
     GLU_ERROR = 100109,
@@ -51,13 +52,13 @@ typedef struct glu {
     void (*end_polygon)(void *);
 } glu;
 
-/* A point that is left of a ring whose ears are cut, and its neighbours. */
+/* A remaining point of a ring whose ears are being cut, and its neighbours. */
 typedef struct ear_point {
     uint32_t before, next;
-    bool reflex; /* or flat */
+    bool reflex; /* or on a straight line */
 } ear_point;
 
-/* Where a ring begins in the west. */
+/* The western side of a ring. */
 typedef struct left_side {
     int32_t x;
     uint32_t ring;
@@ -67,23 +68,23 @@ struct camber_triangulator {
     camber_context *context;
     glu glu;
     void *tess;
-    camber_corner *corners; /* of rings, then crossings */
+    camber_corner *corners; /* of the rings, then of crossings */
     size_t corner_count, corner_capacity;
     ring *rings;
     size_t ring_count, ring_capacity;
     uint32_t *indices;
     size_t index_count, index_capacity;
-    float *clipped[2]; /* pairs of px from the centre */
+    float *clipped[2]; /* pairs of px, relative to the centre */
     size_t clipped_capacity[2];
     left_side *sides; /* by ring, sorted */
     size_t side_capacity;
-    uint32_t *numbers; /* by corner: which one it is of those that triangles have */
+    uint32_t *numbers; /* by corner: its number among the corners that triangles use */
     size_t number_capacity;
-    uint32_t *slots; /* hashed by place: numbers + 1; 0: free */
+    uint32_t *slots; /* hash table by position: number + 1; 0: free */
     size_t slot_capacity;
     ear_point *ears;
     size_t ear_capacity;
-    bool failed; /* no memory */
+    bool failed; /* out of memory */
 };
 
 /* ---- GLU ---- */
@@ -103,7 +104,7 @@ static bool load(glu *g) {
            find(g, "gluTessEndContour", &g->end_contour) && find(g, "gluTessEndPolygon", &g->end_polygon);
 }
 
-bool camber_triangulator_is_here(void) {
+bool camber_triangulator_is_available(void) {
     glu g = {0};
     const bool found = load(&g);
     if (g.handle)
@@ -111,7 +112,7 @@ bool camber_triangulator_is_here(void) {
     return found;
 }
 
-/* Adds a corner; its number. */
+/* Adds a corner and returns its number. */
 static size_t add_corner(camber_triangulator *t, int32_t x, int32_t y) {
     if (!camber_grow(t->context, &t->corners, &t->corner_capacity, t->corner_count + 1, sizeof *t->corners)) {
         t->failed = true;
@@ -133,29 +134,29 @@ static void take_vertex(void *corner, void *user) {
     put_index(user, (size_t)(uintptr_t)corner);
 }
 
-/* With this the triangles come one by one. */
+/* Does nothing, but if this callback is set, GLU returns separate triangles instead of strips and fans. */
 static void take_edge_flag(unsigned char flag, void *user) {
     (void)flag;
     (void)user;
 }
 
-/* Where edges cross. */
+/* Adds a corner where edges cross. */
 static void take_crossing(double at[3], void *corners[4], float weights[4], void **made, void *user) {
     (void)corners;
     (void)weights;
     *made = (void *)(uintptr_t)add_corner(user, (int32_t)floor(at[0] + 0.5), (int32_t)floor(at[1] + 0.5));
 }
 
-/* No memory: of polygons that begin, turn and end as these do it tells nothing else. */
+/* GLU is out of memory. It can report nothing else for polygons that are begun and ended correctly. */
 static void take_error(unsigned error, void *user) {
     (void)error;
     ((camber_triangulator *)user)->failed = true;
 }
 
-camber_status camber_triangulator_tell_missing(camber_context *context) {
+camber_status camber_triangulator_fail_missing(camber_context *context) {
     return camber_fail(
         context, CAMBER_ERROR_DEVICE,
-        "mesh: areas need GLU (Debian: libglu1-mesa); install it, or name a style that has only lines with --style");
+        "mesh: areas need GLU (Debian: libglu1-mesa); install it, or choose a style with only lines with --style");
 }
 
 camber_status camber_triangulator_create(camber_context *context, camber_triangulator **triangulator) {
@@ -166,14 +167,14 @@ camber_status camber_triangulator_create(camber_context *context, camber_triangu
     if (!load(&made->glu) || !(made->tess = made->glu.create())) {
         const bool found = made->glu.end_polygon;
         camber_triangulator_destroy(made);
-        return found ? CAMBER_ERROR_MEMORY : camber_triangulator_tell_missing(context);
+        return found ? CAMBER_ERROR_MEMORY : camber_triangulator_fail_missing(context);
     }
     made->glu.set_callback(made->tess, GLU_VERTEX, (callback *)take_vertex);
     made->glu.set_callback(made->tess, GLU_EDGE_FLAG, (callback *)take_edge_flag);
     made->glu.set_callback(made->tess, GLU_COMBINE, (callback *)take_crossing);
     made->glu.set_callback(made->tess, GLU_ERROR, (callback *)take_error);
     made->glu.set_property(made->tess, GLU_RULE, GLU_NONZERO);
-    made->glu.set_normal(made->tess, 0.0, 0.0, -1.0); /* y goes down, and outlines face up */
+    made->glu.set_normal(made->tess, 0.0, 0.0, -1.0); /* y points down, and outlines face up */
     *triangulator = made;
     return CAMBER_OK;
 }
@@ -199,7 +200,8 @@ void camber_triangulator_destroy(camber_triangulator *triangulator) {
 
 /* ---- Clipping ---- */
 
-/* Cuts a closed ring at one side of the window: what lies beyond goes, and its ends are joined. axis: 0 x, 1 y. */
+/* Cuts a closed ring at one side of the window: the part beyond it is removed, and the ends are joined. axis: 0 for x,
+ * 1 for y. */
 static size_t clip_side(const float *from, size_t count, float *to, int axis, float side) {
     const float sign = side < 0.0f ? -1.0f : 1.0f, edge = fabsf(side);
     size_t kept = 0;
@@ -214,7 +216,7 @@ static size_t clip_side(const float *from, size_t count, float *to, int axis, fl
             kept++;
         }
         if ((da < 0.0f) != (db < 0.0f)) {
-            /* From the inside out, so that neighbours cut at the same bits. */
+            /* Interpolates from the inside out, so that neighbours are cut at exactly the same point. */
             const float *in = da >= 0.0f ? a : b, *beyond = da >= 0.0f ? b : a;
             const float share = fabsf(da >= 0.0f ? da : db) / (fabsf(da) + fabsf(db));
             out[axis] = side;
@@ -229,7 +231,7 @@ static bool want_clipped(camber_triangulator *t, size_t which, size_t count) {
     return camber_grow(t->context, &t->clipped[which], &t->clipped_capacity[which], count, 2 * sizeof **t->clipped);
 }
 
-/* Clips the ring in clipped[0], at the sides that it passes; returns where it is then. */
+/* Clips the ring in clipped[0] at the sides that it crosses, and returns which of the two buffers has the result. */
 static size_t clip_ring(camber_triangulator *t, size_t *count, const camber_ring_window *window) {
     size_t at = 0;
     for (int i = 0; i < 4 && *count > 2; i++) {
@@ -252,12 +254,12 @@ static size_t clip_ring(camber_triangulator *t, size_t *count, const camber_ring
 
 /* ---- Points ---- */
 
-/* Twice the area of a, b, c: above 0 where they turn clockwise, y going down. */
+/* Returns twice the area of the triangle a, b, c. It is above 0 if they turn clockwise, with y pointing down. */
 static int64_t turn(camber_corner a, camber_corner b, camber_corner c) {
     return (int64_t)(b.x - a.x) * (c.y - a.y) - (int64_t)(b.y - a.y) * (c.x - a.x);
 }
 
-/* Adds a point of the last ring; those before it that lie on a straight line with it go, and so do spikes. */
+/* Adds a point to the last ring. Removes previous points that are on a straight line with it, and spikes. */
 static void add_point(camber_triangulator *t, ring *r, camber_corner p) {
     for (; r->count > 1; r->count--, t->corner_count--) {
         const camber_corner *last = t->corners + t->corner_count - 1;
@@ -270,7 +272,7 @@ static void add_point(camber_triangulator *t, ring *r, camber_corner p) {
     r->count++;
 }
 
-/* The same where the last ring closes. */
+/* Does the same at the point where the ring closes. */
 static void close_ring(camber_triangulator *t, ring *r) {
     size_t begin = r->first, end = r->first + r->count;
     const camber_corner *c = t->corners;
@@ -287,7 +289,7 @@ static void close_ring(camber_triangulator *t, ring *r) {
     t->corner_count = end;
 }
 
-/* Measures the ring in all directions, and finds out whether it is convex, and its side then. */
+/* Measures the ring in all directions, and finds out whether it is convex; if so, sets its side. */
 static void measure(const camber_triangulator *t, ring *r) {
     const camber_corner *c = t->corners + r->first;
     bool left = false, right = false;
@@ -307,7 +309,7 @@ static void measure(const camber_triangulator *t, ring *r) {
         const int64_t turned = turn(a, b, d);
         left |= turned < 0;
         right |= turned > 0;
-        /* On the way from north to south, straight sides count with what comes next. */
+        /* A horizontal side counts as going up if it goes west, otherwise as going down. */
         const bool up = b.y < a.y || (b.y == a.y && b.x < a.x), up_next = d.y < b.y || (d.y == b.y && d.x < b.x);
         turns_back += up != up_next;
     }
@@ -315,7 +317,7 @@ static void measure(const camber_triangulator *t, ring *r) {
     r->side = !r->convex ? 0 : right ? 1 : -1;
 }
 
-/* Gets ready for the next fill, and returns the status. */
+/* Prepares for the next fill, and returns the status. */
 static camber_status forget(camber_triangulator *t, camber_status status) {
     t->ring_count = t->corner_count = 0;
     t->failed = false;
@@ -325,7 +327,7 @@ static camber_status forget(camber_triangulator *t, camber_status status) {
 camber_status camber_triangulator_add(camber_triangulator *t, const float *points, size_t count,
                                       const camber_ring_window *window) {
     ring made = {.first = t->corner_count};
-    size_t left = count ? count - 1 : 0; /* the first point is the last, too */
+    size_t left = count ? count - 1 : 0; /* the last point repeats the first */
     if (!want_clipped(t, 0, count + 1))
         return forget(t, CAMBER_ERROR_MEMORY);
     for (size_t i = 0; i < left; i++) {
@@ -362,13 +364,13 @@ static int sign_of(int64_t value) {
     return (value > 0) - (value < 0);
 }
 
-/* Whether the boxes of two segments have nothing in common. */
+/* Whether the boxes of two segments do not touch. */
 static bool are_apart(camber_corner a, camber_corner b, camber_corner c, camber_corner d) {
     return (a.x < c.x && a.x < d.x && b.x < c.x && b.x < d.x) || (a.x > c.x && a.x > d.x && b.x > c.x && b.x > d.x) ||
            (a.y < c.y && a.y < d.y && b.y < c.y && b.y < d.y) || (a.y > c.y && a.y > d.y && b.y > c.y && b.y > d.y);
 }
 
-/* Finds the side of a ring that does not touch itself. */
+/* Sets the side of a ring if it does not touch itself. */
 static void find_side(const camber_triangulator *t, ring *r) {
     int64_t area = 0;
     if (r->side || r->count > MOST_COMPARED)
@@ -389,10 +391,10 @@ static void find_side(const camber_triangulator *t, ring *r) {
     r->side = sign_of(area);
 }
 
-/* ---- Rings beside each other ---- */
+/* ---- Rings next to each other ---- */
 
-/* Point i of a ring that does not touch itself, counted once or twice around so that its inside is where turns are
- * above 0. */
+/* Returns point i of a ring that does not touch itself, in the order in which its inside is where turns are above 0. i
+ * may go around up to twice. */
 static camber_corner ordered_point(const camber_triangulator *t, const ring *r, size_t i) {
     const size_t k = i < r->count ? i : i - r->count;
     return t->corners[r->first + (r->side > 0 ? k : r->count - 1 - k)];
@@ -407,13 +409,13 @@ static sector sector_of(const camber_triangulator *t, const ring *r, size_t i) {
     return (sector){ordered_point(t, r, i + r->count - 1), ordered_point(t, r, i), ordered_point(t, r, i + 1)};
 }
 
-/* Whether the way from the corner to p begins inside the ring. */
+/* Whether the line from the corner to p begins inside the ring. */
 static bool leads_in(sector s, camber_corner p) {
     const bool one = turn(s.from, s.at, p) > 0, other = turn(s.at, s.to, p) > 0;
     return turn(s.from, s.at, s.to) > 0 ? one && other : one || other;
 }
 
-/* Whether two corners at one place have some of their insides in common. */
+/* Whether two corners at the same position have part of their insides in common. */
 static bool sectors_meet(sector a, sector b) {
     const int64_t ahead =
         (int64_t)(a.to.x - a.at.x) * (b.to.x - b.at.x) + (int64_t)(a.to.y - a.at.y) * (b.to.y - b.at.y);
@@ -421,18 +423,19 @@ static bool sectors_meet(sector a, sector b) {
            (turn(a.at, a.to, b.to) == 0 && ahead > 0);
 }
 
-/* The same of a corner and the edge from a to b that it lies on. */
+/* Whether a corner and the edge from a to b, which it is on, have part of their insides in common. */
 static bool reaches_past(sector s, camber_corner a, camber_corner b) {
     return turn(s.from, s.at, s.to) < 0 || turn(a, b, s.from) > 0 || turn(a, b, s.to) > 0;
 }
 
-/* Whether p lies between a and b, with which it is on a line. */
+/* Whether p is between a and b, if all three are on a line. */
 static bool is_between(camber_corner a, camber_corner b, camber_corner p) {
     return a.x != b.x ? (p.x > a.x && p.x < b.x) || (p.x < a.x && p.x > b.x)
                       : (p.y > a.y && p.y < b.y) || (p.y < a.y && p.y > b.y);
 }
 
-/* How two rings, or edges of theirs, lie: apart; touching, with nothing inside of both; or maybe with something. */
+/* How two rings, or two of their edges, meet: apart; touching, without a common inside; or possibly with a common
+ * inside. */
 typedef enum meeting { APART, TOUCHING, MEETING } meeting;
 
 static meeting meeting_of_edges(const camber_triangulator *t, const ring *one, size_t i, const ring *other, size_t k) {
@@ -452,7 +455,7 @@ static meeting meeting_of_edges(const camber_triangulator *t, const ring *one, s
     return APART;
 }
 
-/* Whether p lies in the ring, on no edge of which it is. */
+/* Whether p is inside the ring. p must not be on an edge. */
 static bool is_inside(const camber_triangulator *t, const ring *r, camber_corner p) {
     bool inside = false;
     for (size_t i = 0; i < r->count; i++) {
@@ -464,7 +467,7 @@ static bool is_inside(const camber_triangulator *t, const ring *r, camber_corner
 }
 
 static bool boxes_meet(const ring *one, const ring *other) {
-    for (int k = 1; k < DIRECTIONS; k++) /* by the first one they are sorted */
+    for (int k = 1; k < DIRECTIONS; k++) /* skips the first direction, by which they are sorted */
         if (one->low[k] > other->high[k] || other->low[k] > one->high[k])
             return false;
     return true;
@@ -500,7 +503,7 @@ static uint32_t group_of(ring *rings, uint32_t i) {
     return i;
 }
 
-/* By left sides; of equal ones the ring that was added before. */
+/* Compares left sides, and of equal ones the order in which the rings were added. */
 static int compare_sides(const void *a, const void *b) {
     const left_side *one = a, *other = b;
     return one->x != other->x ? (one->x > other->x) - (one->x < other->x)
@@ -532,7 +535,7 @@ static void find_groups(camber_triangulator *t) {
 
 /* ---- Triangles ---- */
 
-/* Turns it around, as GLU's are. */
+/* Adds a triangle with reversed winding, like GLU's. */
 static void put_triangle(camber_triangulator *t, size_t a, size_t b, size_t c) {
     if (!camber_grow(t->context, &t->indices, &t->index_capacity, t->index_count + 3, sizeof *t->indices)) {
         t->failed = true;
@@ -543,13 +546,13 @@ static void put_triangle(camber_triangulator *t, size_t a, size_t b, size_t c) {
     t->indices[t->index_count++] = (uint32_t)b;
 }
 
-/* The corner that is point i of a ring, in order. */
+/* Returns the corner of ordered point i of a ring. */
 static size_t ordered_corner(const ring *r, size_t i) {
     return r->first + (r->side > 0 ? i : r->count - 1 - i);
 }
 
-/* Whether a corner can be cut: it is no reflex one, and no point that is left lies in its triangle. A point that does
- * is reflex or flat, or one behind which such a point lies. */
+/* Whether a corner can be cut off: it must not be reflex, and no remaining point may be in its triangle. It is enough
+ * to test reflex and flat points: if any other point is in the triangle, so is one of these. */
 static bool is_ear(const camber_triangulator *t, const ring *r, size_t i) {
     const ear_point *ears = t->ears;
     const camber_corner a = ordered_point(t, r, ears[i].before), b = ordered_point(t, r, i),
@@ -571,7 +574,7 @@ static bool is_reflex(const camber_triangulator *t, const ring *r, size_t i) {
            0;
 }
 
-/* Cuts a ring that does not touch itself, ear by ear; there always is one. */
+/* Cuts a ring that does not touch itself into triangles, ear by ear. There is always an ear. */
 static void cut_ears(camber_triangulator *t, const ring *r) {
     ear_point *ears = t->ears;
     for (size_t i = 0; i < r->count; i++) {
@@ -595,7 +598,7 @@ static void cut_ears(camber_triangulator *t, const ring *r) {
         ears[next].reflex = is_reflex(t, r, next);
         left--;
         tried = 0;
-        i = ears[next].next; /* not the neighbour: triangles would be thin */
+        i = ears[next].next; /* not the neighbour, because triangles would become thin */
     }
 }
 
@@ -604,7 +607,7 @@ static void cut_convex(camber_triangulator *t, const ring *r) {
         put_triangle(t, ordered_corner(r, 0), ordered_corner(r, i - 1), ordered_corner(r, i));
 }
 
-/* Fills a group by GLU. */
+/* Fills a group with GLU. */
 static void fill_group(camber_triangulator *t, const ring *head) {
     const size_t before = t->index_count;
     t->glu.begin_polygon(t->tess, t);
@@ -618,10 +621,11 @@ static void fill_group(camber_triangulator *t, const ring *head) {
         t->glu.end_contour(t->tess);
     }
     t->glu.end_polygon(t->tess);
-    t->index_count -= (t->index_count - before) % 3; /* memory ran out */
+    t->index_count -= (t->index_count - before) % 3; /* drops a partial triangle if memory ran out */
 }
 
-/* Finds the number of a corner, or gives it the next one. slots has room for twice as many. */
+/* Finds the number of a corner, or gives it the next one. The hash table has at least twice as many slots as corners.
+ */
 static uint32_t number_corner(camber_triangulator *t, camber_corner c, size_t slots, uint32_t *used) {
     size_t at = (size_t)camber_mix(0, (uint64_t)(uint32_t)c.x << 32 | (uint32_t)c.y) & (slots - 1);
     for (; t->slots[at]; at = (at + 1) & (slots - 1))
@@ -632,7 +636,7 @@ static uint32_t number_corner(camber_triangulator *t, camber_corner c, size_t sl
     return *used - 1;
 }
 
-/* Leaves out the corners that no triangle has, makes one of those at one place, and drops triangles that are none then.
+/* Drops corners that no triangle uses, merges those at the same position, and drops triangles that become degenerate.
  */
 static camber_status merge_corners(camber_triangulator *t) {
     uint32_t used = 0;

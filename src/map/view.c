@@ -1,7 +1,7 @@
-/* Views: from what a user names (a centre and a zoom, a bounding box, everything) to the camera that draws it.
+/* Makes a view, the camera that draws a map, from a user's description: a centre and a zoom, a bounding box, or
+ * everything.
  *
- * Input: camber_view_desc in degrees and CSS pixels. Output: camber_view in world coordinates and device pixels.
- */
+ * Input: camber_view_desc in degrees and CSS pixels. Output: camber_view in world coordinates and device pixels. */
 #include "map/view.h"
 
 #include "base/perspective.h"
@@ -10,12 +10,12 @@
 
 #include <math.h>
 
-/* Web Mercator's square ends at CAMBER_MERCATOR_LATITUDE; this is how it is usually written. */
+/* The square of Web Mercator ends at CAMBER_MERCATOR_LATITUDE; this is how the limit is usually written. */
 static const double LARGEST_LATITUDE_DEG = 85.051129;
 static const double LARGEST_ZOOM = 24.0;
 static const double WORLD_CSS_PX = 512.0; /* at zoom 0 */
 
-/* Projects to world coordinates; a latitude limit that is written with six digits lies a little beyond the world. */
+/* Projects to world coordinates. The latitude limit with six digits is slightly outside the world, so y is clamped. */
 static void to_world(double longitude, double latitude, double *x, double *y) {
     camber_mercator_project(longitude, latitude, x, y);
     *y = *y < 0.0 ? 0.0 : *y > 1.0 ? 1.0 : *y;
@@ -30,16 +30,17 @@ static camber_status check_range(camber_context *context, const char *what, doub
 static camber_status check_size(camber_context *context, const camber_view_desc *desc, camber_view *view) {
     const double ratio = desc->ratio != 0.0 ? desc->ratio : 1.0;
     if (!(ratio > 0.0 && isfinite(ratio)))
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "view: a ratio of %g; choose a number above 0", ratio);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "view: the ratio is %g; choose a number above 0", ratio);
     const double width = floor((desc->width ? desc->width : 1024) * ratio + 0.5);
     const double height = floor((desc->height ? desc->height : 1024) * ratio + 0.5);
     if (!(width >= 1.0 && width <= 65535.0 && height >= 1.0 && height <= 65535.0))
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "view: a size of %.0f x %.0f device px; choose sides that are 1 to 65535 after the ratio",
-                           width, height);
+        return camber_fail(
+            context, CAMBER_ERROR_ARGUMENT,
+            "view: the size is %.0f x %.0f device px; choose sides that are 1 to 65535 px after the ratio", width,
+            height);
     if (width * height > 2147483648.0)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "view: a size of %.0f x %.0f device px; choose one of 2^31 pixels in all at most", width,
+                           "view: the size is %.0f x %.0f device px; choose at most 2^31 pixels in total", width,
                            height);
     view->width = (uint32_t)width;
     view->height = (uint32_t)height;
@@ -58,7 +59,7 @@ static void set_bearing(camber_view *view, double bearing_deg) {
     view->cosine = cos(angle);
     view->sine = sin(angle);
     if (remainder(bearing_deg, 90.0) == 0.0) {
-        /* pi is not exact: quarter turns must keep axis-parallel lines so. */
+        /* pi is not exact, but quarter turns must keep axis-parallel lines axis-parallel. */
         view->cosine = round(view->cosine);
         view->sine = round(view->sine);
     }
@@ -76,12 +77,12 @@ static camber_status set_bbox(camber_context *context, const camber_view_desc *d
         return status;
     if (desc->south > desc->north)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "view: the bbox's south %g lies north of its north %g; give west, south, east, north",
+                           "view: the bbox's south %g is north of its north %g; give west, south, east, north",
                            desc->south, desc->north);
     const double east = desc->west > desc->east ? desc->east + 360.0 : desc->east;
     if (east < desc->west || east - desc->west > 360.0)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "view: the bbox from %g to %g does not go once around the world; choose -180 to 180",
+                           "view: the bbox from %g to %g is wider than the world; choose longitudes from -180 to 180",
                            desc->west, desc->east);
     double x[2], y[2];
     to_world(desc->west, desc->north, x, y);
@@ -151,7 +152,7 @@ void camber_view_frame(camber_view *view, camber_box bounds, double fill, double
     view->y = u * view->sine + v * view->cosine;
     const double across = fill * view->width / (bounds.x1 - bounds.x0);
     const double down = fill * view->height / (bounds.y1 - bounds.y0);
-    /* A single point divides by 0: infinite, and cut to the largest zoom. */
+    /* A single point divides by 0, and the infinite zoom is cut to the largest one. */
     const double zoom = log2(fmin(across, down) / (WORLD_CSS_PX * view->ratio));
     set_zoom(view, zoom < max_zoom ? zoom : max_zoom);
 }

@@ -1,7 +1,6 @@
-/* Evaluates a style for a zoom: its plan, and how far what it draws reaches.
+/* Evaluates a style for a zoom: makes its plan, and finds how far the strokes of each class reach.
  *
- * Input: features, and a zoom that is seen anywhere or a view. Output: camber_zoom_plan, which scenes are windows of.
- */
+ * Input: features, and a zoom or a view. Output: camber_zoom_plan. Scenes are windows of it. */
 #include "map/zoom_plan.h"
 
 #include "map/plan_network.h"
@@ -17,7 +16,7 @@ static camber_status find_strokes(camber_zoom_plan *zoom) {
     return CAMBER_OK;
 }
 
-/* Finds how far each class reaches; a class is drawn by all pairs that it has. */
+/* Finds how far each class reaches. A class may have several pairs, and all of them draw it. */
 static camber_status find_reaches(camber_zoom_plan *zoom) {
     const camber_plan *plan = &zoom->plan;
     const size_t class_count = zoom->features->class_count;
@@ -87,11 +86,11 @@ camber_status camber_zoom_plan_create_view(const camber_features *features, cons
     camber_status status = camber_view_create(features->context, desc, &made->view);
     if (status == CAMBER_OK && features->polyline_count && !features->points)
         status = camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
-                             "scene: the points of its features are released; read them into another set");
+                             "scene: the points of its features have been released; read the features again");
     if (status == CAMBER_OK)
         status = desc->kind == CAMBER_VIEW_FIT ? camber_plan_fit(features, &made->view, &made->plan)
                                                : camber_plan_create(features, &made->view, &made->plan);
-    /* As camber_network_aim has it: with a pitch the tolerance is smaller near the camera. */
+    /* Like camber_network_aim: with a pitch, the tolerance is smaller near the camera. */
     if (status == CAMBER_OK && !(made->view.pitch_deg > 0.0))
         made->least_importance = (float)(simplify_px / made->view.scale_px);
     if (status == CAMBER_OK)

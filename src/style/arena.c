@@ -1,8 +1,10 @@
+/* Arenas: blocks of memory from which values are cut off in turn. */
 #include "style/arena.h"
 
 enum { BLOCK_SIZE = 4096, ALIGNMENT = 8 };
 
-/* Adds a block that has at least this much room, and twice as much as all before it, so that there are few blocks. */
+/* Adds a block with at least this much room, and as much as twice everything before it, so that there are few blocks.
+ */
 static bool add_block(camber_arena *arena, size_t size_bytes) {
     size_t room = arena->used > BLOCK_SIZE / 2 ? 2 * arena->used : BLOCK_SIZE;
     if (room < size_bytes)

@@ -1,4 +1,4 @@
-/* Memory for values that are freed together, all at once. */
+/* Memory for values that are all freed at the same time. */
 #ifndef CAMBER_STYLE_ARENA_H
 #define CAMBER_STYLE_ARENA_H
 
@@ -6,16 +6,16 @@
 
 typedef struct camber_arena {
     camber_context *context;
-    char *at; /* the next free byte; at first in the owner's own buffer */
+    char *at; /* the next free byte; it may start in a buffer of the owner */
     size_t left;
-    void *blocks; /* a list: each block begins with a pointer to the one before */
+    void *blocks; /* a list: each block begins with a pointer to the previous one */
     size_t used, limit;
-    bool starved; /* memory ran out; the limit was not reached */
+    bool starved; /* memory ran out before the limit was reached */
 } camber_arena;
 
-/* Aligned to 8. NULL where the limit is reached or memory ran out, without a message. */
+/* Allocates memory aligned to 8 bytes. NULL, without a message: the limit is reached, or memory ran out. */
 void *camber_arena_alloc(camber_arena *arena, size_t size_bytes);
-/* Copies the text and puts a 0 behind it. */
+/* Copies the text and appends a 0. */
 char *camber_arena_text(camber_arena *arena, const char *text, size_t length);
 void camber_arena_free(camber_arena *arena);
 

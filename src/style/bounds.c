@@ -1,20 +1,20 @@
-/* Bounds the numbers that a layer can ask for, before any feature is known.
+/* Bounds the values of a layer's numeric properties before any feature is known.
  *
- * Input: a layer's property and a zoom. Output: its value where features do not change it. Else the document is walked:
- * what chooses among outputs is bounded by the largest of them, sums and products by those of their operands. What
- * comes from a feature itself has no bound. */
+ * Input: a layer's property and a zoom. Output: its value, if features do not change it. Otherwise the document is
+ * walked: an expression that chooses among outputs is bounded by the largest of them, and sums and products by those of
+ * the bounds of their operands. A value read from a feature has no bound. */
 #include "style/bounds.h"
 
 #include "style/properties.h"
 
 #include <math.h>
 
-/* Deeper documents have no bound. */
+/* Documents nested more deeply have no bound. */
 enum { DEEPEST = 64 };
 
 static double bound_of(const json_t *json, int depth);
 
-/* The largest bound among the items from first on, each step-th of them, and the last where it is asked for. */
+/* Returns the largest bound of every step-th item, starting with first, and of the last item if and_last is set. */
 static double largest(const json_t *array, size_t first, size_t step, bool and_last, int depth) {
     double most = 0.0;
     for (size_t i = first; i < json_array_size(array); i += step)
@@ -51,7 +51,7 @@ static double bound_of_expression(const json_t *array, int depth) {
     if (is_operator(array, "step"))
         return largest(array, 2, 2, false, depth);
     if (is_operator(array, "interpolate"))
-        return largest(array, 4, 2, false, depth); /* a curve of any kind stays among its outputs */
+        return largest(array, 4, 2, false, depth); /* a curve of any kind stays between its outputs */
     if (is_operator(array, "coalesce") || is_operator(array, "max") || is_operator(array, "abs"))
         return largest(array, 1, 1, false, depth);
     if (is_operator(array, "+") || is_operator(array, "-"))
@@ -61,7 +61,7 @@ static double bound_of_expression(const json_t *array, int depth) {
     return is_operator(array, "zoom") ? 24.0 : INFINITY;
 }
 
-/* A function of the older kind, unless it hands on what a feature has. */
+/* Bounds an older function. An identity function returns a feature's own value, so it has no bound. */
 static double bound_of_function(const json_t *function, int depth) {
     const char *type = json_string_value(json_object_get(function, "type"));
     const json_t *stops = json_object_get(function, "stops"), *other = json_object_get(function, "default");
@@ -90,6 +90,6 @@ double camber_style_layer_bound(const camber_style_layer *layer, camber_property
     memcpy(&value, (const char *)&look.paint + row->offset, sizeof value);
     if (!camber_property_set_has(&look.by_feature, property))
         return fabs(value);
-    /* Where an expression fails the default stands, which the look has. */
+    /* If an expression fails, the default is used, which look.paint has. */
     return fmax(fabs(value), bound_of(layer->properties[property]->document, 0));
 }

@@ -1,15 +1,14 @@
-/* Checks a style document: lists all that is wrong with it, and says which layers and sources are drawn.
+/* Checks a style document: lists everything that is wrong with it, and says which layers and sources are drawn.
  *
- * Input: the document's bytes. Output: a report of findings, each with a JSON pointer. The document is read to its end,
- * past what is wrong, and the messages of reading are collected instead of logged.
- */
+ * Input: the document's bytes. Output: a report of findings, each with a JSON pointer. Reading continues after each
+ * error to the end of the document, and its messages are collected instead of logged. */
 #include "style/document.h"
 
 #include <stdio.h>
 
-/* A report and what it is made from. */
+/* A report, and the memory that it uses. */
 typedef struct checker {
-    camber_style_report report; /* first, since its address is handed out */
+    camber_style_report report; /* the first member, because its address is given to the caller */
     camber_context *context;
     camber_style_finding *findings;
     camber_style_type *types;
@@ -18,7 +17,7 @@ typedef struct checker {
     char **texts;
     size_t text_count, text_capacity;
     bool out_of_memory;
-    camber_soft_log log; /* holds back messages once memory ran out */
+    camber_soft_log log; /* suppresses messages after memory has run out */
 } checker;
 
 static void fail_memory(checker *k) {
@@ -55,7 +54,7 @@ static void keep_problem(void *user, const camber_compiler *c, camber_log_level 
     report->error_count += error;
 }
 
-/* Finds what is valid but may draw otherwise than expected, in layers and the sources that they name. */
+/* Warns of things that are valid but may not be drawn as expected, in layers and in the sources that they name. */
 static void find_in_layer(camber_document *d, const camber_style_layer *layer, const char *type) {
     camber_compiler *c = &d->compiler;
     if (layer->kind == CAMBER_LAYER_BACKGROUND)
@@ -81,7 +80,7 @@ static void find_in_layer(camber_document *d, const camber_style_layer *layer, c
                                  camber_property_rows[i].property.name, layer->source);
 }
 
-/* The document's layers that are drawn are the style's, in the same order. */
+/* The style has only the layers that are drawn, in the document's order. */
 static void find_in_layers(camber_document *d) {
     camber_compiler *c = &d->compiler;
     const json_t *layers = json_object_get(d->root, "layers");
@@ -107,7 +106,7 @@ static void fail_at(camber_document *d, const char *key, const char *message) {
     const size_t depth = d->compiler.path_length;
     camber_compiler_enter_key(&d->compiler, key);
     camber_compiler_fail(&d->compiler, "%s", message);
-    camber_document_goes_on(d, depth);
+    camber_document_continues(d, depth);
 }
 
 static bool is_one_of(const char *text, const char *const *names) {
@@ -149,7 +148,7 @@ static void find_in_tiles(camber_document *d, const json_t *source) {
     }
 }
 
-/* Finds what reading a source would complain of, had a layer named it. */
+/* Reports errors that reading a source would report if a layer named it. */
 static void find_in_sources(camber_document *d) {
     static const char *const types[] = {"vector", "raster", "raster-dem", "geojson", "image", "video", "canvas", NULL};
     camber_compiler *c = &d->compiler;
@@ -210,10 +209,11 @@ static bool is_remote(const json_t *json) {
 }
 
 static const char *find_trouble(const camber_style_source *source) {
-    static const char *const remote = "it is on a network, which is not read; save it as a file and name that";
+    static const char *const remote =
+        "it is on the network, and nothing is downloaded; save it as a file and name the file";
     const bool geojson = strcmp(source->type, "geojson") == 0;
     if (!geojson && strcmp(source->type, "vector") != 0)
-        return "sources of this type have neither lines nor areas; draw those of a geojson or vector source";
+        return "sources of this type are not supported; use a geojson or vector source";
     const json_t *data = json_object_get(source->json, "data"), *url = json_object_get(source->json, "url");
     const json_t *tiles = json_object_get(source->json, "tiles");
     if (geojson ? !data : !url && !tiles)
@@ -244,7 +244,7 @@ static void list_sources(checker *k, const camber_style *style) {
 static camber_status check_document(checker *k, const char *json, size_t size_bytes, const char *name) {
     camber_document d = {
         .compiler = {.context = k->context, .name = name, .report = keep_problem, .report_user = k, .checks = true},
-        .reads_on = true};
+        .collects_errors = true};
     d.compiler.style = camber_alloc_zero(k->context, 1, sizeof *d.compiler.style);
     if (!d.compiler.style)
         return CAMBER_ERROR_MEMORY;

@@ -1,7 +1,7 @@
-# The built-in style: kinds of areas and two palettes, with rivers, rails and the roads of roads.cmake on them.
+# The built-in style: kinds of areas in two palettes, with rivers, rails and the roads of roads.cmake above them.
 #
-# It draws extracts of OpenStreetMap by its keys, and vector tiles by their layers and classes: those of the schemas
-# OpenMapTiles, Protomaps (3 and 4) and Shortbread. The lower kinds come first.
+# It draws extracts of OpenStreetMap by their keys, and vector tiles by their layers and classes, for the schemas
+# OpenMapTiles, Protomaps (3 and 4) and Shortbread. Kinds that are drawn lower come first.
 
 set(city_kinds reserve built commerce industry campus field park wood sand rock wetland ice pitch water pier apron plaza)
 set(city_keys natural landuse leisure waterway amenity man_made aeroway highway)
@@ -32,8 +32,8 @@ set(city_pier_man_made pier breakwater groyne)
 set(city_apron_aeroway apron runway taxiway helipad)
 set(city_plaza_highway pedestrian footway path steps cycleway living_street residential unclassified service track)
 
-# The classes of each kind in the layers of tiles, whatever the schema: a layer's name may be that of several, and their
-# classes do not contradict each other. "*": all of the layer.
+# The classes of each kind in the layers of tiles, for all schemas together: several schemas may have a layer of the
+# same name, but their classes do not conflict. "*": the whole layer.
 set(city_tile_layers park landuse landcover natural land sites water ocean water_polygons aeroway transportation
     pier_polygons street_polygons bridges)
 set(city_tiles_reserve_park *)
@@ -94,8 +94,8 @@ set(city_tiles_plaza_street_polygons pedestrian service)
 set(city_tiles_plaza_bridges *)
 set(city_tiles_class [=[["coalesce", ["get", "class"], ["get", "kind"], ["get", "pmap:kind"]]]=])
 
-# The lines of each schema: the layers of rivers, rails and roads, the classes of the roads, and what makes a road a
-# tunnel, a bridge or a ramp. Protomaps has the two versions' names. A bridge with a roof is a tunnel.
+# The lines of each schema: the layers of rivers, rails and roads, the classes of the roads, and the tests for tunnels,
+# bridges and ramps. Protomaps has the names of both versions. A bridge with a roof counts as a tunnel.
 set(city_schemas openmaptiles protomaps shortbread)
 set(city_openmaptiles_rivers waterway)
 set(city_openmaptiles_rails transportation)
@@ -119,7 +119,8 @@ set(city_shortbread_tunnel [=[["==", ["get", "tunnel"], true]]=])
 set(city_shortbread_bridge [=[["all", ["==", ["get", "bridge"], true], ["!=", ["get", "tunnel"], true]]]=])
 set(city_shortbread_ramp [=[["==", ["get", "link"], true]]=])
 
-# The classes of lines, of all schemas and of OpenStreetMap. Those of roads are omt_values_CLASS, and these of a schema.
+# The classes of lines, for all schemas and OpenStreetMap. Roads have omt_values_CLASS, and these in addition for a
+# schema.
 set(city_rivers river canal stream drain ditch tidal_channel)
 set(city_rails rail transit light_rail narrow_gauge preserved funicular monorail subway tram)
 set(city_paths path footway cycleway bridleway steps corridor sidewalk crossing track)
@@ -131,8 +132,8 @@ foreach(class tertiary secondary primary trunk motorway)
   set(city_protomaps_${class} ${class}_link)
 endforeach()
 
-# From which zoom on a kind is drawn, where it is small. An opacity says so, and no minzoom: a scene keeps its network as
-# long as the same layers have features.
+# The first zoom at which a kind of small areas is drawn. It sets an opacity and not a minzoom, because a scene keeps
+# its network as long as the same layers have features.
 set(city_zoom_pitch 13)
 set(city_zoom_pier 11)
 set(city_zoom_apron 10)
@@ -182,17 +183,18 @@ set(city_dark_building "#242c3b")
 set(city_dark_stream   "#1b4360")
 set(city_dark_rail     "#505a6d")
 
-# Tests of what goes by OpenStreetMap's keys: whether it is in a tunnel; and Protomaps 3 repeats keys beside its classes.
+# Tests for features with OpenStreetMap's keys: whether one is in a tunnel, and whether it is not from Protomaps 3,
+# which repeats OpenStreetMap's keys in addition to its own classes.
 set(city_tunnel [=[["match", ["to-string", ["get", "tunnel"]], ["", "0", "no", "false"], false, true]]=])
 set(city_no_schema [=[["!", ["has", "pmap:kind"]]]=])
 
-# A test of an expression for one of the values.
+# Makes a test of whether an expression has one of the values.
 function(city_match out value)
   list(JOIN ARGN "\", \"" values)
   set(${out} "[\"match\", ${value}, [\"${values}\"], true, false]" PARENT_SCOPE)
 endfunction()
 
-# Appends a layer that fills a kind: id, more of its head, filter.
+# Appends a layer that fills areas of a kind, with an id, additional members (head) and a filter.
 function(city_layer out theme kind id head filter)
   set(paint "\"fill-color\": \"${city_${theme}_${kind}}\"")
   if(DEFINED city_zoom_${kind})
@@ -206,7 +208,8 @@ function(city_layer out theme kind id head filter)
   set(${out} "${${out}}" PARENT_SCOPE)
 endfunction()
 
-# Appends the layers of a kind: one of what a key makes of this kind, and one for each layer of tiles that has it.
+# Appends the layers of a kind: one for features with OpenStreetMap's keys, and one for each layer of tiles that has
+# it.
 function(city_areas out theme kind)
   set(filter "[\"all\", ${city_no_schema}, [\"any\"")
   foreach(key IN LISTS city_keys)
@@ -228,7 +231,7 @@ function(city_areas out theme kind)
   set(${out} "${${out}}" PARENT_SCOPE)
 endfunction()
 
-# Appends a layer by its template, with the variables that this names filled in.
+# Appends a layer made from a template, with the template's variables filled in.
 macro(city_append out template)
   string(CONFIGURE "${template}" city_text @ONLY)
   string(STRIP "${city_text}" city_text)
@@ -254,10 +257,10 @@ set(city_template_rail [=[
      "paint": {"line-color": "@RAIL@",
                "line-width": ["interpolate", ["exponential", 1.4], ["zoom"], 8, 0, 9, 0.4, 14, 1, 16, 1.6, 20, 5.5]}}]=])
 
-# Areas have no line around them.
+# Areas get no line around them.
 set(city_no_area "[\"!=\", [\"geometry-type\"], \"Polygon\"]")
 
-# Appends the rivers or rails that lie in no tunnel: of OpenStreetMap's keys, and of the layers of each schema.
+# Appends the rivers or rails that are not in tunnels, for OpenStreetMap's keys and for the layers of each schema.
 macro(city_lines out kind key)
   city_match(match "[\"get\", \"${key}\"]" ${city_${kind}s})
   set(CLASS "[\"get\", \"${key}\"]")
@@ -276,7 +279,8 @@ macro(city_lines out kind key)
   endforeach()
 endmacro()
 
-# Appends what lies on the areas: buildings, rivers, rails, and the roads of tiles, in the colours of the other roads.
+# Appends everything above the areas: buildings, rivers, rails, and the roads of tiles in the same colours as other
+# roads.
 function(city_details out theme)
   foreach(color building building_far water stream rail)
     string(TOUPPER ${color} name)

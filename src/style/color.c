@@ -1,7 +1,6 @@
-/* Parses colours as CSS Color Module Level 4 writes them: hex digits, rgb(), hsl() and names.
+/* Parses colours of CSS Color Module Level 4: hex digits, rgb(), hsl() and names.
  *
- * Input: text. Output: straight sRGB components from 0 to 1; false where the text is not a colour.
- */
+ * Input: text. Output: straight sRGB components from 0 to 1; false if the text is not a colour. */
 #include "style/color.h"
 
 #include "style/number.h"
@@ -213,7 +212,7 @@ typedef struct component {
     unit unit;
 } component;
 
-/* Returns the text behind word, NULL where text does not begin with it. Case is ignored; word is in lower case. */
+/* Returns the text after word, or NULL if text does not begin with it. Case is ignored; word is in lower case. */
 static const char *after_word(const char *text, const char *word) {
     while (*word) {
         if (lower(*text++) != *word++)
@@ -246,8 +245,8 @@ static const char *parse_component(const char *text, component *part) {
     return text;
 }
 
-/* Parses "1, 2, 3)", "1, 2, 3, .5)", "1 2 3)" or "1 2 3 / .5)" with nothing behind it. Returns the number of
- * components, 0 where it is none of these. */
+/* Parses "1, 2, 3)", "1, 2, 3, .5)", "1 2 3)" or "1 2 3 / .5)" with nothing after it. Returns the number of components,
+ * or 0 if the text is none of these. */
 static size_t parse_arguments(const char *text, component parts[4], bool *commas) {
     size_t count = 0;
     *commas = false;

@@ -1,15 +1,15 @@
-/* The compiler of expressions: where in the document it is, errors, nodes, types, and constants that are folded.
+/* The compiler of expressions: tracks the position in the document, reports errors, makes typed nodes, and folds
+ * constants.
  *
  * Input: JSON. Output: camber_expression. Operands are compiled first and wait on a stack; an operator takes its own
- * from there. An operator whose operands are all constants is evaluated at once and becomes a constant.
- */
+ * from there. An operator whose operands are all constants is evaluated immediately and becomes a constant. */
 #include "style/compiler.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- Where we are, and what is wrong there ---- */
+/* ---- The position in the document, and errors there ---- */
 
 void camber_compiler_enter_key(camber_compiler *c, const char *key) {
     if (c->path_length < CAMBER_PATH_DEPTH)
@@ -64,7 +64,7 @@ void camber_compiler_warn(camber_compiler *c, const char *format, ...) {
     va_end(list);
 }
 
-/* Sets the status; camber_alloc has logged the message. */
+/* Only sets the status, because camber_alloc has already logged the message. */
 static bool fail_memory(camber_compiler *c) {
     c->status = CAMBER_ERROR_MEMORY;
     return false;
@@ -156,7 +156,7 @@ bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t f
     }
     c->operand_count = first_operand;
     if (made.height > CAMBER_NODE_HEIGHT)
-        return camber_compiler_fail(c, "variables lead more than %d levels deep; bind fewer in each other",
+        return camber_compiler_fail(c, "variables refer to each other more than %d levels deep; nest fewer of them",
                                     CAMBER_NODE_HEIGHT);
     *node = (uint32_t)e->node_count;
     e->nodes[e->node_count++] = made;
@@ -194,7 +194,7 @@ bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber
 
 /* ---- Properties of features ---- */
 
-/* Four slots for each property keep probes short. */
+/* Four slots per property keep probes short. */
 enum { PROPERTY_SLOTS = 4 * CAMBER_PROPERTY_LIMIT };
 
 static size_t property_slot(const camber_compiler *c, const char *name) {
@@ -205,7 +205,7 @@ static size_t property_slot(const camber_compiler *c, const char *name) {
     return slot;
 }
 
-/* A style may have properties of an earlier compiler. */
+/* The style may already have properties from an earlier compiler. */
 static bool hash_properties(camber_compiler *c) {
     if (c->property_slots)
         return true;
@@ -217,7 +217,7 @@ static bool hash_properties(camber_compiler *c) {
     return true;
 }
 
-/* Adds the layer that is read to the readers of a property. */
+/* Adds the current layer to the readers of a property. */
 static bool add_readers(camber_compiler *c, uint32_t property) {
     camber_schema *schema = &c->style->schema;
     if (!c->readers.kinds && !c->readers.named_kinds)
@@ -241,7 +241,7 @@ bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, cons
         if (style->schema.property_count >= CAMBER_PROPERTY_LIMIT)
             return camber_compiler_fail(c, "more than %d feature properties are read; use fewer",
                                         CAMBER_PROPERTY_LIMIT);
-        /* The limit is small, so the array has its full size from the beginning and needs no capacity. */
+        /* The limit is small, so the array gets its full size at once and needs no capacity. */
         if (!style->schema.properties)
             style->schema.properties =
                 camber_alloc(c->context, CAMBER_PROPERTY_LIMIT, sizeof *style->schema.properties);
@@ -303,9 +303,8 @@ const camber_binding *camber_find_binding(const camber_compiler *c, const char *
 
 /* ---- Folding ---- */
 
-/* Whether a node may be replaced by its value now. The state counts as unknown to types. An error is to fail only
- * where it is reached. A collator's value is not a value of the language. A variable's value belongs to an
- * evaluation. */
+/* Whether a node may be replaced by its value now. The type of the state counts as unknown. An error must fail only if
+ * it is reached. A collator's value is not a value of the language. A variable's value belongs to one evaluation. */
 static bool is_foldable(const camber_expression *e, const camber_node *node) {
     static camber_evaluate_fn *const kept[] = {camber_evaluate_constant, camber_evaluate_state, camber_evaluate_var,
                                                camber_evaluate_error, camber_evaluate_collator};
@@ -318,12 +317,12 @@ static bool is_foldable(const camber_expression *e, const camber_node *node) {
         const camber_node *operand = &e->nodes[e->links[node->first + i]];
         if (!camber_is_constant(operand) ||
             (node->evaluate == camber_evaluate_coalesce && operand->type.type == CAMBER_TYPE_IMAGE))
-            return false; /* which images exist is known later */
+            return false; /* it is not known yet which images exist */
     }
     return true;
 }
 
-/* Replaces a node all of whose operands are constants by its value, which lives in the expression's memory. */
+/* Replaces a node with constant operands by its value, which uses the expression's memory. */
 static bool fold(camber_compiler *c, uint32_t *node) {
     camber_expression *e = c->expression;
     if (!is_foldable(e, &e->nodes[*node]))
@@ -346,7 +345,8 @@ static bool fold(camber_compiler *c, uint32_t *node) {
     if (!done)
         return camber_compiler_fail(c, "cannot be evaluated: %.200s; correct the value", evaluation.cause);
     if (c->folded_work > CAMBER_FOLD_WORK_LIMIT)
-        return camber_compiler_fail(c, "the style's constants take too long to be evaluated; write out what they are");
+        return camber_compiler_fail(
+            c, "the style's constant expressions take too long to evaluate; write their values instead");
     const camber_typing type = e->nodes[*node].type;
     return camber_make_constant(c, &value, type, node);
 }
@@ -392,7 +392,7 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
 
 /* ---- Compilation ---- */
 
-/* Drops the nodes that a constant was made from. */
+/* Drops the nodes from which a constant was made. */
 static bool drop_since(camber_compiler *c, const camber_expression *before, uint32_t *node) {
     camber_expression *e = c->expression;
     const camber_node constant = e->nodes[*node];

@@ -1,7 +1,6 @@
-/* Reads a style document: its root, sources, sprites, camera and state; layer.c reads the layers.
+/* Reads a style document: its root, sources, sprites, camera and state. layer.c reads the layers.
  *
- * Input: bytes. Output: camber_style. Sources are read before the layers, which name them.
- */
+ * Input: bytes. Output: camber_style. Sources are read before the layers that refer to them. */
 #include "style/document.h"
 
 #include <errno.h>
@@ -40,7 +39,7 @@ static bool read_source(camber_document *d, const char *name, json_t *json) {
     return compiled;
 }
 
-/* Before the layers, which name them. */
+/* Called before the layers are read, because they refer to sources. */
 static bool read_sources(camber_document *d, json_t *sources) {
     camber_compiler *c = &d->compiler;
     const char *name;
@@ -52,7 +51,7 @@ static bool read_sources(camber_document *d, json_t *sources) {
     if (!json_is_object(sources))
         return camber_compiler_fail(c, "expected an object, found %s; write {\"name\": {...}, ...}",
                                     camber_json_name(sources)) ||
-               camber_document_goes_on(d, depth - 1);
+               camber_document_continues(d, depth - 1);
     c->style->sources = camber_alloc_zero(c->context, json_object_size(sources), sizeof *c->style->sources);
     d->source_indices = json_object();
     if (!c->style->sources)
@@ -61,7 +60,7 @@ static bool read_sources(camber_document *d, json_t *sources) {
         return camber_compiler_fail_memory(c);
     json_object_foreach(sources, name, json) {
         camber_compiler_enter_key(c, name);
-        if (!read_source(d, name, json) && !camber_document_goes_on(d, depth))
+        if (!read_source(d, name, json) && !camber_document_continues(d, depth))
             return false;
         c->path_length = depth;
     }
@@ -77,7 +76,7 @@ static bool add_sprite(camber_document *d, const char *id, const char *url) {
     return sprite->url || camber_document_fail_memory(d);
 }
 
-/* A URL, or several with ids. */
+/* Reads one sprite URL, or several with ids. */
 static bool read_sprites(camber_document *d, const json_t *json) {
     camber_compiler *c = &d->compiler;
     const size_t depth = c->path_length, count = json_is_array(json) ? json_array_size(json) : 1;
@@ -94,7 +93,7 @@ static bool read_sprites(camber_document *d, const json_t *json) {
         if (!url || !id)
             return camber_compiler_fail(c, "expected a URL, or an array of {\"id\": \"default\", \"url\": \"...\"}; "
                                            "write one of them") ||
-                   camber_document_goes_on(d, depth);
+                   camber_document_continues(d, depth);
         if (!add_sprite(d, id, url))
             return false;
     }
@@ -111,17 +110,17 @@ static bool read_version(camber_document *d) {
     camber_compiler_enter_key(c, "version");
     if (!json_is_number(version) || json_number_value(version) < 8.0 || json_number_value(version) > 8.0)
         if (!camber_compiler_fail(c, "expected the number 8; write \"version\": 8") &&
-            !camber_document_goes_on(d, depth))
+            !camber_document_continues(d, depth))
             return false;
     c->path_length = depth;
     if (!json_object_get(d->root, "constants"))
         return true;
     camber_compiler_enter_key(c, "constants");
     return camber_compiler_fail(c, "version 8 has no constants; write their values where they are used") ||
-           camber_document_goes_on(d, depth);
+           camber_document_continues(d, depth);
 }
 
-/* The same limit as the map's view has. */
+/* The same limit as that of the map's view. */
 static const double PITCH_MAX_DEG = 85.0;
 
 static bool read_camera(camber_document *d) {
@@ -134,8 +133,8 @@ static bool read_camera(camber_document *d) {
         camber_compiler_enter_key(c, "center");
         if (json_array_size(center) != 2 || !json_is_number(longitude) || !json_is_number(latitude) ||
             !(fabs(json_number_value(longitude)) <= 360.0 && fabs(json_number_value(latitude)) <= 90.0)) {
-            camber_compiler_fail(c, "expected a place; write [longitude, latitude] in degrees");
-            if (!camber_document_goes_on(d, depth))
+            camber_compiler_fail(c, "expected a position; write [longitude, latitude] in degrees");
+            if (!camber_document_continues(d, depth))
                 return false;
         } else {
             camera->longitude = json_number_value(longitude);
@@ -170,7 +169,7 @@ static bool read_state(camber_document *d) {
     }
     if (!good)
         return camber_compiler_fail(c, "expected values with a default; write {\"name\": {\"default\": 1}, ...}") ||
-               camber_document_goes_on(d, depth);
+               camber_document_continues(d, depth);
     c->style->state = json_incref(state);
     c->state = state;
     c->state_defaults = true;
@@ -184,7 +183,7 @@ static void warn_at(camber_document *d, const char *key, const char *message) {
     camber_compiler_leave(&d->compiler);
 }
 
-/* Warns of root properties that would change where lines lie. */
+/* Warns of root properties that would change the positions of lines. */
 static void warn_of_places(camber_document *d) {
     const json_t *projection = json_object_get(json_object_get(d->root, "projection"), "type");
     if (projection && !(json_is_string(projection) && strcmp(json_string_value(projection), "mercator") == 0))
@@ -194,8 +193,8 @@ static void warn_of_places(camber_document *d) {
 }
 
 static bool read_document(camber_document *d) {
-    /* Properties that need other kinds of layers, or a picture that changes, do not move lines; nor do those that
-     * style editors keep there. */
+    /* These include properties that do not affect lines: those for other layer types and for animated pictures, and
+     * those that style editors store. */
     static const char *const known[] = {
         "version", "name",      "metadata", "center",     "centerAltitude", "zoom",   "bearing",    "pitch",
         "roll",    "state",     "light",    "sources",    "sprite",         "glyphs", "font-faces", "transition",
@@ -217,7 +216,7 @@ static bool read_document(camber_document *d) {
 
 static bool fail_json(camber_document *d, const json_error_t *error) {
     camber_compiler *c = &d->compiler;
-    /* jansson mostly reports a wrong character where it ran out of memory. */
+    /* If jansson runs out of memory, it usually reports a wrong character. */
     if (json_error_code(error) != json_error_out_of_memory && errno != ENOMEM)
         return camber_compiler_fail(c, "line %d, column %d: %s; %s", error->line, error->column, error->text,
                                     camber_json_cure(error));
@@ -231,7 +230,7 @@ camber_status camber_document_read(camber_document *d, const char *json, size_t 
     camber_json_load(d->compiler.context, json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, false, &d->root,
                      &error);
     const bool done = d->root ? read_document(d) : fail_json(d, &error);
-    (void)(done || camber_document_goes_on(d, 0));
+    (void)(done || camber_document_continues(d, 0));
     return d->compiler.status;
 }
 

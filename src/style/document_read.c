@@ -1,4 +1,4 @@
-/* Reads strings and numbers of a style document, for its root and its layers. */
+/* Reads strings and numbers of a style document's root and layers, and tracks which warnings were given. */
 #include "style/document.h"
 #include <errno.h>
 #include <math.h>
@@ -26,8 +26,8 @@ bool camber_document_copy_string(camber_document *d, const json_t *json, char **
     return *copy || camber_document_fail_memory(d);
 }
 
-bool camber_document_goes_on(camber_document *d, size_t path_length) {
-    if (!d->reads_on || d->compiler.status != CAMBER_ERROR_INPUT)
+bool camber_document_continues(camber_document *d, size_t path_length) {
+    if (!d->collects_errors || d->compiler.status != CAMBER_ERROR_INPUT)
         return false;
     d->compiler.path_length = path_length;
     d->compiler.status = CAMBER_OK;
@@ -43,7 +43,7 @@ bool camber_document_read_string(camber_document *d, const json_t *object, const
     camber_compiler_enter_key(c, key);
     if (!json_is_string(json))
         return camber_compiler_fail(c, "expected a string, found %s; write a name", camber_json_name(json)) ||
-               camber_document_goes_on(d, depth);
+               camber_document_continues(d, depth);
     camber_compiler_leave(c);
     return camber_document_copy_string(d, json, string);
 }
@@ -59,10 +59,10 @@ bool camber_document_read_number(camber_document *d, const json_t *object, const
     if (!json_is_number(json))
         return camber_compiler_fail(c, "expected a number, found %s; use %g to %g", camber_json_name(json), low,
                                     high) ||
-               camber_document_goes_on(d, depth);
+               camber_document_continues(d, depth);
     if (!(json_number_value(json) >= low && json_number_value(json) <= high))
         return camber_compiler_fail(c, "%g is out of range; use %g to %g", json_number_value(json), low, high) ||
-               camber_document_goes_on(d, depth);
+               camber_document_continues(d, depth);
     *number = json_number_value(json);
     camber_compiler_leave(c);
     return true;
@@ -79,7 +79,7 @@ void camber_document_warn_unknown(camber_document *d, const json_t *object, cons
         if (known[i] || !camber_document_first_time(d, key))
             continue;
         camber_compiler_enter_key(&d->compiler, key);
-        camber_compiler_warn(&d->compiler, "no %s has this by the specification; it is left out", what);
+        camber_compiler_warn(&d->compiler, "the specification does not have this in a %s; it is ignored", what);
         camber_compiler_leave(&d->compiler);
     }
 }

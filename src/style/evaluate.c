@@ -1,8 +1,7 @@
-/* Evaluates one expression over a list of inputs, in the format of the specification's own tests.
+/* Evaluates one expression for a list of inputs, in the format of the specification's own tests.
  *
  * Input: {"expression": ..., "propertySpec": ..., "inputs": [...]}. Output: JSON with the compiled type or the errors,
- * and an output for each input. `camber style eval` prints it.
- */
+ * and an output for each input. `camber style eval` prints it. */
 #include "style/compiler.h"
 
 #include <math.h>
@@ -11,7 +10,7 @@
 
 typedef struct evaluator {
     camber_compiler compiler;
-    camber_style style; /* gets the properties that are read */
+    camber_style style; /* collects the properties that the expression reads */
     camber_expression *expression;
     json_t *document, *errors, *compiled, *outputs;
     camber_arena arena; /* memory of one input's values */
@@ -41,7 +40,7 @@ static camber_type type_of(const json_t *name) {
     return CAMBER_TYPE_VALUE;
 }
 
-/* Reads the property's row; members that are missing allow most. */
+/* Reads the property's definition. Missing members allow as much as possible. */
 static camber_property read_property(const json_t *json) {
     const json_t *expression = json_object_get(json, "expression");
     const json_t *parameters = json_object_get(expression, "parameters");
@@ -80,7 +79,7 @@ static void keep_error(void *user, const camber_compiler *c, camber_log_level le
 
 /* ---- Compiling ---- */
 
-/* The names of an enum, NULL at the end. NULL: no memory. */
+/* Returns the names of an enum, NULL at the end. NULL: out of memory. */
 static const char **list_names(evaluator *e, const json_t *values) {
     const char **names = camber_alloc(e->compiler.context, json_object_size(values) + 1, sizeof *names);
     const char *key;
@@ -137,7 +136,7 @@ static void describe(evaluator *e) {
 
 /* ---- Evaluating ---- */
 
-/* Components are floats, of which seven digits are exact. */
+/* Components are floats, whose first seven digits are exact. */
 static json_t *component(double number) {
     char text[32];
     snprintf(text, sizeof text, "%.7g", number);
@@ -146,8 +145,8 @@ static json_t *component(double number) {
 
 static json_t *to_json(const camber_value *value);
 
-/* Writes a colour as the specification's tests do: multiplied by alpha, and as an object where a colour was not
- * expected. */
+/* Writes a colour as the specification's tests do: multiplied by alpha, and as an object if a colour was not expected.
+ */
 static json_t *color_to_json(camber_color color, bool expected) {
     static const char *const names[] = {"r", "g", "b", "a"};
     const double a = (double)color.a;
@@ -196,7 +195,7 @@ static json_t *to_json(const camber_value *value) {
     return json_null();
 }
 
-/* Fills what the expression reads of the feature; values has room for all properties of the style. */
+/* Fills in what the expression reads of the feature. values has room for all properties of the style. */
 static bool read_feature(evaluator *e, const json_t *json, camber_value *values, camber_value *all,
                          camber_feature_view *feature) {
     static const camber_value empty = {.type = CAMBER_VALUE_OBJECT};
@@ -255,7 +254,7 @@ static camber_status run_document(evaluator *e) {
     camber_compiler *c = &e->compiler;
     if (!json_object_get(e->document, "expression") && !json_object_get(e->document, "filter"))
         return camber_fail(c->context, CAMBER_ERROR_INPUT,
-                           "%s: has no \"expression\"; write {\"expression\": ..., \"inputs\": [...]}", c->name);
+                           "%s: there is no \"expression\"; write {\"expression\": ..., \"inputs\": [...]}", c->name);
     if (!e->errors || !e->compiled || !e->outputs)
         return camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory; give it more", c->name);
     if (compile(e))

@@ -1,6 +1,5 @@
-/* Evaluation of compiled expressions: the entry, its limits, and how operands are read as a type. The operators
- * themselves are evaluated in operators_*.c.
- */
+/* Evaluates compiled expressions: the entry point, its limits, and reading operands as a certain type. The operators
+ * are evaluated in operators_*.c. */
 #include "style/expression.h"
 
 #include "style/evaluation.h"
@@ -47,7 +46,7 @@ bool camber_evaluate_bool(camber_evaluation *e, const camber_node *node, uint32_
     return value.type == CAMBER_VALUE_BOOL || camber_evaluate_fail(e, "expected a boolean, and the value is not one");
 }
 
-/* ---- From outside ---- */
+/* ---- The public functions ---- */
 
 void camber_evaluation_begin(camber_evaluation *evaluation, double zoom, const camber_feature_view *feature) {
     evaluation->zoom = zoom;

@@ -1,11 +1,10 @@
-/* Expressions of the style specification, compiled: an array of typed nodes, operands before operators.
+/* Compiled expressions of the style specification: an array of typed nodes, operands before operators.
  *
  *     JSON -> compiler.c (types, assertions, constant folding) with operators_*.c, filter.c, function.c
  *          -> camber_expression -> expression.c (evaluation) with operators_*.c
  *
  * Input: JSON, compiled once. Output: a value for a feature at a zoom. A node points to the function that evaluates it,
- * and that function is also what tells kinds of nodes apart. operators.h tells where a new operator goes.
- */
+ * and this function also identifies the kind of node. operators.h says where to add a new operator. */
 #ifndef CAMBER_STYLE_EXPRESSION_H
 #define CAMBER_STYLE_EXPRESSION_H
 
@@ -23,7 +22,7 @@ typedef struct camber_evaluation camber_evaluation;
 /* Computes a node's value. On failure it returns false and sets the evaluation's cause. */
 typedef bool camber_evaluate_fn(camber_evaluation *e, const camber_node *node, camber_value *value);
 
-/* How an interpolation's colours are mixed. */
+/* The colour space in which an interpolation mixes colours. */
 typedef enum camber_color_space {
     CAMBER_SPACE_RGB = 0,
     CAMBER_SPACE_HCL,
@@ -32,16 +31,16 @@ typedef enum camber_color_space {
 
 struct camber_node {
     camber_evaluate_fn *evaluate;
-    const camber_operator *op;                           /* its row, where operands of one type were compiled */
-    bool reads_zoom, reads_feature, reads_line_progress; /* itself or an operand */
-    bool bezier;     /* an interpolation along a curve, whose 4 numbers stand behind the stops */
+    const camber_operator *op;                           /* its row, if all operands have one type */
+    bool reads_zoom, reads_feature, reads_line_progress; /* the node itself or an operand */
+    bool bezier;     /* an interpolation along a Bezier curve, whose 4 numbers are after the stops */
     uint8_t space;   /* camber_color_space */
-    uint16_t height; /* nodes on the longest way down, through variables too */
+    uint16_t height; /* number of nodes on the longest path down, also through variables */
     camber_typing type;
     uint32_t first, count; /* operands, in links */
-    /* A property: index of the style's. A variable: index of the slot that keeps its value, and the bound node.
-     * A comparison: the outcomes for which it holds. A match: its labels, sorted. A curve: its stops, one for each
-     * output of an interpolation, one fewer for a step. */
+    /* Property: index among the style's. Variable: index of the slot that keeps its value, and the bound node.
+     * Comparison: the outcomes for which it is true. Match: its labels, sorted. Curve: its stops; an interpolation has
+     * one for each output, a step one fewer. */
     uint32_t index, index_count;
     camber_value value; /* a constant's value, the style's state, or an interpolation's base */
 };
@@ -49,14 +48,14 @@ struct camber_node {
 typedef struct camber_label {
     const char *string; /* NULL: a number */
     double number;
-    uint32_t output;   /* operand of the match */
-    uint32_t position; /* in the document: its branch or stop */
+    uint32_t output;   /* the operand of the match to return */
+    uint32_t position; /* index in the document of its branch or stop */
 } camber_label;
 
 struct camber_expression {
     camber_context *context;
-    const json_t *document; /* the JSON that it was compiled from; documents keeps it */
-    json_t *documents;      /* references that keep the strings of constants and labels */
+    const json_t *document; /* the JSON that it was compiled from; documents keeps it alive */
+    json_t *documents;      /* references that keep alive the strings of constants and labels */
     camber_node *nodes;
     uint32_t *links;
     double *stops;
@@ -67,37 +66,38 @@ struct camber_expression {
     size_t stop_count, stop_capacity;
     size_t label_count, label_capacity;
     uint32_t root;
-    uint32_t slot_count;                                 /* values of variables that an evaluation keeps */
+    uint32_t slot_count;                                 /* the number of variables whose values an evaluation keeps */
     bool reads_zoom, reads_feature, reads_line_progress; /* all false: a constant */
 };
 
-/* An evaluation's texts and arrays, its variables among them, take so much memory at most. */
+/* The most memory for an evaluation's texts and arrays, including its variables. */
 #define CAMBER_EVALUATION_LIMIT ((size_t)16 << 20)
-/* Bytes and items that one evaluation walks over, at most, a number's text counted as a hundred: some tens of
- * milliseconds. */
+/* The most bytes and items that one evaluation may visit, which takes some tens of milliseconds. Formatting a number
+ * counts as a hundred. */
 #define CAMBER_WORK_LIMIT 10000000u
 #define CAMBER_EVALUATION_ROOM 512
 
 struct camber_evaluation {
     double zoom, line_progress;
     const camber_feature_view *feature;  /* NULL: none, and operators that read it fail */
-    const camber_style_images *images;   /* images that exist. NULL: any that is named */
-    const char *cause;                   /* why it failed, a phrase */
-    const camber_expression *expression; /* from here on set by the evaluation */
+    const camber_style_images *images;   /* images that exist. NULL: every image counts as existing */
+    const char *cause;                   /* a phrase that says why it failed */
+    const camber_expression *expression; /* the fields from here on are set by the evaluation */
     camber_arena *arena;
     camber_value *slots; /* NULL: not needed yet */
     bool *known;         /* whether a slot has its value */
     uint32_t work;
     camber_arena own;
-    _Alignas(8) char room[CAMBER_EVALUATION_ROOM]; /* the first memory of own: most texts fit */
+    _Alignas(8) char room[CAMBER_EVALUATION_ROOM]; /* the first memory of own; most texts fit into it */
 };
 
-/* feature may be NULL. Memory that values point to lives until the end. */
+/* feature may be NULL. Memory that values point to is valid until camber_evaluation_end. */
 void camber_evaluation_begin(camber_evaluation *evaluation, double zoom, const camber_feature_view *feature);
 void camber_evaluation_end(camber_evaluation *evaluation);
-/* Evaluates the expression. false: the value cannot be computed, as when a string stands where a number must. Memory
- * that the value points to lives as long as the expression, the feature and the evaluation. Cost: linear in the
- * nodes visited; it allocates only for texts and arrays of more than CAMBER_EVALUATION_ROOM bytes. */
+/* Evaluates the expression. false: the value cannot be computed, for example because an operand is a string instead of
+ * a number. Memory that the value points to is valid as long as the expression, the feature and the evaluation are.
+ * Cost: linear in the number of nodes visited. It allocates memory only if texts and arrays take more than
+ * CAMBER_EVALUATION_ROOM bytes. */
 bool camber_expression_evaluate(const camber_expression *expression, camber_evaluation *evaluation,
                                 camber_value *value);
 void camber_expression_destroy(camber_context *context, camber_expression *expression);

@@ -1,7 +1,7 @@
 /* Compiles filters: expressions, and the older form ["==", "highway", "primary"].
  *
- * Input: JSON. Output: an expression that is true or false. The two forms are told apart as the specification does.
- */
+ * Input: JSON. Output: an expression that is true or false. The two forms are distinguished by the specification's
+ * rules. */
 #include "style/operators.h"
 
 #include <string.h>
@@ -19,8 +19,8 @@ static bool is_comparison(const char *op) {
            is_word(op, ">=");
 }
 
-/* The specification's isExpressionFilter for arrays. all, any and none are neither form: each of their operands is
- * told apart by itself, so that both forms may be mixed. */
+/* The specification's isExpressionFilter, for arrays. all, any and none belong to both forms: each of their operands is
+ * distinguished separately, so the two forms may be mixed. */
 static bool is_expression(const json_t *json) {
     const char *op = json_string_value(json_array_get(json, 0));
     const size_t size = json_array_size(json);
@@ -36,7 +36,7 @@ static bool is_expression(const json_t *json) {
     return true;
 }
 
-/* The key of an older filter: a property's name, $type or $id. */
+/* Compiles the key of an older filter: a property's name, $type or $id. */
 static bool compile_key(camber_compiler *c, const json_t *array, camber_evaluate_fn *evaluate, uint32_t *node) {
     const char *key = json_string_value(json_array_get(array, 1));
     const camber_value yes = {.type = CAMBER_VALUE_BOOL, .boolean = true};
@@ -66,7 +66,8 @@ static bool compile_value(camber_compiler *c, const json_t *array, size_t index,
     return true;
 }
 
-/* A feature that does not have the property is not one that has null; the id of one without is null. */
+/* Makes the comparison with null false for features without the property. A feature without an id, however, has the id
+ * null. */
 static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node) {
     const size_t first_operand = c->operand_count;
     uint32_t has = 0;
@@ -77,7 +78,7 @@ static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node)
            camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_all, .type = boolean}, first_operand, node);
 }
 
-/* Compiles [op, key, value]. Values of different types do not compare; then the filter is false. */
+/* Compiles [op, key, value]. Values of different types cannot be compared, and then the filter is false. */
 static bool compile_comparison(camber_compiler *c, const json_t *array, const char *op, uint32_t *node) {
     static const struct {
         const char *name;
@@ -101,7 +102,7 @@ static bool compile_comparison(camber_compiler *c, const json_t *array, const ch
     return !is_word(op, "!=") || camber_wrap_node(c, camber_evaluate_not, boolean, node);
 }
 
-/* Whether all values are strings, or all are integers: labels, then. */
+/* Whether all values are strings, or all are numbers. Then they become labels. */
 static bool are_labels(const json_t *array) {
     for (size_t i = 2; i < json_array_size(array); i++) {
         const json_t *json = json_array_get(array, i);
@@ -112,7 +113,7 @@ static bool are_labels(const json_t *array) {
     return true;
 }
 
-/* ["in", key, value, ...] and !in. */
+/* Compiles ["in", key, value, ...] and !in. */
 static bool compile_in(camber_compiler *c, const json_t *array, bool negated, uint32_t *node) {
     const size_t first_operand = c->operand_count, first = c->expression->label_count;
     const bool labels = are_labels(array);
@@ -143,7 +144,7 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
            (!negated || camber_wrap_node(c, camber_evaluate_not, boolean, node));
 }
 
-/* all, any and none. */
+/* Compiles all, any and none. */
 static bool compile_junction(camber_compiler *c, const json_t *array, const char *op, size_t depth, uint32_t *node) {
     const size_t first_operand = c->operand_count;
     for (size_t i = 1; i < json_array_size(array); i++) {
@@ -197,7 +198,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 
 /* ---- Types of geometry ---- */
 
-/* How a filter ends for features of one type of geometry, as far as that is known without their properties. */
+/* The result of a filter for features of one geometry type, as far as it is known without their properties. */
 typedef enum verdict { NEVER = -1, MAYBE = 0, ALWAYS = 1 } verdict;
 
 static verdict reverse(verdict one) {
@@ -209,7 +210,7 @@ static bool is_geometry_type(const json_t *json) {
            is_word(json_string_value(json_array_get(json, 0)), "geometry-type");
 }
 
-/* Whether it is the type, or several of it, as in "MultiPolygon", or a list that has one of them. */
+/* Whether it is the type, its multi-part form as in "MultiPolygon", or a list that contains one of them. */
 static bool names_type(const json_t *json, const char *type) {
     const char *text = json_string_value(json);
     if (text && strcmp(strncmp(text, "Multi", 5) == 0 ? text + 5 : text, type) == 0)
@@ -220,7 +221,7 @@ static bool names_type(const json_t *json, const char *type) {
     return false;
 }
 
-/* Comparisons with the type, in both forms of the language; those with anything else are MAYBE. */
+/* Judges comparisons with the type, in both forms of the language. Other comparisons are MAYBE. */
 static verdict judge_type(const char *op, const json_t *json, const char *type) {
     bool about_type = false, named = false;
     for (size_t i = 1; i < json_array_size(json) && !about_type; i++)
@@ -234,7 +235,7 @@ static verdict judge_type(const char *op, const json_t *json, const char *type) 
     return is_word(op, "!=") || is_word(op, "!in") ? (named ? NEVER : ALWAYS) : MAYBE;
 }
 
-/* ["match", ["geometry-type"], labels, output, ..., fallback] */
+/* Judges ["match", ["geometry-type"], labels, output, ..., fallback]. */
 static verdict judge_match(const json_t *json, const char *type) {
     const size_t size = json_array_size(json);
     if (!is_geometry_type(json_array_get(json, 1)) || size < 5)
@@ -250,7 +251,7 @@ static verdict judge_match(const json_t *json, const char *type) {
 
 static verdict judge(const json_t *json, const char *type);
 
-/* all: NEVER where one member is; any: ALWAYS where one is. */
+/* all is NEVER if a member is; any is ALWAYS if a member is. */
 static verdict judge_members(const json_t *json, const char *type, verdict decides) {
     verdict made = reverse(decides);
     for (size_t i = 1; i < json_array_size(json); i++) {

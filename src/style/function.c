@@ -1,8 +1,7 @@
-/* Compiles functions as styles had them before expressions: of zoom, of a feature's property, or of both.
+/* Compiles functions, the form that styles used before expressions: of zoom, of a feature's property, or of both.
  *
- * Input: {"stops": ...} and the property's row. Output: nodes of an expression, as the specification's own conversion
- * from functions to expressions makes them.
- */
+ * Input: {"stops": ...} and the property's definition. Output: nodes of an expression, as the specification's own
+ * conversion from functions to expressions makes them. */
 #include "style/operators.h"
 
 #include <math.h>
@@ -24,7 +23,7 @@ typedef struct function {
     camber_typing type;
     const json_t *object, *stops;
     json_t *otherwise; /* NULL: none */
-    const char *key;   /* the feature's property. NULL: a function of zoom */
+    const char *key;   /* the feature's property. NULL: a function of zoom only */
     bool composite;    /* a function of both zoom and key */
     shape shape;
     double base;
@@ -53,7 +52,7 @@ static bool read_shape(function *f) {
         return camber_compiler_fail(f->c, "the function's type is wrong for %s; use %s\"interval\" with stops on zoom",
                                     f->property->name, f->property->interpolated ? "\"exponential\" or " : "");
     if (found != SHAPE_IDENTITY && !f->stops)
-        return camber_compiler_fail(f->c, "a function of this type has stops; write \"stops\": [[10, 1], [16, 8]]");
+        return camber_compiler_fail(f->c, "a function of this type needs stops; write \"stops\": [[10, 1], [16, 8]]");
     f->shape = f->stops ? (shape)found : SHAPE_IDENTITY;
     camber_compiler_leave(f->c);
     return true;
@@ -96,7 +95,8 @@ static bool read_function(function *f) {
                                           "write e.g. {\"stops\": [[10, 1], [16, 8]]}");
     f->composite = json_is_object(json_array_get(json_array_get(f->stops, 0), 0));
     if (f->composite && !f->key)
-        return camber_compiler_fail(f->c, "stops of zoom and value, and no property; name the one that has the values");
+        return camber_compiler_fail(
+            f->c, "the stops have a zoom and a value, but the function has no \"property\"; name one");
     return read_shape(f) && read_base(f) && read_space(f);
 }
 
@@ -106,7 +106,7 @@ static bool compile_get(function *f, uint32_t *node) {
     return camber_make_property(f->c, camber_evaluate_get, f->key, node);
 }
 
-/* Pushes the text from start on, before the next token; its copy lives as long as the expression. */
+/* Pushes a part of the text. Its copy lives as long as the expression. */
 static bool push_text(function *f, const char *start, size_t length) {
     uint32_t node = 0;
     if (length == 0)
@@ -118,7 +118,7 @@ static bool push_text(function *f, const char *start, size_t length) {
     return camber_make_constant(f->c, &value, string_type, &node) && camber_push_operand(f->c, node);
 }
 
-/* Compiles "a {name}", where the property's value replaces the token. */
+/* Compiles "a {name}": the property's value replaces the token. */
 static bool compile_tokens(function *f, const char *text, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
@@ -140,7 +140,7 @@ static bool compile_tokens(function *f, const char *text, uint32_t *node) {
                             node);
 }
 
-/* A value of the function, a constant. */
+/* Compiles a value of the function, which must be a constant. */
 static bool compile_value(function *f, const json_t *json, uint32_t *node) {
     camber_compiler *c = f->c;
     const bool tokens = f->property->tokens && !f->key && json_is_string(json) && strchr(json_string_value(json), '{');
@@ -160,7 +160,7 @@ static bool push_value(function *f, const json_t *json) {
     return compile_value(f, json, &node) && camber_push_operand(f->c, node);
 }
 
-/* The function's default, or that of the specification. */
+/* Pushes the function's default, or that of the specification. */
 static bool push_otherwise(function *f) {
     camber_compiler *c = f->c;
     if (f->otherwise)
@@ -172,9 +172,9 @@ static bool push_otherwise(function *f) {
         return done;
     }
     if (c->strict)
-        return camber_compiler_fail(c, "features that no stop fits have no value; give a \"default\"");
+        return camber_compiler_fail(c, "features that match no stop have no value; add a \"default\"");
     uint32_t node = 0;
-    const camber_value cause = {.type = CAMBER_VALUE_STRING, .string = "no stop fits the feature"};
+    const camber_value cause = {.type = CAMBER_VALUE_STRING, .string = "no stop matches the feature"};
     return camber_make_constant(c, &cause, string_type, &node) &&
            camber_wrap_node(c, camber_evaluate_error, camber_typing_of(CAMBER_TYPE_ERROR), &node) &&
            camber_push_operand(c, node);
@@ -182,7 +182,7 @@ static bool push_otherwise(function *f) {
 
 /* ---- Stops ---- */
 
-/* Checks a stop: [input, value], or for zoom and property [{"zoom": number, "value": input}, value]. */
+/* Checks a stop: [input, value], or for both zoom and property [{"zoom": number, "value": input}, value]. */
 static bool read_stop(function *f, size_t index, const json_t **input, double *zoom) {
     const json_t *stop = json_array_get(f->stops, index);
     *input = json_array_get(stop, 0);
@@ -208,26 +208,26 @@ static bool read_stop(function *f, size_t index, const json_t **input, double *z
     return true;
 }
 
-/* One dimension's stops, those from first up to last. */
+/* The stops from first up to last, without last. They belong to one dimension. */
 typedef struct span {
     size_t first, last;
 } span;
 
-/* Warns of a stop at the input of the one before. */
+/* Warns of a stop that has the same input as the previous one. */
 static void warn_of_twin(function *f, const json_t *input) {
     char number[32];
     snprintf(number, sizeof number, "%g", json_number_value(input));
-    if (f->c->held_count >= CAMBER_HELD_LIMIT)
+    if (f->c->constant_warnings >= CAMBER_CONSTANT_WARNING_LIMIT)
         return;
-    f->c->held_count++;
-    camber_compiler_warn(f->c, "the previous stop is at %.64s too, and this one is used; leave one of them out",
+    f->c->constant_warnings++;
+    camber_compiler_warn(f->c, "the previous stop is also at %.64s, and this one is used; remove one of them",
                          json_is_number(input)   ? number
                          : json_is_string(input) ? json_string_value(input)
                          : json_is_true(input)   ? "true"
                                                  : "false");
 }
 
-/* Pushes a stop's value and, but for a step's first stop, where it is. */
+/* Pushes a stop's value and its position, which the first stop of a step does not have. */
 static bool push_stop(function *f, size_t index, bool is_somewhere, double at) {
     if (is_somewhere && !camber_push_stop(f->c, at))
         return false;
@@ -238,10 +238,10 @@ static bool push_stop(function *f, size_t index, bool is_somewhere, double at) {
     return true;
 }
 
-/* Pushes the stops and their values; below its first stop a step has that stop's value. Of stops at one input the last
- * counts from there on, and below it the first, as in browsers: so a function may jump. At its first input itself a
- * function has the first value in browsers, hence the next double. The specification's tests of functions as
- * expressions keep the first alone. */
+/* Pushes the stops and their values. Below its first stop a step has that stop's value. If several stops have the same
+ * input, the last one applies from there on, and the first one below it, as in browsers; so a function may jump. At its
+ * first input itself, browsers use the first value, hence the next double. The specification's tests of functions as
+ * expressions keep only the first. */
 static bool push_stops(function *f, span stops) {
     camber_compiler *c = f->c;
     const bool step = f->shape == SHAPE_INTERVAL;
@@ -270,7 +270,7 @@ static bool push_stops(function *f, span stops) {
     return true;
 }
 
-/* A curve over input, node itself. */
+/* Makes a curve whose input is *node. */
 static bool make_curve(function *f, span stops, double base, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
@@ -288,7 +288,7 @@ static bool make_curve(function *f, span stops, double base, uint32_t *node) {
     return camber_make_node(c, &prototype, first_operand, node);
 }
 
-/* The curve where the property is a number, else the default, if there is one. */
+/* Compiles the curve for features whose property is a number. Others get the default, if there is one. */
 static bool compile_property_curve(function *f, span stops, double base, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
@@ -320,14 +320,14 @@ static bool compile_property_curve(function *f, span stops, double base, uint32_
 
 /* ---- Categories ---- */
 
-/* Whether the stop has the input of the one before. */
+/* Whether the stop has the same input as the previous one. */
 static bool is_twin(const function *f, size_t index) {
     const json_t *a = json_array_get(json_array_get(f->stops, index - 1), 0),
                  *b = json_array_get(json_array_get(f->stops, index), 0);
     return f->composite ? json_equal(json_object_get(a, "value"), json_object_get(b, "value")) : json_equal(a, b);
 }
 
-/* Pushes a stop's condition where inputs are booleans, else its label. */
+/* Pushes a stop's condition if inputs are booleans, otherwise its label. */
 static bool push_category(function *f, const json_t *input, camber_label label, camber_type *type) {
     camber_compiler *c = f->c;
     uint32_t node = 0;
@@ -343,7 +343,8 @@ static bool push_category(function *f, const json_t *input, camber_label label, 
            camber_push_operand(c, node);
 }
 
-/* Conditions of booleans, or a match of strings or numbers. Of stops of one input the last counts. */
+/* Compiles conditions for booleans, or a match of strings or numbers. If several stops have the same input, the last
+ * one is used. */
 static bool compile_categories(function *f, span stops, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
@@ -382,7 +383,7 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
 
 /* ---- Kinds ---- */
 
-/* Compiles an identity function. The default replaces values of another type, or that an enum does not have. */
+/* Compiles an identity function. The default replaces values of another type, and values that an enum does not have. */
 static bool compile_identity(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
@@ -418,7 +419,7 @@ static bool compile_dimension(function *f, span stops, double base, uint32_t *no
                                          : compile_property_curve(f, stops, base, node);
 }
 
-/* A curve over zoom of functions of the property, each with the stops of one zoom. */
+/* Compiles a curve over zoom. Its outputs are functions of the property, each with the stops of one zoom. */
 static bool compile_composite(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t count = json_array_size(f->stops), first_operand = c->operand_count;

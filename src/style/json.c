@@ -1,8 +1,7 @@
-/* Reads JSON with jansson, and turns it into values of expressions.
+/* Reads JSON with jansson, and converts it to values of expressions.
  *
- * Input: bytes, of a style or of data. Output: jansson's document, or values in an arena. Data may hold numbers that
- * jansson refuses (NaN, infinities, beyond a double): they are replaced in a copy, so that it parses.
- */
+ * Input: bytes of a style or of data. Output: jansson's document, or values in an arena. Data may contain numbers that
+ * jansson rejects (NaN, infinities, numbers beyond a double). They are replaced in a copy, so that it parses. */
 #include "style/json.h"
 
 #include <errno.h>
@@ -12,14 +11,15 @@
 
 /* ---- Parsing ---- */
 
-/* Words that GDAL reads as numbers, and jansson refuses. */
+/* Words that GDAL reads as numbers and jansson rejects. */
 static const struct {
     const char *word, *instead;
 } words[] = {{"NaN", "null"}, {"Infinity", "1e308   "}, {"-Infinity", "-1e308   "}};
 
 static bool is_beyond(const char *number, size_t size) {
     json_error_t error;
-    /* Whether the number is beyond a double. Short ones without an exponent are not; most are examined no further. */
+    /* Whether the number is beyond a double. Short numbers without an exponent are not, so most need no further test.
+     */
     if (size < 300 && !memchr(number, 'e', size) && !memchr(number, 'E', size))
         return false;
     json_t *json = json_loadb(number, size, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
@@ -27,8 +27,8 @@ static bool is_beyond(const char *number, size_t size) {
     return !json && json_error_code(&error) == json_error_numeric_overflow;
 }
 
-/* Copies a token that is not a string, or one character of it, in a form that jansson reads. Returns its size; the
- * copy's size goes to *copied. */
+/* Copies a token that is not a string, or one character of it, in a form that jansson accepts. Returns its size, and
+ * the copy's size in *copied. */
 static size_t copy_token(char *to, const char *from, size_t size, size_t *copied) {
     size_t length = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
@@ -52,7 +52,7 @@ static size_t copy_token(char *to, const char *from, size_t size, size_t *copied
     return length;
 }
 
-/* Copies a document and replaces numbers that jansson refuses. Lines and columns stay, except behind a NaN. */
+/* Copies a document and replaces numbers that jansson rejects. Lines and columns stay the same, except after a NaN. */
 static size_t replace_refused(char *to, const char *from, size_t size) {
     size_t written = 0, copied;
     bool in_string = false;
@@ -94,14 +94,14 @@ const char *camber_json_cure(const json_error_t *error) {
 void camber_json_unquote(json_error_t *error) {
     char *quoted = strstr(error->text, " near '");
     if (json_error_code(error) == json_error_invalid_utf8)
-        snprintf(error->text, JSON_ERROR_TEXT_LENGTH - 1, "no UTF-8"); /* the last byte is the error's code */
+        snprintf(error->text, JSON_ERROR_TEXT_LENGTH - 1, "not UTF-8"); /* the last byte is the error's code */
     else if (quoted)
         *quoted = 0;
 }
 
 static camber_status fail(camber_context *context, const char *name, json_error_t *error) {
     camber_json_unquote(error);
-    /* jansson mostly reports a wrong character where it ran out of memory. */
+    /* If jansson runs out of memory, it usually reports a wrong character. */
     if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
         return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; %s", name, error->line, error->column,

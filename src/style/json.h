@@ -1,4 +1,4 @@
-/* JSON to values and back. */
+/* Reading JSON, and converting it to values of expressions. */
 #ifndef CAMBER_STYLE_JSON_H
 #define CAMBER_STYLE_JSON_H
 
@@ -7,26 +7,26 @@
 
 #include <jansson.h>
 
-/* Deepest nesting of a value: jansson reads no deeper documents. */
+/* Deepest nesting of a value. jansson reads no deeper documents. */
 #define CAMBER_VALUE_DEPTH 2048
 
-/* Parses with jansson's flags, after a byte order mark. is_data: not written for camber, and read as GDAL reads it: NaN
- * is null, and numbers beyond a double are +-CAMBER_JSON_INFINITE. Returns CAMBER_ERROR_INPUT (*error says why, and
- * nothing is logged), CAMBER_ERROR_MEMORY. */
+/* Parses a document with jansson's flags, and skips a byte order mark. is_data: the document was not written for
+ * camber, and is read as GDAL reads it: NaN becomes null, and numbers beyond a double become +-CAMBER_JSON_INFINITE.
+ * Returns CAMBER_ERROR_INPUT (nothing is logged; *error has the reason), CAMBER_ERROR_MEMORY. */
 camber_status camber_json_load(camber_context *context, const char *bytes, size_t size_bytes, size_t flags,
                                bool is_data, json_t **json, json_error_t *error);
-/* Removes quotes of the document from jansson's message: a style may name any file, and any file may be named as
- * one. */
+/* Removes quotations of the document from jansson's message, because a style may name any file, and could show its
+ * contents in this way. */
 void camber_json_unquote(json_error_t *error);
-/* The cure for an error in a document that the user writes. */
+/* Returns what to do about an error in a document that the user writes. */
 const char *camber_json_cure(const json_error_t *error);
-/* Reads a document, all of whose numbers are doubles. Returns CAMBER_ERROR_INPUT (line and column are said),
+/* Reads a document. All of its numbers become doubles. Returns CAMBER_ERROR_INPUT (the message has line and column),
  * CAMBER_ERROR_MEMORY. */
 camber_status camber_json_read(camber_context *context, const char *bytes, size_t size_bytes, const char *name,
                                json_t **json);
-/* Strings and keys stay the document's. false: no memory. */
+/* Converts JSON to a value. Strings and keys still belong to the document. false: out of memory. */
 bool camber_json_to_value(camber_arena *arena, const json_t *json, camber_value *value);
-/* "a string": what the JSON value is. */
+/* Names the type of the JSON value: "a string". value is. */
 const char *camber_json_name(const json_t *json);
 
 #endif

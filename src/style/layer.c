@@ -1,7 +1,7 @@
-/* Reads the layers of a style document: source, zooms, filter, and layout and paint by the table of properties.
+/* Reads the layers of a style document: source, zooms, filter, and the layout and paint properties of properties.c.
  *
- * Input: JSON of a layer. Output: camber_style_layer. Layers of kinds that are not drawn are left out with a warning.
- */
+ * Input: JSON of a layer. Output: camber_style_layer. Layers of types that are not supported are left out with a
+ * warning. */
 #include "style/document.h"
 #include "style/ramp.h"
 
@@ -16,7 +16,7 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-/* Evaluates visibility by an expression, which may read only the style's state. */
+/* Evaluates visibility that is an expression, which may read only the style's state. */
 static bool evaluate_visibility(camber_document *d, json_t *json, bool *visible) {
     static const char *const values[] = {"visible", "none", NULL};
     static const camber_property property = {
@@ -67,15 +67,15 @@ static bool read_known(camber_document *d, const camber_property_row *row, json_
 
 static bool read_property(camber_document *d, bool layout, const char *key, json_t *json, camber_style_layer *layer) {
     if (layout && strcmp(key, "visibility") == 0)
-        return true; /* read first */
+        return true; /* has already been read */
     const camber_property_row *row = camber_property_find(layer->kind, layout, key);
     if (row)
         return read_known(d, row, json, layer);
-    /* Transitions are for pictures that change. */
+    /* Transitions only matter for animated pictures. */
     if (!(!layout && ends_with(key, "-transition")) && camber_document_first_time(d, key))
         camber_compiler_warn(&d->compiler,
                              camber_property_find(layer->kind, !layout, key)
-                                 ? "this property stands in the wrong place; move it to %s"
+                                 ? "this property is in the wrong group; move it to \"%s\""
                                  : "unknown property; the layer is drawn without it",
                              layout ? "paint" : "layout");
     return true;
@@ -94,12 +94,12 @@ static bool read_properties(camber_document *d, const json_t *json, const char *
     if (!json_is_object(properties))
         return camber_compiler_fail(c, "expected an object, found %s; write {\"name\": value, ...}",
                                     camber_json_name(properties)) ||
-               camber_document_goes_on(d, depth);
+               camber_document_continues(d, depth);
     json_object_foreach(properties, key, value) {
         camber_compiler_enter_key(c, key);
         if (read_property(d, layout, key, value, layer))
             camber_compiler_leave(c);
-        else if (!camber_document_goes_on(d, depth + 1))
+        else if (!camber_document_continues(d, depth + 1))
             return false;
     }
     camber_compiler_leave(c);
@@ -115,7 +115,7 @@ static bool read_layer_visibility(camber_document *d, const json_t *json, camber
     camber_compiler_enter_key(&d->compiler, "layout");
     camber_compiler_enter_key(&d->compiler, "visibility");
     if (!read_visibility(d, visibility, &layer->visible))
-        return camber_document_goes_on(d, depth);
+        return camber_document_continues(d, depth);
     d->compiler.path_length = depth;
     return true;
 }
@@ -126,7 +126,7 @@ static bool fail_metadata(camber_document *d, const char *key, const char *messa
     camber_compiler_enter_key(&d->compiler, "metadata");
     camber_compiler_enter_key(&d->compiler, key);
     camber_compiler_fail(&d->compiler, "%s", message);
-    return camber_document_goes_on(d, depth);
+    return camber_document_continues(d, depth);
 }
 
 /* Reads the metadata {"camber:plain": true}. */
@@ -141,9 +141,9 @@ static void warn_overlap(camber_document *d, const char *key, camber_layer_kind 
     const size_t depth = d->compiler.path_length;
     camber_compiler_enter_key(&d->compiler, "metadata");
     camber_compiler_enter_key(&d->compiler, key);
-    camber_compiler_warn(&d->compiler, "is of line layers; %s: leave it out",
+    camber_compiler_warn(&d->compiler, "applies only to line layers, because %s; leave it out",
                          kind == CAMBER_LAYER_FILL ? "areas of one colour are filled together"
-                                                   : "circles are drawn one over another");
+                                                   : "circles are drawn on top of each other");
     d->compiler.path_length = depth;
 }
 
@@ -183,7 +183,7 @@ static bool write_filter_key(camber_compiler *c, const json_t *filter, char **ke
         return false;
     }
     (*key)[size] = 0;
-    /* A filter's text is never empty: jansson had no memory. */
+    /* A filter's text is never empty, so jansson has run out of memory. */
     if (filter && (size == 0 || json_dumpb(filter, *key, size, JSON_COMPACT | JSON_ENCODE_ANY) != size))
         c->status =
             camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory for a filter; make it shorter", c->name);
@@ -198,7 +198,7 @@ static bool read_filter(camber_document *d, const json_t *json, camber_style_lay
         return write_filter_key(c, NULL, &layer->filter_key);
     camber_compiler_enter_key(c, "filter");
     if (!camber_compile_filter(c, filter, &layer->filter))
-        return camber_document_goes_on(d, depth);
+        return camber_document_continues(d, depth);
     if (!write_filter_key(c, filter, &layer->filter_key))
         return false;
     camber_compiler_leave(c);
@@ -213,7 +213,7 @@ static camber_color opaque_border(camber_color color) {
     return border;
 }
 
-/* A border that has no colour takes it from the line's. */
+/* Makes the ramps of the line and its border. A border without a colour derives it from the line's. */
 static camber_status make_ramps(camber_compiler *c, camber_style_layer *layer) {
     const char *cause;
     double at = 0.0;
@@ -248,13 +248,13 @@ static bool find_source(camber_document *d, camber_style_layer *layer) {
     const size_t depth = c->path_length;
     const json_t *index = layer->source ? json_object_get(d->source_indices, layer->source) : NULL;
     layer->source_index = index ? (uint32_t)json_integer_value(index) : CAMBER_NO_SOURCE;
-    /* A style without sources is for files that are given beside it. */
+    /* A style without sources is for files that are given separately. */
     if (!layer->source || layer->source_index != CAMBER_NO_SOURCE || style->source_count == 0)
         return true;
     camber_compiler_enter_key(c, "source");
     camber_compiler_fail(c, "the style has no source \"%.64s\"; add it to \"sources\", or name one of those there",
                          layer->source);
-    return camber_document_goes_on(d, depth);
+    return camber_document_continues(d, depth);
 }
 
 static bool read_layer(camber_document *d, const json_t *json, camber_style_layer *layer) {
@@ -295,7 +295,7 @@ bool camber_layer_kind_find(const char *type, camber_layer_kind *kind) {
     return false;
 }
 
-/* Whether the specification has this type of layer, which is not drawn; others are misspelled. */
+/* Whether the specification has this type of layer, although it is not supported. Other types are misspelled. */
 static bool is_known_type(const char *type) {
     static const char *const types[] = {"symbol",       "heatmap", "fill-extrusion", "raster", "hillshade",
                                         "color-relief", "sky"};
@@ -305,7 +305,8 @@ static bool is_known_type(const char *type) {
     return false;
 }
 
-/* A layer with a "ref" takes from that layer all that is not paint. *resolved is a new reference. */
+/* A layer with a "ref" takes everything but its paint properties from the referenced layer. *resolved is a new
+ * reference. */
 static bool resolve_reference(camber_document *d, json_t *json, json_t **resolved) {
     static const char *const taken[] = {"type", "source", "source-layer", "minzoom", "maxzoom", "filter", "layout"};
     camber_compiler *c = &d->compiler;
@@ -316,8 +317,8 @@ static bool resolve_reference(camber_document *d, json_t *json, json_t **resolve
     camber_compiler_enter_key(c, "ref");
     const json_t *parent = json_is_string(ref) ? json_object_get(d->by_id, json_string_value(ref)) : NULL;
     if (!parent || json_object_get(parent, "ref"))
-        return camber_compiler_fail(c, !parent ? "no layer has this id; name one that has"
-                                               : "the layer refers to another one itself; refer to that");
+        return camber_compiler_fail(c, !parent ? "no layer has this id; use the id of another layer"
+                                               : "the layer itself refers to another one; refer to that one instead");
     camber_compiler_leave(c);
     json_t *made = json_copy(json);
     bool done = made != NULL;
@@ -330,7 +331,7 @@ static bool resolve_reference(camber_document *d, json_t *json, json_t **resolve
     return done || camber_compiler_fail_memory(&d->compiler);
 }
 
-/* Appends the layer where it is of a kind that is drawn. */
+/* Appends the layer if its type is supported. */
 static bool read_resolved(camber_document *d, const json_t *json) {
     camber_compiler *c = &d->compiler;
     camber_style *style = c->style;
@@ -341,7 +342,7 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     if (!camber_layer_kind_find(type, &kind)) {
         if (camber_document_first_time(d, type))
             camber_compiler_warn(c,
-                                 is_known_type(type) ? "layers of type \"%.64s\" are not drawn and left out"
+                                 is_known_type(type) ? "layers of type \"%.64s\" are not supported and are left out"
                                                      : "layers of the unknown type \"%.64s\" are left out",
                                  type);
         return true;
@@ -398,17 +399,18 @@ static bool check_ids(camber_document *d, const json_t *layers) {
             ids[count++] = (layer_id){id, i};
     }
     qsort(ids, count, sizeof *ids, compare_ids);
-    bool goes_on = true;
-    for (size_t i = 1; i < count && goes_on; i++) {
+    bool continues = true;
+    for (size_t i = 1; i < count && continues; i++) {
         if (strcmp(ids[i - 1].id, ids[i].id) != 0)
             continue;
         camber_compiler_enter_index(c, ids[i].index);
         camber_compiler_enter_key(c, "id");
-        camber_compiler_fail(c, "\"%.64s\" is the id of /layers/%zu too; rename one", ids[i].id, ids[i - 1].index);
-        goes_on = camber_document_goes_on(d, depth);
+        camber_compiler_fail(c, "\"%.64s\" is also the id of /layers/%zu; rename one of them", ids[i].id,
+                             ids[i - 1].index);
+        continues = camber_document_continues(d, depth);
     }
     camber_free(c->context, ids);
-    return goes_on;
+    return continues;
 }
 
 static bool index_layers(camber_document *d, const json_t *layers) {
@@ -440,7 +442,7 @@ bool camber_document_read_layers(camber_document *d, const json_t *layers) {
         camber_compiler_enter_index(c, i);
         if (read_any_layer(d, json_array_get(layers, i)))
             camber_compiler_leave(c);
-        else if (!camber_document_goes_on(d, depth))
+        else if (!camber_document_continues(d, depth))
             return false;
     }
     if (!check_ids(d, layers))

@@ -1,4 +1,5 @@
-/* Numbers to text and back, as ECMAScript writes them: strtod and printf do the digits, and this file their form. */
+/* Converts numbers to text and back, as ECMAScript does. strtod and printf find the digits; this file brings them into
+ * form. */
 #include "style/number.h"
 
 #include <float.h>
@@ -31,8 +32,8 @@ const char *camber_number_parse(const char *text, double *number) {
         if (is_digit(*exponent))
             end = skip_digits(exponent);
     }
-    /* Parses without strtod, which wants the locale's point. Past 400 characters only zeros and noise can follow for
-     * a double that a style means; such a number is refused rather than read wrong. */
+    /* Parses without the locale's decimal point, which strtod would expect: the text is copied with that point in place
+     * of ours. A number of more than 400 characters is rejected rather than misread; no style means one. */
     char copy[416];
     const size_t length = (size_t)(end - text), before = (size_t)(point - text);
     const char *separator = localeconv()->decimal_point;
@@ -53,9 +54,9 @@ const char *camber_number_parse(const char *text, double *number) {
     return end;
 }
 
-/* The digits, without zeros at their end, and the decimal exponent e of 0.ddd * 10^e. A double keeps any decimal of
- * DBL_DIG digits, so that fewer are found as that many with zeros behind; where it has less than its full precision,
- * each count is tried. */
+/* Finds the shortest digits, without zeros at their end, and the decimal exponent e of 0.ddd * 10^e. A double preserves
+ * any decimal of DBL_DIG digits, so shorter ones are found as DBL_DIG digits that end in zeros. Denormal numbers have
+ * less than full precision, so for them each count is tried. */
 static int shortest_digits(double magnitude, char digits[20], int *exponent) {
     char text[40];
     for (int count = magnitude < DBL_MIN ? 1 : DBL_DIG; count <= DBL_DECIMAL_DIG; count++) {

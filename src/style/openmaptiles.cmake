@@ -1,15 +1,16 @@
-# A road style for vector tiles of the OpenMapTiles schema: a table of classes and two palettes over openmaptiles.json.in.
+# A road style for vector tiles of the OpenMapTiles schema: a table of classes and two palettes for
+# openmaptiles.json.in.
 #
-# One layer draws all classes of a level's casings, another one their fills: widths and colours follow the class, and a
-# sort key puts minor roads below.
+# One layer draws the casings of all classes of a level, and another one their fills. Widths and colours depend on the
+# class, and a sort key puts minor roads below major ones.
 
 set(omt_zooms 4 9 12 14 16 18 22)
-# How much wider a casing is than its fill, CSS px at these zooms.
+# How much wider a casing is than its fill, in CSS px at these zooms.
 set(omt_casing_none 0 0 0 0 0 0 0)
 set(omt_casing_ground 0 0.3 0.5 1.4 2.1 3.2 16)
 set(omt_casing_bridge 0 0.5 0.9 2.1 3.3 5 28)
 
-# Widths of fills, CSS px at these zooms; the schema's classes; how near the top.
+# Widths of fills, in CSS px at these zooms. The classes are those of the schema, in drawing order.
 set(omt_classes service minor tertiary secondary primary trunk motorway)
 set(omt_values_service service busway bus_guideway raceway)
 set(omt_values_minor minor)
@@ -24,7 +25,7 @@ set(omt_width_primary   0.6 1.2 2.5 5   13.5 40 600)
 set(omt_width_trunk     0.8 1.4 2.8 5.4 14.5 43 640)
 set(omt_width_motorway  0.9 1.6 3.2 6   16   48 700)
 
-# Fills near and far, as the roads of whole cities are too thin to be white, and casings.
+# Colours of fills in close-ups, of fills in whole cities, whose roads are too thin to be white, and of casings.
 set(omt_light_paper "#f4f4f0")
 set(omt_light_casing_bridge "#7b848b")
 set(omt_light_service   "#ffffff" "#dcdfde" "#cfd3d3")
@@ -71,11 +72,11 @@ set(omt_dark_runway_casing "#454b5d")
 set(omt_dark_pier "#2c3036")
 set(omt_dark_works "#8f5a45")
 
-# A road's class, and whether it is a ramp. The style city has other schemas' in their place.
+# A road's class, and whether it is a ramp. The style city replaces these for other schemas.
 set(omt_class [=[["get", "class"]]=])
 set(omt_ramp [=[["==", ["get", "ramp"], 1]]=])
 
-# ["match", class, ...] with what a list has for each class.
+# Makes ["match", class, ...] with one value of the list for each class.
 function(omt_match out)
   set(text "[\"match\", ${omt_class}")
   foreach(class value IN ZIP_LISTS omt_classes ARGN)
@@ -86,7 +87,8 @@ function(omt_match out)
   set(${out} "${text}, ${last}]" PARENT_SCOPE)
 endfunction()
 
-# Curves along the zoom, each number of which follows the class; of ramps three fifths. What a casing adds is the same for all.
+# Makes curves over the zoom. Each value depends on the class; ramps have three fifths of it. A casing adds the same
+# width to all classes.
 function(omt_width out casing)
   set(text "[\"interpolate\", [\"exponential\", 1.6], [\"zoom\"]")
   foreach(zoom extra IN ZIP_LISTS omt_zooms ${casing})
@@ -106,7 +108,8 @@ function(omt_width out casing)
   set(${out} "${text}]" PARENT_SCOPE)
 endfunction()
 
-# Colours near and far. Tunnels are halfway to the paper: paler without being translucent.
+# Makes the colours of close-ups and of whole cities. Tunnels are mixed halfway with the paper, so they are paler
+# without being translucent.
 function(omt_colors theme)
   foreach(index distance IN ZIP_LISTS omt_indices omt_distances)
     set(colors "")
@@ -125,13 +128,14 @@ endfunction()
 set(omt_indices 0 1 2)
 set(omt_distances near far casing)
 
-# Sets the parts of the layers of roads: which features they have, and their widths, colours and order.
+# Sets the variables of road layers: their filters, widths, colours and order.
 function(omt_roads theme)
   omt_width(ROAD_WIDTH omt_casing_none)
   omt_width(ROAD_CASING omt_casing_ground)
   omt_width(BRIDGE_CASING omt_casing_bridge)
   omt_colors(${theme})
-  # A ramp lies below the roads that it leads to; a bridge over another one and a tunnel under another one say so.
+  # A ramp is below the roads that it leads to. A bridge over another bridge, and a tunnel under another tunnel, have a
+  # layer.
   omt_match(order 0 1 2 3 4 5 6)
   set(CLASS_ORDER "[\"-\", ${order}, [\"case\", ${omt_ramp}, 2.5, 0]]")
   set(LAYER_ORDER "[\"+\", [\"*\", 10, [\"to-number\", [\"get\", \"layer\"], 0]], ${CLASS_ORDER}]")
@@ -146,7 +150,7 @@ function(omt_roads theme)
   endforeach()
 endfunction()
 
-# Writes openmaptiles-theme.json into the folder.
+# Writes openmaptiles-THEME.json into the folder.
 function(openmaptiles_style theme folder)
   set(THEME ${theme})
   omt_roads(${theme})

@@ -1,4 +1,4 @@
-/* The operators of expressions: where each is found, and how those are compiled whose operands are all of one type. */
+/* Looks up the operators of expressions, and compiles those whose operands all have one type. */
 #include "style/operators.h"
 
 #include <string.h>
@@ -15,14 +15,14 @@ bool camber_compile_uniform(camber_compiler *c, const camber_operator *row, json
 }
 
 static bool fail_count(camber_compiler *c, const camber_operator *row, size_t count) {
-    return camber_compiler_fail(c, "\"%s\" with %zu operand%s; it takes %zu%s", row->name, count, count == 1 ? "" : "s",
+    return camber_compiler_fail(c, "\"%s\" has %zu operand%s; it takes %zu%s", row->name, count, count == 1 ? "" : "s",
                                 row->least,
                                 row->most == ANY_COUNT   ? " or more"
                                 : row->most > row->least ? " or one more"
                                                          : "");
 }
 
-/* NULL: there is none of this name. */
+/* NULL: there is no operator of this name. */
 static const camber_operator *find_operator(const char *name) {
     static const camber_operator_table *const tables[] = {&camber_input_operators,    &camber_type_operators,
                                                           &camber_decision_operators, &camber_sequence_operators,

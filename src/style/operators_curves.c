@@ -1,8 +1,7 @@
 /* Curves: step and the interpolations.
  *
- * A curve's stops are numbers that stand beside each other in the expression, sorted; its outputs are operands. The
- * input is looked up among the stops by halving. Each operator's row stands in the table at the end.
- */
+ * The stops of a curve are sorted numbers, next to each other in the expression; its outputs are operands. The input is
+ * looked up among the stops by bisection. The table at the end has each operator's row. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 #include "style/spaces.h"
@@ -14,7 +13,8 @@ static const camber_typing number_type = {.type = CAMBER_TYPE_NUMBER};
 
 /* ---- When compiled ---- */
 
-/* The stop at index of array, above the one before; stop is the one before and becomes this one. */
+/* Reads the stop at an index of array, which must be above the previous one. *stop is the previous one, and becomes
+ * this one. */
 static bool read_stop(camber_compiler *c, const json_t *array, size_t index, double *stop) {
     const json_t *json = json_array_get(array, index);
     camber_compiler_enter_index(c, index);
@@ -28,8 +28,9 @@ static bool read_stop(camber_compiler *c, const json_t *array, size_t index, dou
     return true;
 }
 
-/* Both curves: input at index input, then pairs of stop and output from index pairs on. Stops are contiguous though
- * outputs may hold curves of their own: they are pushed first, the controls of a curve behind them. */
+/* Compiles both kinds of curves. input and pairs are the indices of the input and of the first pair of stop and output.
+ * Stops are contiguous although outputs may contain curves of their own, because all stops are pushed first, followed
+ * by the control values of a Bezier curve. */
 static bool compile_curve(camber_compiler *c, const json_t *array, size_t input, camber_node *prototype,
                           const double controls[4], uint32_t *node) {
     const bool step = prototype->evaluate == camber_evaluate_step;
@@ -75,7 +76,7 @@ static bool read_controls(camber_compiler *c, const json_t *json, double control
                                            "0.2, 1]");
 }
 
-/* ["linear"], ["exponential", base] or ["cubic-bezier", x1, y1, x2, y2]. */
+/* Reads ["linear"], ["exponential", base] or ["cubic-bezier", x1, y1, x2, y2]. */
 static bool read_interpolation(camber_compiler *c, const json_t *json, camber_node *prototype, double controls[4]) {
     const char *name = json_string_value(json_array_get(json, 0));
     prototype->value = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = 1.0};
@@ -102,7 +103,7 @@ bool camber_is_interpolated(camber_typing type) {
            (type.depth == 1 && type.item == CAMBER_TYPE_NUMBER && type.lengths[0] != CAMBER_ANY_LENGTH);
 }
 
-/* The three interpolations; their rows name the colour space. */
+/* Compiles the three interpolations. Their rows have the colour space. */
 static bool compile_interpolate(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                 uint32_t *node) {
     double controls[4] = {0.0};
@@ -130,7 +131,7 @@ static bool fail(camber_evaluation *e, const char *cause) {
     return camber_evaluate_fail(e, cause);
 }
 
-/* How many of the node's stops are at or below input. */
+/* Counts the node's stops that are at or below input. */
 static uint32_t count_stops(const camber_expression *expression, const camber_node *node, double input) {
     uint32_t low = 0, high = node->index_count;
     while (low < high) {
@@ -160,10 +161,10 @@ static bool same(double a, double b) {
     return a >= b && a <= b;
 }
 
-/* How far input is from low to high, as the specification's exponential interpolation has it. */
+/* Returns how far input is from low to high, as the specification defines it for exponential interpolation. */
 static double exponential(double input, double base, double low, double high) {
     double span = high - low, progress = input - low;
-    if (!isfinite(span)) { /* stops so far apart that only half of it is a number */
+    if (!isfinite(span)) { /* the stops are so far apart that only half of the span is finite */
         span = high * 0.5 - low * 0.5;
         progress = input * 0.5 - low * 0.5;
     }
@@ -173,13 +174,13 @@ static double exponential(double input, double base, double low, double high) {
     return isfinite(factor) ? factor : progress / span;
 }
 
-/* One coordinate of the curve from 0 to 1 with control values a and b. */
+/* Returns one coordinate of the curve from 0 to 1 with control values a and b, at the parameter s. */
 static double bezier(double a, double b, double s) {
     const double r = 1.0 - s;
     return 3.0 * r * r * s * a + 3.0 * r * s * s * b + s * s * s;
 }
 
-/* y of the curve from (0, 0) to (1, 1) at x, by halving: x grows along it. */
+/* Returns y at x on the curve from (0, 0) to (1, 1). x increases along it, so bisection finds it. */
 static double bezier_at(const double controls[4], double x) {
     double low = 0.0, high = 1.0;
     for (int i = 0; i < 48; i++) {

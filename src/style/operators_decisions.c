@@ -1,9 +1,8 @@
-/* Comparisons and decisions: ==, all, case, match, coalesce and their like.
+/* Comparisons and decisions: ==, all, case, match, coalesce and so on.
  *
- * Only the operands that decide are evaluated: "all" stops at the first false, "case" at the first condition that
- * holds. The labels of "match" are sorted when compiled and searched when evaluated. Each operator's row stands in the
- * table at the end.
- */
+ * Only operands that affect the result are evaluated: "all" stops at the first false operand, "case" at the first true
+ * condition. The labels of "match" are sorted when it is compiled, and searched when it is evaluated. The table at the
+ * end has each operator's row. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 #include "style/unicode.h"
@@ -32,7 +31,7 @@ static bool is_comparable(camber_type type, bool order) {
     }
 }
 
-/* Compiles one side, still of any type. */
+/* Compiles one side without an expected type. */
 static bool compile_side(camber_compiler *c, const camber_operator *row, const json_t *array, size_t index,
                          uint32_t *node) {
     const bool order = is_order(row->variant);
@@ -84,7 +83,7 @@ static bool compile_comparison(camber_compiler *c, const camber_operator *row, j
                             first_operand, node);
 }
 
-/* {"case-sensitive": boolean, "diacritic-sensitive": boolean, "locale": string}. */
+/* Compiles the options {"case-sensitive": boolean, "diacritic-sensitive": boolean, "locale": string}. */
 static bool compile_collator(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                              uint32_t *node) {
     static const char *const flags[] = {"case-sensitive", "diacritic-sensitive"};
@@ -148,7 +147,7 @@ static int compare_strings(const char *a, const char *b, const camber_value *col
     return camber_unicode_compare(a, b, by & COLLATE_CASE, by & COLLATE_DIACRITICS);
 }
 
-/* Whether the outcome is one of those for which the comparison holds. */
+/* Whether the comparison is true for this outcome. */
 static bool holds(uint32_t outcomes, bool less, bool equal) {
     return outcomes & (less ? CAMBER_OUTCOME_LESS : equal ? CAMBER_OUTCOME_EQUAL : CAMBER_OUTCOME_GREATER);
 }
@@ -209,7 +208,7 @@ static bool compile_none(camber_compiler *c, const camber_operator *row, json_t 
            camber_wrap_node(c, camber_evaluate_not, camber_typing_of(CAMBER_TYPE_BOOL), node);
 }
 
-/* False where the operand fails, as comparisons of the older filters are. */
+/* False if the operand fails, as for comparisons in older filters. */
 bool camber_evaluate_quiet(camber_evaluation *e, const camber_node *node, camber_value *value) {
     if (!camber_evaluate_operand(e, node, 0, value))
         *value = camber_value_bool(false);
@@ -256,7 +255,7 @@ static bool is_there(const camber_evaluation *e, const camber_node *operand, con
     return value->type == CAMBER_VALUE_STRING && e->images->find(e->images->user, value->string) != 0;
 }
 
-/* Where all images are missing, the result is the first of them. */
+/* If all images are missing, the result is the first of them. */
 bool camber_evaluate_coalesce(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value first = nothing;
     *value = nothing;
@@ -291,7 +290,7 @@ static bool compile_coalesce(camber_compiler *c, const camber_operator *row, jso
 
 /* ---- Match ---- */
 
-/* 2^53 - 1, the largest integer to which all below it are doubles. */
+/* 2^53 - 1: doubles represent all integers up to this one exactly. */
 #define LARGEST_LABEL 9007199254740991.0
 
 bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label label, camber_type *type) {
@@ -316,7 +315,7 @@ bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label l
     return camber_push_label(c, &label);
 }
 
-/* One label or an array of them. */
+/* Compiles one label or an array of labels. */
 static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t index, camber_type *type) {
     const camber_label label = {.output = index / 2, .position = index};
     if (!json_is_array(json))
@@ -332,7 +331,7 @@ static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t inde
     return true;
 }
 
-/* Labels are contiguous though outputs may hold matches of their own: they are compiled first. */
+/* Labels are contiguous although outputs may contain matches of their own, because all labels are compiled first. */
 static bool compile_match(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                           uint32_t *node) {
     const size_t size = json_array_size(array), first_operand = c->operand_count;
@@ -374,7 +373,7 @@ static int compare_label(const camber_value *value, const camber_label *label) {
     return value->number < label->number ? -1 : value->number > label->number;
 }
 
-/* The node's label that the value is; NULL: none. */
+/* Returns the node's label that equals the value. NULL: there is none. */
 static const camber_label *find_label(const camber_expression *expression, const camber_node *node,
                                       const camber_value *value) {
     uint32_t low = 0, high = node->index_count;

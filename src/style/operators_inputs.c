@@ -1,9 +1,8 @@
-/* Inputs of an expression: literals, the feature, zoom, the style's state, variables; and operators of the
- * specification that lines have no use for.
+/* Inputs of an expression: literals, the feature, zoom, the style's state and variables. Also operators of the
+ * specification that are not supported.
  *
- * Each operator stands here once: the function that compiles it, the one that evaluates it, and its row in the table at
- * the end. Reading is cheap: a property that is named by a constant becomes an index into the style's properties.
- */
+ * Each operator has a function that compiles it, one that evaluates it, and its row in the table at the end. Reading is
+ * cheap: a property with a constant name becomes an index into the style's properties. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 
@@ -25,7 +24,7 @@ static bool compile_literal(camber_compiler *c, const camber_operator *row, json
     (void)row;
     if (!camber_make_json_constant(c, json_array_get(array, 1), node))
         return false;
-    /* An empty array is one of whatever items are wanted. */
+    /* An empty array fits any expected item type. */
     camber_typing *type = &camber_node_at(c, *node)->type;
     if (type->type == CAMBER_TYPE_ARRAY && type->lengths[0] == 0 && expected.type == CAMBER_TYPE_ARRAY &&
         (expected.lengths[0] == CAMBER_ANY_LENGTH || expected.lengths[0] == 0))
@@ -73,7 +72,8 @@ bool camber_evaluate_has(camber_evaluation *e, const camber_node *node, camber_v
     return true;
 }
 
-/* A name that is known only now, of the object that follows it, or of the feature where none does. */
+/* Looks up a name that is known only during evaluation, in the object that follows it, or in the feature if there is
+ * none. */
 static bool evaluate_member(camber_evaluation *e, const camber_node *node, const camber_value **found) {
     const char *key;
     camber_value object = nothing;
@@ -107,7 +107,7 @@ static bool evaluate_has_member(camber_evaluation *e, const camber_node *node, c
     return true;
 }
 
-/* A member of an object, or a property of the feature by a name that is known only when evaluated. */
+/* Compiles a member of an object, or a property of the feature whose name is known only during evaluation. */
 static bool compile_member(camber_compiler *c, const camber_operator *row, const json_t *array, uint32_t name,
                            uint32_t *node) {
     const size_t first_operand = c->operand_count;
@@ -123,7 +123,7 @@ static bool compile_member(camber_compiler *c, const camber_operator *row, const
     return camber_make_node(c, &prototype, first_operand, node);
 }
 
-/* get, has and !has. */
+/* Compiles get, has and !has. */
 static bool compile_get(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                         uint32_t *node) {
     (void)expected;
@@ -192,14 +192,16 @@ static bool compile_reader(camber_compiler *c, const camber_operator *row, json_
 
 /* ---- The style's state ---- */
 
-/* The same as a constant, but a function of its own: it must not be folded, since its type is known only now. */
+/* Works like a constant, but needs a function of its own: it must not be folded, because its type counts as unknown
+ * until it is evaluated. */
 bool camber_evaluate_state(camber_evaluation *e, const camber_node *node, camber_value *value) {
     (void)e;
     *value = node->value;
     return true;
 }
 
-/* The state does not change, but a style that reads it is written as if it did: its type is known when evaluated. */
+/* The state does not change here, but a style that reads it expects that it may, so its type is unknown until
+ * evaluation. */
 static bool compile_state(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                           uint32_t *node) {
     (void)expected;
@@ -219,7 +221,7 @@ static bool compile_state(camber_compiler *c, const camber_operator *row, json_t
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
-/* feature-state is always null: nothing sets states of features in a picture. */
+/* feature-state is always null, because nothing sets states of features in a picture. */
 static bool compile_feature_state(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                   uint32_t *node) {
     (void)expected;
@@ -235,8 +237,8 @@ bool camber_evaluate_let(camber_evaluation *e, const camber_node *node, camber_v
     return camber_evaluate_operand(e, node, node->count - 1, value);
 }
 
-/* A variable is evaluated when it is first read, and kept: else each that reads the one before twice would double the
- * time. */
+/* A variable is evaluated when it is first read, and its value is kept. Otherwise each variable that reads the previous
+ * one twice would double the time. */
 bool camber_evaluate_var(camber_evaluation *e, const camber_node *node, camber_value *value) {
     const size_t count = e->expression->slot_count;
     if (!e->slots) {
@@ -269,7 +271,8 @@ static bool read_name(camber_compiler *c, const json_t *array, size_t index, con
     return camber_compiler_fail(c, "expected a variable's name, a string of letters, digits and _; rename it");
 }
 
-/* ["let", name, value, ..., result]: values do not see the names beside them, so that there are no cycles. */
+/* Compiles ["let", name, value, ..., result]. A value cannot use the names of the same "let", so there are no cycles.
+ */
 static bool compile_let(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                         uint32_t *node) {
     const size_t size = json_array_size(array), first_operand = c->operand_count;
@@ -317,9 +320,9 @@ static bool compile_var(camber_compiler *c, const camber_operator *row, json_t *
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
-/* ---- Errors, and operators that lines have no use for ---- */
+/* ---- Errors, and operators that are not supported ---- */
 
-/* The message is the style's; the evaluation keeps it. */
+/* The message may be in the evaluation's memory, which lives long enough. */
 bool camber_evaluate_error(camber_evaluation *e, const camber_node *node, camber_value *value) {
     const char *message;
     (void)value;
@@ -332,7 +335,7 @@ static bool compile_unsupported(camber_compiler *c, const camber_operator *row, 
     (void)expected;
     (void)node;
     camber_compiler_enter_index(c, 0);
-    return camber_compiler_fail(c, "\"%s\" is not supported for lines; leave it out", row->name);
+    return camber_compiler_fail(c, "\"%s\" is not supported; leave it out", row->name);
 }
 
 static bool compile_script(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,

@@ -1,7 +1,6 @@
-/* Arithmetic, functions of a number, and constants: a row each, with the C function that computes it.
+/* Arithmetic, functions of a number, and constants. Each has a row with the C function that computes it.
  *
- * Numbers are doubles and follow ECMAScript, whose rules for NaN differ from C's here and there.
- */
+ * Numbers are doubles and follow ECMAScript, whose rules for NaN sometimes differ from C's. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 
@@ -17,7 +16,7 @@ static bool evaluate_unary(camber_evaluation *e, const camber_node *node, camber
     return true;
 }
 
-/* All operands from left to right; the row's constant where there are none. */
+/* Combines all operands from left to right. Without operands the result is the row's constant. */
 static bool evaluate_chain(camber_evaluation *e, const camber_node *node, camber_value *value) {
     double result = node->op->constant, number;
     for (uint32_t i = 0; i < node->count; i++) {
@@ -29,7 +28,7 @@ static bool evaluate_chain(camber_evaluation *e, const camber_node *node, camber
     return true;
 }
 
-/* With one operand its opposite. */
+/* With one operand the result is its negation. */
 static bool evaluate_minus(camber_evaluation *e, const camber_node *node, camber_value *value) {
     if (!evaluate_chain(e, node, value))
         return false;
@@ -62,7 +61,7 @@ static double divide(double a, double b) {
     return a / b;
 }
 
-/* A number that is none makes the result none, which C's fmin and fmax would hide. */
+/* NaN makes the result NaN, which C's fmin and fmax would ignore. */
 static double smaller(double a, double b) {
     return isnan(a) || a < b ? a : b;
 }
@@ -71,7 +70,7 @@ static double larger(double a, double b) {
     return isnan(a) || a > b ? a : b;
 }
 
-/* C has 1 where ECMAScript has no number. */
+/* C's pow returns 1 in cases in which ECMAScript returns NaN. */
 static double power(double base, double exponent) {
     return isnan(exponent) || (isinf(exponent) && fabs(base) >= 1.0 && fabs(base) <= 1.0) ? NAN : pow(base, exponent);
 }

@@ -1,8 +1,7 @@
-/* Strings and arrays: in, index-of, at, slice, length, split, join, concat and their like.
+/* Strings and arrays: in, index-of, at, slice, length, split, join, concat and so on.
  *
- * Strings are UTF-8, and their letters are counted, not their bytes. Each operator's row stands in the table at the
- * end.
- */
+ * Strings are UTF-8, and lengths and indices count code points, not bytes. The table at the end has each operator's
+ * row. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 #include "style/text.h"
@@ -18,7 +17,7 @@ static bool fail(camber_evaluation *e, const char *cause) {
     return camber_evaluate_fail(e, cause);
 }
 
-static size_t count_letters(const char *text, const char *end) {
+static size_t count_code_points(const char *text, const char *end) {
     size_t count = 0;
     uint32_t code;
     for (; *text && text < end; count++)
@@ -26,8 +25,8 @@ static size_t count_letters(const char *text, const char *end) {
     return count;
 }
 
-/* The place count letters behind text, or its end. */
-static const char *skip_letters(const char *text, size_t count) {
+/* Returns the position count code points after text, or its end. */
+static const char *skip_code_points(const char *text, size_t count) {
     uint32_t code;
     for (size_t i = 0; i < count && *text; i++)
         text += camber_unicode_read(text, &code);
@@ -43,7 +42,7 @@ static bool is_needle_type(camber_type type) {
 
 enum { SORTED_FROM = 8 };
 
-/* Whether the node is a constant array of strings, or of numbers, that is worth sorting. */
+/* Whether the node is a constant array of strings, or of numbers, that is long enough to be worth sorting. */
 static bool is_list(const camber_node *node) {
     const camber_value *list = &node->value;
     if (!camber_is_constant(node) || list->type != CAMBER_VALUE_ARRAY || list->count < SORTED_FROM)
@@ -54,7 +53,7 @@ static bool is_list(const camber_node *node) {
     return list->items[0].type == CAMBER_VALUE_STRING || list->items[0].type == CAMBER_VALUE_NUMBER;
 }
 
-/* A look into a long list of constants becomes a search among labels. */
+/* Turns a test for membership in a long constant list into a search among sorted labels. */
 static bool make_among(camber_compiler *c, size_t first_operand, uint32_t *node) {
     const camber_value list = camber_node_at(c, c->operands[c->operand_count - 1])->value;
     const size_t first = c->expression->label_count;
@@ -71,7 +70,7 @@ static bool make_among(camber_compiler *c, size_t first_operand, uint32_t *node)
     return camber_sort_labels(c, first, false) && camber_make_node(c, &prototype, first_operand, node);
 }
 
-/* in, !in and index-of. */
+/* Compiles in, !in and index-of. */
 static bool compile_in(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                        uint32_t *node) {
     (void)expected;
@@ -101,7 +100,7 @@ static bool is_needle(const camber_value *value) {
     return value->type <= CAMBER_VALUE_STRING;
 }
 
-/* Makes the text of a needle as ECMAScript's indexOf does: null is looked for as "null". */
+/* Makes the text of a needle like ECMAScript's indexOf, for which null is "null". */
 static bool needle_text(camber_evaluation *e, const camber_value *needle, const char **string) {
     camber_text text = {.e = e};
     camber_value value;
@@ -114,7 +113,7 @@ static bool needle_text(camber_evaluation *e, const camber_value *needle, const 
     return true;
 }
 
-/* Where needle begins in haystack, from the from-th item or unit of UTF-16 on; -1: nowhere. */
+/* Finds where needle begins in haystack, starting at the item or UTF-16 unit from. -1: it is not there. */
 static bool find_needle(camber_evaluation *e, const camber_value *needle, const camber_value *haystack, double from,
                         double *found) {
     *found = -1.0;
@@ -137,7 +136,7 @@ static bool find_needle(camber_evaluation *e, const camber_value *needle, const 
         start += camber_unicode_read(start, &code);
     const char *at = strstr(start, string);
     if (at)
-        *found = (double)count_letters(haystack->string, at);
+        *found = (double)count_code_points(haystack->string, at);
     return true;
 }
 
@@ -185,11 +184,11 @@ static bool evaluate_at(camber_evaluation *e, const camber_node *node, camber_va
     if (!camber_evaluate_number(e, node, 0, &index) || !camber_evaluate_operand(e, node, 1, &array))
         return false;
     if (array.type != CAMBER_VALUE_ARRAY)
-        return fail(e, "\"at\" takes an item of an array and the value is not one");
+        return fail(e, "\"at\" takes an array, and the value is not one");
     if (!(index >= 0.0 && index < array.count))
         return fail(e, "the array has no item of this index");
     if (index > floor(index))
-        return fail(e, "the index of an array's item is a whole number");
+        return fail(e, "the index of an array's item must be a whole number");
     *value = array.items[(uint32_t)index];
     return true;
 }
@@ -205,7 +204,7 @@ static bool compile_at(camber_compiler *c, const camber_operator *row, json_t *a
     return camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = type}, first_operand, node);
 }
 
-/* An index of slice, counted from the end where it is negative, moved into 0 to count. */
+/* Moves an index of slice into 0 to count. Negative indices count from the end. */
 static size_t slice_index(double index, size_t count) {
     if (isnan(index))
         return 0;
@@ -222,18 +221,19 @@ static bool evaluate_slice(camber_evaluation *e, const camber_node *node, camber
         return false;
     const bool string = value->type == CAMBER_VALUE_STRING;
     if (!string && value->type != CAMBER_VALUE_ARRAY)
-        return fail(e, "\"slice\" takes a part of a string or an array");
+        return fail(e, "\"slice\" takes a string or an array");
     if (string && !camber_evaluate_work(e, strlen(value->string)))
         return false;
-    const size_t count = string ? count_letters(value->string, value->string + strlen(value->string)) : value->count;
+    const size_t count =
+        string ? count_code_points(value->string, value->string + strlen(value->string)) : value->count;
     const size_t first = slice_index(begin, count), last = slice_index(end, count);
     const size_t length = last > first ? last - first : 0;
     if (!string) {
         *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .count = (uint32_t)length, .items = value->items + first};
         return true;
     }
-    const char *from = skip_letters(value->string, first);
-    const char *text = camber_arena_text(e->arena, from, (size_t)(skip_letters(from, length) - from));
+    const char *from = skip_code_points(value->string, first);
+    const char *text = camber_arena_text(e->arena, from, (size_t)(skip_code_points(from, length) - from));
     if (!text)
         return camber_evaluate_no_memory(e);
     *value = camber_value_string(text);
@@ -248,11 +248,11 @@ static bool evaluate_length(camber_evaluation *e, const camber_node *node, cambe
         return true;
     }
     if (value->type != CAMBER_VALUE_STRING)
-        return fail(e, "\"length\" is that of a string or an array");
+        return fail(e, "\"length\" takes a string or an array");
     const size_t size = strlen(value->string);
     if (!camber_evaluate_work(e, size))
         return false;
-    *value = camber_value_number((double)count_letters(value->string, value->string + size));
+    *value = camber_value_number((double)count_code_points(value->string, value->string + size));
     return true;
 }
 
@@ -300,7 +300,7 @@ static bool make_array(camber_evaluation *e, size_t count, camber_value **items,
     return camber_evaluate_work(e, count);
 }
 
-/* An array of the operands. */
+/* Makes an array of the operands. */
 bool camber_evaluate_list(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value *items;
     if (!make_array(e, node->count, &items, value))
@@ -311,9 +311,10 @@ bool camber_evaluate_list(camber_evaluation *e, const camber_node *node, camber_
     return true;
 }
 
-/* The end of the part that begins at text: its separator, or its letter where there is none. */
+/* Returns the end of the part that begins at text: its separator, or the end of its first code point if separator is
+ * empty. */
 static const char *part_end(const char *text, const char *separator) {
-    const char *end = separator[0] ? strstr(text, separator) : skip_letters(text, 1);
+    const char *end = separator[0] ? strstr(text, separator) : skip_code_points(text, 1);
     return end ? end : text + strlen(text);
 }
 
@@ -357,7 +358,7 @@ static bool evaluate_join(camber_evaluation *e, const camber_node *node, camber_
     if (!camber_evaluate_operand(e, node, 0, &array) || !camber_evaluate_string(e, node, 1, &separator))
         return false;
     if (array.type != CAMBER_VALUE_ARRAY)
-        return fail(e, "\"join\" joins the strings of an array and the value is not one");
+        return fail(e, "\"join\" takes an array of strings, and the value is not one");
     const size_t length = strlen(separator);
     for (uint32_t i = 0; i < array.count; i++)
         if ((i > 0 && !camber_text_add(&text, separator, length)) || !camber_text_add_value(&text, &array.items[i]))

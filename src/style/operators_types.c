@@ -1,8 +1,7 @@
 /* Types: assertions, conversions and colours.
  *
- * A node asserts or converts where the compiler cannot know a type, as with ["get", ...]. Conversions follow
- * ECMAScript where the specification does. Each operator's row stands in the table at the end.
- */
+ * If the compiler cannot know a type, as with ["get", ...], a node asserts or converts it. Conversions follow
+ * ECMAScript where the specification does. The table at the end has each operator's row. */
 #include "style/color.h"
 #include "style/evaluation.h"
 #include "style/operators.h"
@@ -20,7 +19,7 @@ static bool fail(camber_evaluation *e, const char *cause) {
 
 /* ---- Assertions ---- */
 
-/* The first operand that is of the node's type; it is an error where none is. */
+/* The result is the first operand of the node's type. If there is none, evaluation fails. */
 bool camber_evaluate_assert(camber_evaluation *e, const camber_node *node, camber_value *value) {
     for (uint32_t i = 0; i < node->count; i++) {
         if (!camber_evaluate_operand(e, node, i, value))
@@ -77,7 +76,7 @@ static bool read_length(camber_compiler *c, const json_t *array, uint32_t *lengt
     return camber_compiler_fail(c, "expected the array's length, a whole number of 0 or more; write it out");
 }
 
-/* ["array", value], ["array", type, value] or ["array", type, length, value, ...]. */
+/* Compiles ["array", value], ["array", type, value] or ["array", type, length, value, ...]. */
 static bool compile_array(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                           uint32_t *node) {
     (void)expected;
@@ -132,7 +131,7 @@ static const char *skip_space(const char *text) {
     return text + strspn(text, " \t\r\n\f\v");
 }
 
-/* Digits behind 0x, 0o or 0b. NULL: there are none. */
+/* Parses the digits after 0x, 0o or 0b. NULL: there are none. */
 static const char *parse_digits(const char *text, unsigned base, double *number) {
     const char *c = text;
     for (*number = 0.0;; c++) {
@@ -146,7 +145,7 @@ static const char *parse_digits(const char *text, unsigned base, double *number)
     }
 }
 
-/* Number(string) of ECMAScript. */
+/* Converts a string like Number(string) in ECMAScript. */
 static bool string_to_number(const char *text, double *number) {
     text = skip_space(text);
     if (*text == 0) {
@@ -168,7 +167,7 @@ static bool string_to_number(const char *text, double *number) {
 
 static bool to_number(const camber_value *value, double *number) {
     *number = 0.0;
-    /* ECMAScript makes a text of an array: that of its item where it has one. */
+    /* ECMAScript converts an array to text first. For one item this is the item's text. */
     while (value->type == CAMBER_VALUE_ARRAY && value->count == 1)
         value = &value->items[0];
     switch (value->type) {
@@ -193,12 +192,12 @@ static bool evaluate_to_number(camber_evaluation *e, const camber_node *node, ca
             return true;
         }
     }
-    return fail(e, "the value is not the text of a number");
+    return fail(e, "the value is not a number, and not the text of one");
 }
 
 /* ---- Colours ---- */
 
-/* r, g and b from 0 to 255, alpha from 0 to 1. */
+/* Whether r, g and b are 0 to 255, and alpha is 0 to 1. */
 static bool is_rgba(const double parts[4]) {
     for (int i = 0; i < 4; i++)
         if (!(parts[i] >= 0.0 && parts[i] <= (i < 3 ? 255.0 : 1.0)))
@@ -212,7 +211,7 @@ static camber_value from_rgba(const double parts[4], double divisor) {
                                     (float)(parts[2] / divisor), (float)parts[3]}};
 }
 
-/* The specification's own engine takes an array's r, g and b to be multiplied by alpha already. */
+/* Like the specification's own engine, takes the r, g and b of an array as already multiplied by alpha. */
 static bool array_to_color(const camber_value *array, camber_value *color) {
     double parts[4] = {0.0, 0.0, 0.0, 1.0};
     if (array->count < 3 || array->count > 4)
@@ -249,12 +248,12 @@ static bool evaluate_rgba(camber_evaluation *e, const camber_node *node, camber_
         if (!camber_evaluate_number(e, node, i, &parts[i]))
             return false;
     if (!is_rgba(parts))
-        return fail(e, "red, green and blue go from 0 to 255, alpha from 0 to 1");
+        return fail(e, "red, green and blue must be 0 to 255, and alpha 0 to 1");
     *value = from_rgba(parts, 255.0);
     return true;
 }
 
-/* Components are floats: digits past those that they have are noise. */
+/* Components are floats, so digits past their precision are noise and are rounded off. */
 static bool evaluate_to_rgba(camber_evaluation *e, const camber_node *node, camber_value *value) {
     if (!camber_evaluate_operand(e, node, 0, value))
         return false;

@@ -1,7 +1,6 @@
-/* Evaluates how a layer draws a feature: the properties that features do not change are evaluated once.
+/* Evaluates how a layer draws a feature. Properties that do not depend on features are evaluated only once.
  *
- * Input: a compiled layer, a zoom, a feature. Output: camber_layer_paint.
- */
+ * Input: a compiled layer, a zoom, a feature. Output: camber_layer_paint. */
 #include "style/properties.h"
 
 #include <math.h>
@@ -19,7 +18,7 @@ static bool passes_filter(const camber_expression *filter, double zoom, const ca
 }
 
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
-    /* A limit of 24, the largest that a style can name, means none. */
+    /* A max_zoom of 24, the largest that a style can have, means no limit. */
     if (!layer->visible || zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
         return false;
     return passes_filter(layer->filter, zoom, feature);
@@ -70,8 +69,8 @@ static bool store_pair(const camber_property_row *row, const camber_value *value
     return true;
 }
 
-/* A style's list of odd length has a dash at both ends, which run into each other where the list begins again: a gap of
- * 0 is between them. So a single length is a solid line. */
+/* A style's list of odd length begins and ends with a dash, which run into each other where the list repeats, so a gap
+ * of 0 is added between them. A single length is a solid line. */
 static void close_dashes(camber_layer_dashes *dashes) {
     _Static_assert(CAMBER_DASH_LENGTHS_MAX % 2 == 0, "an odd list has room for one more length");
     if (dashes->count == 1)
@@ -80,8 +79,8 @@ static void close_dashes(camber_layer_dashes *dashes) {
         dashes->lengths[dashes->count++] = 0.0f;
 }
 
-/* Stores dashes. Without lengths above 0, or with one below 0, the line is solid; of too many lengths the first are
- * taken. */
+/* Stores dashes. If no length is above 0, or one is below 0, the line is solid. If there are too many lengths, only the
+ * first ones are used. */
 static bool store_dashes(const camber_property_row *row, const camber_value *value, camber_layer_dashes *dashes) {
     double sum = 0.0;
     if (value->type != CAMBER_VALUE_ARRAY)
@@ -113,7 +112,7 @@ static bool store_value(const camber_property_row *row, const camber_value *valu
     return value->type == CAMBER_VALUE_COLOR;
 }
 
-/* Stores a property in its field of the paint, which holds the default so far. */
+/* Stores a property in its field of the paint. If the property cannot be evaluated, the field keeps its default. */
 static void store_property(const camber_style_layer *layer, unsigned id, camber_evaluation *evaluation,
                            camber_layer_paint *paint) {
     const camber_property_row *row = camber_property_rows + id;
@@ -140,8 +139,7 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
     return look;
 }
 
-/* Computes the border's colour where it has none of its own: darker than the line, or brighter where the line is
- * dark. */
+/* Computes the colour of a border that has none of its own: darker than the line, or brighter if the line is dark. */
 camber_color camber_border_color(camber_color color) {
     const float luminance = 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b;
     const bool dark = luminance < 0.25f, black = luminance <= 0.0f;
@@ -201,7 +199,7 @@ bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, co
     return true;
 }
 
-/* Whether the join that both layers have ignores a limit in which they differ. */
+/* Whether the miter and round limits of both layers have the same effect on their common join. */
 static bool join_ignores(const camber_layer_paint *p, const camber_layer_paint *q) {
     switch (p->join) {
     case CAMBER_JOIN_MITER: return p->miter_limit == q->miter_limit;
@@ -219,7 +217,7 @@ bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_loo
             (driven && !json_equal(a->layer->properties[i]->document, b->layer->properties[i]->document)))
             return false;
     }
-    /* Properties that features change have no value yet in either. */
+    /* Properties that depend on features still have their defaults in both looks. */
     const camber_layer_paint *p = &a->paint, *q = &b->paint;
     const bool driven = camber_property_set_has(&a->by_feature, CAMBER_LINE_JOIN);
     const bool limits = p->round_limit == q->round_limit && p->miter_limit == q->miter_limit;

@@ -1,5 +1,5 @@
-/* Writes JSON pointers for messages: where something is in the document, shortened so that cause and cure stay visible.
- */
+/* Writes JSON pointers for messages: the position in the document, shortened so that the cause and the advice stay
+ * visible. */
 #include "style/compiler.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@ enum { HEAD = 120, TAIL = 60 };
 typedef struct text {
     char head[HEAD];
     char tail[TAIL]; /* a ring buffer of the last bytes */
-    size_t length;   /* bytes put so far */
+    size_t length;   /* bytes written so far */
 } text;
 
 static void put_byte(text *t, char c) {
@@ -35,7 +35,7 @@ static bool is_continued(char c) {
     return ((unsigned char)c & 0xc0) == 0x80;
 }
 
-/* Finds where to cut: behind a step, or behind a character of a long step. */
+/* Finds where to cut the head: after a step, or after a character of a long step. */
 static size_t cut_head(const char head[HEAD]) {
     for (size_t end = HEAD; end > HEAD / 2; end--)
         if (head[end - 1] == '/')

@@ -1,6 +1,6 @@
-/* The table of all layout and paint properties that layers may have: type, default, range, and what each may depend on.
+/* The table of all layout and paint properties of layers: type, default, range, and what each may depend on.
  *
- * A new property is a value of camber_property_id and a row here, and a field of camber_layer_paint that it goes to.
+ * To add a property, add a value of camber_property_id, a row here, and the field of camber_layer_paint that stores it.
  */
 #include "style/properties.h"
 

@@ -6,10 +6,10 @@
 
 typedef struct camber_property_row {
     camber_layer_kind kind;
-    bool layout;             /* false: of the paint */
-    bool directed;           /* follows its line's direction */
-    bool needs_line_metrics; /* of its source layer */
-    size_t offset;           /* into camber_layer_paint, where it has its type's form. CAMBER_NO_OFFSET: not there */
+    bool layout;             /* false: a paint property */
+    bool directed;           /* depends on the line's direction */
+    bool needs_line_metrics; /* its source needs "lineMetrics" */
+    size_t offset;           /* of its field in camber_layer_paint. CAMBER_NO_OFFSET: it has none */
     camber_property property;
 } camber_property_row;
 
@@ -17,7 +17,7 @@ typedef struct camber_property_row {
 
 /* By camber_property_id. */
 extern const camber_property_row camber_property_rows[CAMBER_PROPERTIES];
-/* The specification's default, the same as property.fallback in JSON. */
+/* The specification's defaults, the same as property.fallback in JSON. */
 extern const camber_layer_paint camber_default_paint;
 
 /* NULL: the specification has no such property. */

@@ -1,7 +1,6 @@
 /* Compiles the value of a property (a constant, an expression or a function) and checks what it may depend on.
  *
- * Input: JSON and the property's row. Output: an expression, or an error that says what to write instead.
- */
+ * Input: JSON and the property's definition. Output: an expression, or an error that says what to write instead. */
 #include "style/compiler.h"
 
 #include <math.h>
@@ -9,7 +8,7 @@
 
 /* ---- Zoom ---- */
 
-/* The state of knowledge about a node's zoom curves: one curve, none, or that the rule is broken. */
+/* The zoom curves in a node: none, one, or more than the rule allows. */
 typedef struct curve {
     uint32_t node;
     enum { CURVE_NONE, CURVE_ONE, CURVE_NESTED, CURVE_SEVERAL } kind;
@@ -19,8 +18,8 @@ static bool same_curve(curve a, curve b) {
     return a.kind == b.kind && a.node == b.node;
 }
 
-/* The specification: zoom is read by one step or interpolate at the top, or in a let or a coalesce there. Operands
- * without zoom have no curve, so that only the way to zoom is walked. */
+/* The specification's rule: zoom is the input of one step or interpolate at the top, or inside a let or a coalesce
+ * there. Operands that do not read the zoom have no curve, so only the path to zoom is walked. */
 static curve find_curve(const camber_expression *e, uint32_t index) {
     const camber_node *node = &e->nodes[index];
     const curve own = {index, CURVE_ONE};
@@ -78,11 +77,11 @@ static bool check_property(camber_compiler *c, const camber_property *property, 
                                              camber_property_check(c, property, &camber_node_at(c, root)->value));
 }
 
-/* ---- Constants that an expression may result in ---- */
+/* ---- Constants that an expression may return ---- */
 
 static bool check_outputs(camber_compiler *c, const camber_property *property, const json_t *json);
 
-/* Checks the operands that may be the result: from first on each step-th, and the last. */
+/* Checks the operands that may be the result: every step-th from first on, and the last. */
 static bool check_operands(camber_compiler *c, const camber_property *property, const json_t *array, size_t first,
                            size_t step) {
     const size_t count = json_array_size(array);
@@ -97,7 +96,7 @@ static bool check_operands(camber_compiler *c, const camber_property *property, 
     return true;
 }
 
-/* The expression compiles. */
+/* The expression must already have compiled. */
 static bool check_outputs(camber_compiler *c, const camber_property *property, const json_t *json) {
     static const struct {
         const char *name;
@@ -124,7 +123,7 @@ static bool check_outputs(camber_compiler *c, const camber_property *property, c
 
 /* ---- Values ---- */
 
-/* A list that is no expression. */
+/* Whether it is a list and not an expression. */
 static bool is_list(const json_t *json) {
     return json_is_array(json) && !json_is_string(json_array_get(json, 0));
 }

@@ -1,4 +1,4 @@
-/* Checks constants of properties against the table: names and ranges. */
+/* Checks constants of properties: names of enums and ranges. */
 #include "style/compiler.h"
 #include <math.h>
 #include <stdio.h>
@@ -36,8 +36,8 @@ static const char *write_range(const camber_property *property, char range[RANGE
 static bool check_range(camber_compiler *c, const camber_property *property, const camber_value *value) {
     const bool ranged = property->low < 0.0 || property->high > 0.0;
     if (value->type == CAMBER_VALUE_NUMBER && !isfinite(value->number))
-        return camber_compiler_fail(c, "the number is %s; correct what makes it",
-                                    isnan(value->number) ? "none (NaN)" : "infinite");
+        return camber_compiler_fail(c, "the number is %s; correct the expression",
+                                    isnan(value->number) ? "NaN (not a number)" : "infinite");
     if (!ranged || value->type != CAMBER_VALUE_NUMBER ||
         (value->number >= property->low && value->number <= property->high))
         return true;
@@ -45,22 +45,23 @@ static bool check_range(camber_compiler *c, const camber_property *property, con
     return camber_compiler_fail(c, "%g is out of range; use %s", value->number, write_range(property, range));
 }
 
-/* Tells who checks a style what an odd list of dashes means, since SVG has another rule. It is drawn without a word. */
+/* Warns of an odd list of dashes while a style is being checked, because SVG has another rule. Otherwise it is drawn
+ * without a warning. */
 static void warn_of_odd_list(camber_compiler *c, const camber_property *property, size_t count) {
     if (property->type != CAMBER_TYPE_ARRAY || property->length > 0 || count % 2 == 0 || !c->checks)
         return;
     if (count == 1)
         camber_compiler_warn(c, "a list of one length is a solid line; add a gap, or leave the list out");
     else
-        camber_compiler_warn(c, "of an odd list of lengths the last dash runs on into the first; add a gap at its end "
-                                "if they should be apart");
+        camber_compiler_warn(c, "in a list of odd length, the last dash runs into the first; add a gap at the end to "
+                                "separate them");
 }
 
 bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value) {
     if (value->type == CAMBER_VALUE_STRING && property->values)
         return check_name(c, property, value->string);
     if (value->type == CAMBER_VALUE_ARRAY && property->length == 0 && value->count > CAMBER_DASH_LENGTHS_MAX)
-        camber_compiler_warn(c, "of %u lengths only the first %d are drawn; write fewer", value->count,
+        camber_compiler_warn(c, "there are %u lengths, and only the first %d are used; write fewer", value->count,
                              CAMBER_DASH_LENGTHS_MAX);
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
         if (!check_range(c, property, &value->items[i]))
@@ -70,24 +71,25 @@ bool camber_property_check(camber_compiler *c, const camber_property *property, 
     return check_range(c, property, value);
 }
 
-/* Warns of an output: when evaluated, a number out of range is clamped, and an unknown name becomes the default. */
+/* Warns of an output of an expression: when evaluated, a number out of range is clamped, and an unknown name is
+ * replaced by the default. */
 static void warn_of_output(camber_compiler *c, const camber_property *property, const json_t *json) {
     const bool ranged = property->low < 0.0 || property->high > 0.0;
     const double number = json_number_value(json);
     const char *name = json_string_value(json);
     char range[RANGE_SIZE];
-    if (c->held_count >= CAMBER_HELD_LIMIT)
+    if (c->constant_warnings >= CAMBER_CONSTANT_WARNING_LIMIT)
         return;
     if (ranged && json_is_number(json) && (number < property->low || number > property->high)) {
-        c->held_count++;
-        camber_compiler_warn(c, "%g is out of range and held to it; use %s", number, write_range(property, range));
+        c->constant_warnings++;
+        camber_compiler_warn(c, "%g is out of range and will be clamped; use %s", number, write_range(property, range));
     }
     if (!name || !property->values)
         return;
     for (size_t i = 0; property->values[i]; i++)
         if (strcmp(property->values[i], name) == 0)
             return;
-    c->held_count++;
+    c->constant_warnings++;
     camber_compiler_warn(c, "\"%.64s\" is not a %s; features with it are drawn with the default", name, property->name);
 }
 

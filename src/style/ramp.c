@@ -1,8 +1,8 @@
 /* Turns a line-gradient into a ramp of colour stops.
  *
- * Input: an expression of line-progress. Output: sorted stops. Stops stand where the expression's own curves have them,
- * and between these where it bends, so that straight colours between stops are as good as the expression.
- */
+ * Input: an expression of line-progress. Output: sorted stops. There are stops at the stops of the expression's own
+ * curves. Between these, more are added where the colour bends, so that linear interpolation between stops is as good
+ * as the expression. */
 #include "style/ramp.h"
 
 #include "style/evaluation.h"
@@ -10,24 +10,24 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A span between two stops is straight where samples inside it lie this close to the line between its ends,
- * premultiplied. */
+/* A span between two stops is straight if samples inside it are this close to the line between its ends, premultiplied.
+ */
 static const double TOLERANCE = 1.0 / 512.0;
-/* Shorter spans are as good as steps. */
+/* Shorter spans look like steps. */
 static const double SHORTEST = 1e-6;
-/* The most nodes that are evaluated and bytes that texts take, in all: some hundred milliseconds at most. */
+/* The most nodes that are evaluated and bytes of texts, in total: some hundred milliseconds. */
 static const double MOST_WORK = 2e7;
 enum { INSIDE = 15, GRID = 64, KNOWN_MAX = 1000, ENDS_MAX = KNOWN_MAX + 4 };
-/* The most stops that spans may take besides their own; a span that is halved takes twice as many. */
+/* The most stops for halved spans in addition to their own; each halving needs two more. */
 enum { ROOM = 64 };
 
 typedef struct sampler {
     const camber_expression *expression;
     camber_layer_ramp *ramp;
-    size_t capacity;   /* of its own stops */
-    bool failed;       /* no memory */
-    double cost, work; /* work of evaluations that may still be done */
-    size_t spans;      /* spans that still come: each needs two stops */
+    size_t capacity;   /* of ramp->stops */
+    bool failed;       /* out of memory */
+    double cost, work; /* cost of one evaluation, and the work that may still be done */
+    size_t spans;      /* spans still to be added; each needs two stops */
     const char **cause;
     double *failed_at;
 } sampler;
@@ -92,7 +92,7 @@ static void put_stop(sampler *s, const sample *at) {
     ramp->stops[ramp->count++] = stop;
 }
 
-/* Adds the stops from one position to just before another; the room that later spans need stays free. */
+/* Adds the stops from one position to just before another. Stops for later spans stay reserved. */
 static void put_span(sampler *s, double from, double to) {
     const sample first = sample_at(s, from), last = sample_at(s, to - 1e-7 * (to - from));
     const bool room = s->ramp->count + 2 * s->spans + ROOM <= CAMBER_RAMP_STOPS_MAX;
@@ -106,7 +106,7 @@ static void put_span(sampler *s, double from, double to) {
     put_stop(s, &(sample){to, last.color});
 }
 
-/* ---- Where spans end ---- */
+/* ---- The ends of spans ---- */
 
 static int compare_numbers(const void *left, const void *right) {
     const double a = *(const double *)left, b = *(const double *)right;
@@ -118,7 +118,7 @@ static bool is_curve(const camber_node *node) {
            node->reads_line_progress;
 }
 
-/* Whether the progress is read by curves alone, so that nothing happens between their stops. */
+/* Whether only curves read the progress, so that the colour is linear between their stops. */
 static bool is_plain(const camber_expression *e) {
     for (size_t i = 0; i < e->node_count; i++) {
         const camber_node *node = e->nodes + i;
@@ -130,8 +130,8 @@ static bool is_plain(const camber_expression *e) {
     return true;
 }
 
-/* The stops that the expression names, and a grid where it may have others: sorted, each once, and of very many those
- * that lie apart. */
+/* Lists the stops that the expression names, and a grid if the colour may bend elsewhere: sorted, without duplicates.
+ * If there are too many, stops that are close together are dropped. */
 static camber_status list_ends(const camber_expression *e, double *ends, size_t *count) {
     double *stops = camber_alloc(e->context, e->stop_count + GRID, sizeof *stops);
     size_t found = 0;
@@ -178,7 +178,7 @@ camber_status camber_layer_ramp_create(const camber_expression *expression, camb
                  .failed_at = failed_at};
     for (size_t i = 0; i + 1 < end_count && !s.failed; i++) {
         s.spans = end_count - 2 - i;
-        if (i == 0 || s.work > -MOST_WORK) /* past that the last colour stays */
+        if (i == 0 || s.work > -MOST_WORK) /* after that, the last colour continues */
             put_span(&s, ends[i], ends[i + 1]);
     }
     if (s.failed) {

@@ -4,8 +4,9 @@
 
 #include "style/style.h"
 
-/* Where the expression cannot be evaluated nothing is drawn; *cause is a phrase that says why it cannot at *failed_at,
- * and NULL where it can everywhere. Returns CAMBER_ERROR_MEMORY. Cost: bounded, whatever the expression. */
+/* Makes the stops of a line-gradient. If the expression cannot be evaluated at a position, nothing is drawn there;
+ * *cause is then a phrase with the reason at *failed_at, otherwise NULL. Returns CAMBER_ERROR_MEMORY. Cost: bounded for
+ * any expression. */
 camber_status camber_layer_ramp_create(const camber_expression *expression, camber_layer_ramp *ramp, const char **cause,
                                        double *failed_at);
 /* Makes a ramp with the same stops in other colours. */

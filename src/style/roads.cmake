@@ -1,17 +1,18 @@
-# The style of roads alone: a table of road classes and two palettes, written out as MapLibre style documents. The style
-# city has the same roads.
+# The style that draws only roads: a table of road classes and two palettes, written as MapLibre style documents. The
+# style city has the same roads.
 #
-# Three levels (tunnels, ground, bridges), each all its casings and then all its fills, minor classes first. The
-# casing and the fill of a class have the same filter, cap and join, so that they are tessellated once.
+# It has three levels (tunnels, ground, bridges). Each level has all of its casings first and then all of its fills,
+# minor classes first. The casing and the fill of a class have the same filter, cap and join, so that they are
+# tessellated once.
 
 set(road_zooms 4 9 12 14 16 18 22)
-# How much wider a casing is than its fill, CSS px at these zooms.
+# How much wider a casing is than its fill, in CSS px at these zooms.
 set(road_casing_ground 0.15 0.4 0.8 1.4 2.2 3.4 20)
 set(road_casing_tunnel 0.1 0.2 0.5 0.9 1.4 2 14)
 set(road_casing_bridge 0.2 0.5 1.1 2 3.2 5 32)
 
-# Widths of fills, CSS px at these zooms. From 18 on close to the ground's scale: a lane is 3 to 3.5 m, and at zoom 18
-# a metre is about 4 px at 40 degrees of latitude.
+# Widths of fills, in CSS px at these zooms. From zoom 18 on they are close to true scale: a lane is 3 to 3.5 m wide,
+# and at zoom 18 a metre is about 4 px at a latitude of 40 degrees.
 set(road_classes path track service minor tertiary secondary primary ramp trunk motorway)
 set(road_width_path      0.2  0.3  0.5 0.9 2.2 6  80)
 set(road_width_track     0.2  0.35 0.6 1.1 3   9  130)
@@ -24,7 +25,7 @@ set(road_width_ramp      0.3  0.6  1.4 3   9   27 400)
 set(road_width_trunk     0.7  1.4  2.9 5.6 15  44 640)
 set(road_width_motorway  0.8  1.6  3.3 6.4 17  50 720)
 
-# OpenStreetMap's highway (type in vector tiles made of it), and the Census Bureau's MTFCC.
+# The values of OpenStreetMap's highway (type in vector tiles made from it) and of the Census Bureau's MTFCC.
 set(road_values_path footway path cycleway bridleway steps corridor S1710 S1720 S1820 S1830)
 set(road_values_track track S1500)
 set(road_values_service service pedestrian busway bus_guideway raceway escape S1640 S1730 S1740 S1750 S1780)
@@ -36,8 +37,8 @@ set(road_values_ramp motorway_link trunk_link S1630)
 set(road_values_trunk trunk)
 set(road_values_motorway motorway S1100)
 
-# Palettes: fills near (close-ups) and far (whole cities, where minor roads are thinner than a pixel or two and need
-# contrast), and casings.
+# Palettes: colours of fills in close-ups, of fills in whole cities, where minor roads are thinner than a pixel or two
+# and need contrast, and of casings.
 set(light_paper "#f6f2ea")
 set(light_plain "#3f6595")
 set(light_plain_fill "#d8e0e9")
@@ -68,7 +69,7 @@ set(dark_ramp      "#e0a05a" "#c98e52" "#0b0e14")
 set(dark_trunk     "#efb267" "#e3a75f" "#0b0e14")
 set(dark_motorway  "#ffd08a" "#f8c67c" "#0b0e14")
 
-# ["interpolate", ...] over road_zooms; with a second list its numbers are added.
+# Makes ["interpolate", ...] over road_zooms. The numbers of an optional second list are added.
 function(road_width out widths)
   set(text "[\"interpolate\", [\"exponential\", 1.6], [\"zoom\"]")
   foreach(zoom width extra IN ZIP_LISTS road_zooms widths ARGN)
@@ -80,7 +81,7 @@ function(road_width out widths)
   set(${out} "${text}]" PARENT_SCOPE)
 endfunction()
 
-# Tunnels are halfway to the paper: paler without being translucent.
+# Makes a colour for a level. Tunnels are mixed halfway with the paper, so they are paler without being translucent.
 function(road_color out level paper near far)
   if(level STREQUAL "tunnel")
     set(near "[\"interpolate\", [\"linear\"], 0.45, 0, \"${paper}\", 1, \"${near}\"]")
@@ -96,8 +97,8 @@ function(road_color out level paper near far)
   endif()
 endfunction()
 
-# bridge and tunnel: "yes" and kinds of bridge and tunnel in OpenStreetMap, 0 and 1 in vector tiles. What is an area, as
-# a square that people walk on, has no road around it; the style city fills it.
+# Makes the filter of a level and a class. bridge and tunnel are "yes" or a kind of bridge or tunnel in OpenStreetMap,
+# and 0 or 1 in vector tiles. Areas, such as pedestrian squares, get no road around them; the style city fills them.
 function(road_filter out level class)
   list(JOIN road_values_${class} "\", \"" values)
   set(kind "[\"coalesce\", [\"get\", \"highway\"], [\"get\", \"type\"], [\"get\", \"MTFCC\"]]")
@@ -130,8 +131,8 @@ function(road_layer out theme level class part)
   endif()
   road_color(color ${level} ${${theme}_paper} ${near} ${far})
   road_filter(filter ${level} ${class})
-  # The bank of a bridge ends where the bridge does; anything else runs on into its neighbour: a bridge's roadway too,
-  # or the bank would show through the smooth edge of its end.
+  # The casing of a bridge ends where the bridge does. Everything else overlaps its neighbour, including the fill of a
+  # bridge; otherwise its casing would show through the smooth edge of its end.
   set(cap round)
   if(level STREQUAL "bridge" AND part STREQUAL "casing")
     set(cap butt)
@@ -157,8 +158,8 @@ function(road_layers out theme)
   set(${out} "${layers}" PARENT_SCOPE)
 endfunction()
 
-# Appends a layer of what no other layer takes: lines of one width at all zooms, or with round caps the dots of points,
-# which are some px wider.
+# Appends a layer for features that no other layer draws: lines, whose width is the same at all zooms, or points, drawn
+# as dots by round caps and some px wider.
 function(plain_lines out what filter more)
   set(layer ",\n    {\"id\": \"plain-${what}\", \"type\": \"line\", \"metadata\": {\"camber:plain\": true},\n")
   string(APPEND layer "     \"filter\": ${filter},\n")
@@ -168,7 +169,7 @@ function(plain_lines out what filter more)
   set(${out} "${${out}}${layer}" PARENT_SCOPE)
 endfunction()
 
-# Writes NAME-THEME.json into the folder: the layers behind a background.
+# Writes NAME-THEME.json into the folder: a background, followed by the layers.
 function(road_document NAME THEME LAYERS folder)
   set(PAPER ${${THEME}_paper})
   set(PLAIN_COLOR ${${THEME}_plain})

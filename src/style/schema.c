@@ -1,7 +1,7 @@
-/* Fills in a style's schema, and makes sets of features that are read by it.
+/* Fills in a style's schema, and makes sets of features for a style.
  *
- * Input: a style whose layers are compiled. Output: what the schema says of layers. Its properties, and who reads them,
- * are added while the compiler meets them. */
+ * Input: a style whose layers are compiled. Output: what the schema says about its layers. The compiler has already
+ * added the properties, and which layers read them. */
 #include "features/features.h"
 #include "style/style.h"
 
@@ -18,7 +18,7 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind) {
     return 0;
 }
 
-/* Finds what else than lines is drawn of the features. */
+/* Finds which geometries other than lines are drawn. */
 static void find_wants(const camber_style *style, camber_schema *schema) {
     schema->wants_polygons = schema->wants_areas = schema->wants_points = false;
     schema->wants_label_lines = schema->wants_label_areas = schema->wants_label_points = false;
@@ -58,7 +58,7 @@ static void list_source_layers(const camber_style *style, camber_schema *schema)
     schema->label_source_layer_count = ends[LABELLED] - ends[DRAWN];
 }
 
-/* Whether a layer that is not plain draws the feature. Lines draw points only in layers that are plain. */
+/* Whether any layer that is not plain draws the feature. Only plain line layers draw points. */
 static bool takes(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature) {
     for (size_t i = 0; i < style->layer_count; i++) {
@@ -85,7 +85,7 @@ camber_status camber_features_create(camber_context *context, const camber_style
 camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
     if (style->sprite_count || features->sprites || !camber_features_suit(features, &style->schema, style))
         return camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
-                           "style: reads other properties or images than the one before; read the files again");
+                           "style: it reads other properties or images than the previous style; read the files again");
     features->schema = &style->schema;
     features->style = style;
     return CAMBER_OK;

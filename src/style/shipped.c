@@ -1,4 +1,4 @@
-/* The styles that ship with camber, as documents: the build makes and embeds them (city.cmake, roads.cmake,
+/* The styles that ship with camber, as documents that the build makes and embeds (city.cmake, roads.cmake,
  * openmaptiles.cmake, transit.cmake). The first one is the built-in style. */
 #include "base/embedded.h"
 #include "camber_map.h"

@@ -1,13 +1,11 @@
-/* Mixes two colours: in sRGB, in CIELAB, or in CIELAB's cylinder LCh, which the specification calls hcl.
- *
- * CIELAB is over the white point D50, with sRGB's primaries adapted to D50 by Bradford. Lightness goes from 0 to 100.
+/* Mixes two colours: in sRGB, in CIELAB, or in LCh, the cylindrical form of CIELAB, which the specification calls hcl.
  */
 #include "style/spaces.h"
 
 #include <math.h>
 
-/* CIELAB over the white point D50, and its cylinder LCh; sRGB's primaries adapted to D50 by Bradford. Lightness goes
- * from 0 to 100. */
+/* CIELAB with the white point D50, and LCh. sRGB's primaries are adapted to D50 by Bradford's method. Lightness is 0 to
+ * 100. */
 typedef struct lab {
     double l, a, b;
 } lab;
@@ -41,7 +39,7 @@ static lab to_lab(camber_color color) {
     const double r = to_linear((double)color.r), g = to_linear((double)color.g), b = to_linear((double)color.b);
     const double y = to_lightness(0.2225045 * r + 0.7168786 * g + 0.0606169 * b);
     double x = y, z = y;
-    /* A grey has no hue, whatever the digits of the matrix add up to. */
+    /* A grey has no hue, even if rounding of the matrix products says otherwise. */
     if (color.r < color.g || color.r > color.g || color.g < color.b || color.g > color.b) {
         x = to_lightness((0.4360747 * r + 0.3850649 * g + 0.1430804 * b) / white_x);
         z = to_lightness((0.0139322 * r + 0.0971045 * g + 0.7141733 * b) / white_z);
@@ -73,7 +71,7 @@ static double mix_channel(double a, double b, double t) {
     return a + t * (b - a);
 }
 
-/* Mixes hues the shorter way round; a grey takes the other's hue, and black its chroma too. */
+/* Mixes hues the shorter way round. A grey takes the other colour's hue, and black also its chroma. */
 static camber_color mix_hcl(camber_color low, camber_color high, double t) {
     const hcl a = to_hcl(low), b = to_hcl(high);
     double h = isnan(a.h) ? b.h : a.h, c = mix_channel(a.c, b.c, t);

@@ -1,10 +1,10 @@
-/* Colours between two, in the spaces that people see as even. */
+/* Mixing two colours, also in colour spaces that look even to people. */
 #ifndef CAMBER_STYLE_SPACES_H
 #define CAMBER_STYLE_SPACES_H
 
 #include "style/expression.h"
 
-/* The colour at t from a (0) to b (1). */
+/* Returns the colour at t, from a (0) to b (1). */
 camber_color camber_color_mix(camber_color a, camber_color b, double t, camber_color_space space);
 
 #endif

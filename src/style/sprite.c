@@ -1,8 +1,7 @@
-/* Loads the sprites of a style: a sheet of pictures (PNG) and an index (JSON) that says where each picture is.
+/* Loads the sprites of a style: a sheet of pictures (PNG) and an index (JSON) with the position of each picture.
  *
- * Input: the style's sprite URLs and the ratio of device pixels. Output: images by name. A sprite that cannot be read
- * is warned of and left out, since a map without its patterns is better than no map.
- */
+ * Input: the style's sprite URLs and the ratio of device pixels. Output: images by name. A sprite on the network causes
+ * a warning and is left out, because a map without its patterns is better than no map. */
 #include "style/sprite.h"
 
 #include "features/features.h"
@@ -16,7 +15,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-enum { SIDE_MAX_PX = CAMBER_IMAGE_SIDE_MAX, AREA_MAX_PX = 1 << 24, MISSED_MAX = 16 };
+enum { SIDE_MAX_PX = CAMBER_IMAGE_SIDE_MAX, AREA_MAX_PX = 1 << 24, MISSING_MAX = 16 };
 
 /* ---- Sheets ---- */
 
@@ -28,12 +27,13 @@ static void premultiply(camber_sprite_sheet *sheet) {
     }
 }
 
-/* libpng's simplified interface, which returns errors as text and does not longjmp. */
+/* Uses libpng's simplified interface, which returns errors as text instead of calling longjmp. */
 static camber_status decode_png(camber_context *context, const char *path, png_image *image,
                                 camber_sprite_sheet *sheet) {
     if (image->width > SIDE_MAX_PX || image->height > SIDE_MAX_PX || image->width > AREA_MAX_PX / image->height)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%s: %u x %u px; cut it to %d px a side and 4096 x 4096 in all",
-                           path, image->width, image->height, (int)SIDE_MAX_PX);
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%s: %u x %u px are too large; cut it to at most %d px per side and 2^24 px in total", path,
+                           image->width, image->height, (int)SIDE_MAX_PX);
     image->format = PNG_FORMAT_RGBA;
     uint8_t *rgba = camber_alloc(context, (size_t)image->width * image->height, 4);
     if (!rgba)
@@ -94,12 +94,12 @@ static camber_status add_image(index_reader *r, const char *name, const json_t *
         !read_px(json, "width", 1.0, &image.width) || !read_px(json, "height", 1.0, &image.height) ||
         !(image.pixel_ratio >= 1e-3 && image.pixel_ratio <= 1e3))
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: /%.64s: expected x, y, width and height in whole pixels, these from 1 on, and a "
-                           "pixelRatio of 0.001 to 1000; correct them",
+                           "%s: /%.64s: expected x, y, width and height in whole pixels, width and height at least 1, "
+                           "and a pixelRatio from 0.001 to 1000; correct them",
                            r->path, name);
     if (image.x + image.width > sheet->width || image.y + image.height > sheet->height)
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: /%.64s: %u x %u px at %u, %u lie outside its sheet of %u x %u px; get the sprite again",
+                           "%s: /%.64s: %u x %u px at %u, %u are outside its sheet of %u x %u px; get the sprite again",
                            r->path, name, image.width, image.height, image.x, image.y, sheet->width, sheet->height);
     image.image = (camber_image){sheet->rgba + 4 * ((size_t)sheet->width * image.y + image.x), image.width,
                                  image.height, 4 * (size_t)sheet->width};
@@ -138,7 +138,7 @@ static camber_status load_index(index_reader *r) {
 
 /* ---- Sprites ---- */
 
-/* Puts a suffix behind the path. */
+/* Appends a suffix to the path. */
 static char *add_suffix(camber_context *context, const char *path, const char *tail) {
     const size_t size = strlen(path) + strlen(tail) + 1;
     char *made = camber_alloc(context, size, 1);
@@ -172,12 +172,12 @@ static camber_status find_file(camber_context *context, const char *path, const 
         return CAMBER_ERROR_MEMORY;
     struct stat about;
     *found = !camber_file_is_reached(context, whole) || stat(whole, &about) == 0 ||
-             (errno != ENOENT && errno != ENOTDIR); /* other errors are told when the file is read */
+             (errno != ENOENT && errno != ENOTDIR); /* other errors are reported when the file is read */
     camber_free(context, whole);
     return CAMBER_OK;
 }
 
-/* Loads the large form of a sprite, or the small one where it has no other. */
+/* Loads the large form of a sprite, or the small one if there is no large one. */
 static camber_status load_either_density(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path,
                                          double ratio) {
     bool large = false, small = false;
@@ -193,12 +193,13 @@ static camber_status load_either_density(camber_sprites *sprites, const camber_s
                        sprite->id, path);
 }
 
-/* Warns of a sprite that cannot be read: a map without its patterns is better than none. */
+/* Warns of a sprite on the network. */
 static void warn_left_out(const camber_sprites *sprites, const camber_style_sprite *sprite) {
-    camber_log(sprites->context, CAMBER_LOG_WARNING,
-               "sprite \"%s\": %s is a network address, and sprites are read from files only; what is drawn with its "
-               "images is left out: download it, and name the file",
-               sprite->id, sprite->url);
+    camber_log(
+        sprites->context, CAMBER_LOG_WARNING,
+        "sprite \"%s\": %s is a network address, and sprites are read only from files; everything drawn with its "
+        "images is left out; download it and name the file",
+        sprite->id, sprite->url);
 }
 
 static camber_status load_sprites(camber_sprites *sprites, const camber_style *style, const char *base_path,
@@ -252,9 +253,9 @@ void camber_sprites_destroy(camber_sprites *sprites) {
         camber_free(sprites->context, sprites->images[i].name);
     for (size_t i = 0; sprites->sheets && i < sprites->sheet_count; i++)
         camber_free(sprites->context, sprites->sheets[i].rgba);
-    for (size_t i = 0; i < sprites->missed_count; i++)
-        camber_free(sprites->context, sprites->missed[i]);
-    camber_free(sprites->context, sprites->missed);
+    for (size_t i = 0; i < sprites->missing_count; i++)
+        camber_free(sprites->context, sprites->missing[i]);
+    camber_free(sprites->context, sprites->missing);
     camber_free(sprites->context, sprites->images);
     camber_free(sprites->context, sprites->sheets);
     camber_free(sprites->context, sprites);
@@ -272,22 +273,22 @@ const camber_sprite_image *camber_sprites_find(const camber_sprites *sprites, co
     return low < sprites->image_count && strcmp(sprites->images[low].name, name) == 0 ? sprites->images + low : NULL;
 }
 
-bool camber_sprites_miss(camber_sprites *sprites, const char *name) {
-    for (size_t i = 0; i < sprites->missed_count; i++)
-        if (strcmp(sprites->missed[i], name) == 0)
+bool camber_sprites_warn_missing(camber_sprites *sprites, const char *name) {
+    for (size_t i = 0; i < sprites->missing_count; i++)
+        if (strcmp(sprites->missing[i], name) == 0)
             return true;
-    if (sprites->missed_count == MISSED_MAX)
+    if (sprites->missing_count == MISSING_MAX)
         return true;
     char *kept = camber_copy_string(sprites->context, name);
-    if (!kept || !camber_grow(sprites->context, &sprites->missed, &sprites->missed_capacity, sprites->missed_count + 1,
-                              sizeof *sprites->missed)) {
+    if (!kept || !camber_grow(sprites->context, &sprites->missing, &sprites->missing_capacity,
+                              sprites->missing_count + 1, sizeof *sprites->missing)) {
         camber_free(sprites->context, kept);
         return false;
     }
-    sprites->missed[sprites->missed_count++] = kept;
+    sprites->missing[sprites->missing_count++] = kept;
     camber_log(sprites->context, CAMBER_LOG_WARNING,
-               "sprite: there is no image \"%.64s\"; what is drawn with it is left out%s", name,
-               sprites->missed_count == MISSED_MAX ? ", and so are others that are not listed" : "");
+               "sprite: there is no image \"%.64s\"; everything drawn with it is left out%s", name,
+               sprites->missing_count == MISSING_MAX ? ", and so are others that are not listed" : "");
     return true;
 }
 
@@ -306,7 +307,7 @@ static bool has_patterns(const camber_style *style) {
 camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path) {
     camber_sprites *sprites = NULL;
     if (!(ratio >= 0.0 && isfinite(ratio)))
-        return camber_fail(features->context, CAMBER_ERROR_ARGUMENT, "sprites: a ratio of %g; choose one above 0",
+        return camber_fail(features->context, CAMBER_ERROR_ARGUMENT, "sprites: the ratio is %g; choose one above 0",
                            ratio);
     if (!has_patterns(features->style))
         return CAMBER_OK;

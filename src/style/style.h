@@ -1,4 +1,4 @@
-/* The compiled style, as the map layer uses it. */
+/* The compiled style, as src/map uses it. */
 #ifndef CAMBER_STYLE_STYLE_H
 #define CAMBER_STYLE_STYLE_H
 
@@ -11,7 +11,7 @@ typedef struct camber_expression camber_expression; /* expression.h */
 
 /* The images that patterns may name. */
 typedef struct camber_style_images {
-    uint32_t (*find)(void *user, const char *name); /* counted from 1. 0: there is none of this name */
+    uint32_t (*find)(void *user, const char *name); /* a number from 1. 0: there is no image of this name */
     void (*missing)(void *user, const char *name);
     void *user;
 } camber_style_images;
@@ -26,7 +26,7 @@ typedef enum camber_layer_kind {
 
 enum { CAMBER_LAYER_KINDS = CAMBER_LAYER_SYMBOL + 1 };
 
-/* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
+/* Layout and paint properties of layers, except visibility. properties.c describes each. */
 typedef enum camber_property_id {
     CAMBER_LINE_CAP,
     CAMBER_LINE_JOIN,
@@ -35,7 +35,7 @@ typedef enum camber_property_id {
     CAMBER_LINE_SORT_KEY,
     CAMBER_FILL_SORT_KEY,
     CAMBER_CIRCLE_SORT_KEY,
-    CAMBER_LAYER_GEOMETRY, /* layers that differ in those before share no polylines */
+    CAMBER_LAYER_GEOMETRY, /* layers that differ in a property above share no polylines */
     CAMBER_LINE_WIDTH = CAMBER_LAYER_GEOMETRY,
     CAMBER_LINE_ROUND_LIMIT,
     CAMBER_LINE_GAP_WIDTH,
@@ -99,35 +99,34 @@ typedef struct camber_layer_ramp {
 typedef struct camber_style_layer {
     char *id;
     camber_layer_kind kind;
-    char *source;              /* its name. NULL: any input */
-    uint32_t source_index;     /* into the style's sources; CAMBER_NO_SOURCE where they do not have it */
+    char *source;              /* the source's name. NULL: any input */
+    uint32_t source_index;     /* index among the style's sources; CAMBER_NO_SOURCE: it is not among them */
     char *source_layer;        /* NULL: any */
-    char *filter_key;          /* the filter as compact JSON, "" for none: equal keys draw equal features */
-    double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
+    char *filter_key;          /* the filter as compact JSON, "" for none: equal keys select the same features */
+    double min_zoom, max_zoom; /* drawn if min <= zoom < max; 0 and 24 by default; 24: no limit */
     bool visible;
-    camber_overlap overlap;    /* from its metadata, since no property of the specification says it */
-    bool plain;                /* from its metadata: draws what no other layer takes, and that alone */
+    camber_overlap overlap;    /* from its metadata, because the specification has no property for it */
+    bool plain;                /* from its metadata: draws only features that no other layer draws */
     camber_expression *filter; /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
-    camber_layer_ramp ramp, border_ramp; /* for line-gradient, and for its border where that has no colour */
+    camber_layer_ramp ramp, border_ramp;              /* of line-gradient, and of its border if that has no colour */
 } camber_style_layer;
 
 typedef struct camber_style_source {
     char *name;
-    char *type;    /* "geojson", "vector", ... */
-    json_t *json;  /* a reference to the source as it stands in the document */
-    char *missing; /* tells what to do where its file is missing, from the style's metadata camber:missing. NULL: not
-                      told */
-    camber_expression *filter; /* GeoJSON: selects the features that exist at all. NULL: everything */
+    char *type;                /* "geojson", "vector", ... */
+    json_t *json;              /* a reference to the source in the document */
+    char *missing;             /* advice for a missing file, from the style's metadata camber:missing. NULL: none */
+    camber_expression *filter; /* GeoJSON: selects the features that are read. NULL: all of them */
 } camber_style_source;
 
 /* A sprite of the style: pictures for patterns. */
 typedef struct camber_style_sprite {
-    char *id;  /* before the pictures' names, with a colon; "default": not named */
+    char *id;  /* precedes the pictures' names, with a colon; "default": no prefix */
     char *url; /* without @2x, .json and .png */
 } camber_style_sprite;
 
-/* Where the document looks from. */
+/* The document's own camera. */
 typedef struct camber_style_camera {
     double longitude, latitude, zoom, bearing_deg, pitch_deg; /* 0 by default */
 } camber_style_camera;
@@ -135,7 +134,7 @@ typedef struct camber_style_camera {
 struct camber_style {
     camber_context *context;
     uint64_t hash; /* of the document's text */
-    char *name;    /* the document's own; NULL: none */
+    char *name;    /* from the document; NULL: none */
     camber_style_camera camera;
     json_t *state; /* for ["global-state", key]: objects with a default. NULL: none */
     camber_style_sprite *sprites;
@@ -144,25 +143,26 @@ struct camber_style {
     size_t layer_count;
     camber_style_source *sources; /* in the document's order */
     size_t source_count;
-    camber_schema schema; /* what readers must know */
-    bool accumulates;     /* a line layer's lines are seen through each other, their ends too */
+    camber_schema schema; /* what readers of data need to know */
+    bool accumulates;     /* a line layer accumulates: overlapping lines and their ends show through each other */
 };
 
-/* The kinds of features, CAMBER_KIND_*, whose properties layers of a kind read; they draw no dots but those of layers
- * that are plain. */
+/* Returns the kinds of features, CAMBER_KIND_*, whose properties layers of a kind read. Only plain layers and circles
+ * draw points. */
 unsigned camber_style_layer_kinds(camber_layer_kind kind);
-/* Writes down in the schema what layers say of it: once all are read, and again when some become invisible. */
+/* Updates the schema's description of the layers. Call it after all layers have been read, and again if visibility
+ * changes. */
 void camber_style_describe_layers(camber_style *style);
 
-/* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */
+/* Whether the feature passes the source's filter. A filter that fails to evaluate is false. */
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);
 
-/* Whether the layer draws features of this class at this zoom (visible, zoom range, filter). A filter that
- * fails to evaluate is false. */
+/* Whether the layer draws features of this class at this zoom: visibility, zoom range and filter. A filter that fails
+ * to evaluate is false. */
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature);
-/* Whether it draws any feature of a type of geometry, "Polygon" or another one. */
+/* Whether the layer may draw features of a geometry type, such as "Polygon". */
 bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type);
-/* Whether it does at any zoom, by a filter that does not depend on it. */
+/* Whether the layer is visible and the feature passes its filter, evaluated at the layer's lowest zoom. */
 bool camber_style_layer_takes(const camber_style_layer *layer, const camber_feature_view *feature);
 
 typedef enum camber_translate_anchor {
@@ -170,15 +170,15 @@ typedef enum camber_translate_anchor {
     CAMBER_TRANSLATE_VIEWPORT,
 } camber_translate_anchor;
 
-/* Lengths that are drawn and left out in turn, in widths of the line. Of a list of odd length, the style's rule is that
- * its last dash runs on into its first; here a gap of 0 follows it. */
+/* Lengths that are alternately drawn and left out, in line widths. In a style, the last dash of an odd list runs into
+ * its first one; here the list ends with a gap of 0 instead. */
 typedef struct camber_layer_dashes {
     uint32_t count; /* even; 0: solid */
     float lengths[CAMBER_DASH_LENGTHS_MAX];
 } camber_layer_dashes;
 
-/* How a layer draws a feature at a zoom, in CSS px; the blur of circles is a share of the radius with the stroke.
- * Numbers are finite and within the specification's ranges. */
+/* How a layer draws a feature at a zoom, in CSS px. The blur of circles is a fraction of the radius including the
+ * stroke. Numbers are finite and within the specification's ranges. */
 typedef struct camber_layer_paint {
     camber_cap cap;
     camber_join join;
@@ -187,41 +187,41 @@ typedef struct camber_layer_paint {
     double width, gap_width, offset, blur;
     camber_color color; /* the alpha includes the opacity */
     double opacity;
-    double border_width;       /* of the line's own width, on each side */
-    camber_color border_color; /* the alpha includes the opacity; of a fill, its outline's colour */
-    double radius;             /* of a circle, without its stroke, which lies around it */
+    double border_width;       /* part of the line's own width, on each side */
+    camber_color border_color; /* the alpha includes the opacity; of a fill: its outline's colour */
+    double radius;             /* of a circle; its stroke is outside */
     double stroke_width, stroke_opacity;
     camber_color stroke_color; /* the alpha includes the opacity */
     camber_layer_dashes dashes;
     /* These are the same for all features. */
-    bool antialias; /* of a fill: it may have an outline */
+    bool antialias; /* of a fill: its outline may be drawn */
     double layer_opacity;
     double translate[2];
-    double trim[2]; /* the line is not drawn from one to the other: shares of its length */
+    double trim[2]; /* the line is not drawn between these fractions of its length */
     camber_translate_anchor translate_anchor;
     camber_translate_anchor pitch_scale, pitch_alignment; /* of circles */
 } camber_layer_paint;
 
-/* A layer at a zoom, with all properties evaluated that do not depend on features. */
+/* A layer at a zoom. All properties that do not depend on features have been evaluated. */
 typedef struct camber_layer_look {
     const camber_style_layer *layer;
     double zoom;
     camber_layer_paint paint;
-    bool reads_feature; /* there is a property that depends on features: */
+    bool reads_feature; /* some properties depend on features, namely by_feature */
     camber_property_set by_feature;
 } camber_layer_look;
 
 camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom);
 /* feature may be NULL for a background. A property that cannot be evaluated has its default. */
 camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const camber_feature_view *feature);
-/* Both at once. */
+/* Does both. */
 camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
                                             const camber_feature_view *feature);
-/* The border's colour for a line that gives none. */
+/* Returns the border's colour for a line that has none. */
 camber_color camber_border_color(camber_color color);
-/* Finds the image that a layer's pattern names at a zoom: a number from 1, as images->find gives it. 0: it names none,
- * or one that is missing, which images->missing is told. false: the layer has no pattern. feature may be NULL for a
- * background. */
+/* Finds the image that a layer's pattern names at a zoom. *image is a number from 1, as images->find returns it. 0: it
+ * names none, or a missing one, for which images->missing is called. false: the layer has no pattern. feature may be
+ * NULL for a background. */
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image);
 /* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */

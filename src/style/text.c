@@ -1,6 +1,5 @@
-/* Texts that an evaluation makes: they grow in its memory, and every kind of value can be added to one. Numbers and
- * JSON are written as ECMAScript writes them.
- */
+/* Texts that an evaluation makes. They grow in its memory, and any value can be appended. Numbers and JSON are written
+ * as in ECMAScript. */
 #include "style/text.h"
 
 #include <math.h>
@@ -37,7 +36,7 @@ static bool add(camber_text *text, const char *string) {
     return camber_text_add(text, string, strlen(string));
 }
 
-/* Digits take as long to find as this many bytes to copy. */
+/* Finding the digits of a number takes as long as copying this many bytes. */
 enum { NUMBER_WORK = 100 };
 
 static bool add_number(camber_text *text, double number) {
@@ -48,7 +47,7 @@ static bool add_number(camber_text *text, double number) {
     return add(text, digits);
 }
 
-/* Alpha is a float: it is written as the 255th that it is, or with six digits. */
+/* Alpha is a float. It is written as a multiple of 1/255 if it is one, otherwise with six digits. */
 static double true_alpha(double alpha) {
     const double step = round(alpha * 255.0) / 255.0;
     return fabs(alpha - step) < 1e-7 ? step : round(alpha * 1e6) / 1e6;
@@ -61,7 +60,7 @@ static bool add_color(camber_text *text, camber_color color) {
     return add(text, rgb) && add_number(text, true_alpha((double)color.a)) && add(text, ")");
 }
 
-/* ---- JSON, as ECMAScript's JSON.stringify ---- */
+/* ---- JSON, like ECMAScript's JSON.stringify ---- */
 
 static bool add_json(camber_text *text, const camber_value *value);
 
@@ -110,7 +109,7 @@ static bool add_array(camber_text *text, const camber_value *array) {
     return add(text, "]");
 }
 
-/* The recursion is limited, since documents and calls that make values have a limited depth. */
+/* The recursion is bounded, because documents and the calls that make values have a limited depth. */
 static bool add_json(camber_text *text, const camber_value *value) {
     switch (value->type) {
     case CAMBER_VALUE_NULL: return add(text, "null");

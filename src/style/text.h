@@ -10,11 +10,11 @@ typedef struct camber_text {
     size_t length, capacity;
 } camber_text;
 
-/* These return false where the memory or the time of an evaluation is used up, and set its cause. */
+/* These functions return false if the evaluation's memory or time is used up, and set its cause. */
 bool camber_text_add(camber_text *text, const char *bytes, size_t length);
 /* Adds the value as "to-string" writes it. */
 bool camber_text_add_value(camber_text *text, const camber_value *value);
-/* Puts a 0 behind the text and makes it a value. */
+/* Appends a 0 to the text and makes it a value. */
 bool camber_text_end(camber_text *text, camber_value *value);
 
 #endif

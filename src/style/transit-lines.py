@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Makes the lines that the style "transit" draws of OpenStreetMap's route relations: those that share a street get
-slots beside each other.
+"""Makes the lines that the style "transit" draws from OpenStreetMap's route relations. Routes that share a street get
+slots next to each other.
 
     osmium tags-filter city.osm.pbf r/route=subway,tram,light_rail,train,ferry -f osm -o routes.osm
     python3 transit-lines.py routes.osm > transit.geojson
 
-Ways that lie within 25 m of each other, as the tracks of a line do, become one, with the routes of all of them. A stretch
-with n routes gives n features, each with its "slot": 0 is the middle, and the routes stand in the order of mode, colour
-and number from the left of the stretch's direction to its right. Stretches that go on into each other have one
+Ways within 25 m of each other, such as the tracks of a line, are joined into one, with the routes of all of them. A
+stretch with n routes becomes n features, each with its "slot". Slot 0 is the middle; from left to right, as seen in the
+stretch's direction, the routes are ordered by mode, colour and number. Stretches that continue each other have the same
 direction. Only Python's standard library is needed."""
 
 import collections
@@ -17,14 +17,14 @@ import re
 import sys
 import xml.etree.ElementTree as xml
 
-SNAP_M = 25.0  # what lies closer is one street
-SHORT_M = 250.0  # what is together for less only crosses
-STEP_M = 20.0  # between points of a street
+SNAP_M = 25.0  # anything closer belongs to the same street
+SHORT_M = 250.0  # routes that are together for less only cross
+STEP_M = 20.0  # between vertices of a street
 SAMPLE_M = 5.0
 FINE_M = 0.1
-ALONG = math.cos(math.radians(30))  # what runs more across than this only crosses
+ALONG = math.cos(math.radians(30))  # ways at a larger angle to a street only cross it
 GROUPS = {"metro": ["subway", "light_rail", "monorail", "funicular"], "train": ["train"], "tram": ["tram"],
-          "ferry": ["ferry"], "bus": ["bus", "trolleybus"]}  # each has slots of its own
+          "ferry": ["ferry"], "bus": ["bus", "trolleybus"]}  # each group has its own slots
 GROUP_OF = {mode: group for group, modes in GROUPS.items() for mode in modes}
 ORDER = [mode for modes in GROUPS.values() for mode in modes]
 
@@ -36,13 +36,14 @@ def tags_of(element):
 
 
 def read(path):
-    """Ways as lists of places with their tags, and the ways of each route; both directions are one route."""
-    places, ways, routes = {}, {}, collections.defaultdict(set)
+    """Returns the ways, as lists of positions with their tags, and the ways of each route. Both directions of a line
+    are one route."""
+    nodes, ways, routes = {}, {}, collections.defaultdict(set)
     for element in xml.parse(path).getroot():
         if element.tag == "node" and element.get("lon"):
-            places[element.get("id")] = (float(element.get("lon")), float(element.get("lat")))
+            nodes[element.get("id")] = (float(element.get("lon")), float(element.get("lat")))
         elif element.tag == "way":
-            line = [places[nd.get("ref")] for nd in element.findall("nd") if nd.get("ref") in places]
+            line = [nodes[nd.get("ref")] for nd in element.findall("nd") if nd.get("ref") in nodes]
             if len(line) > 1:
                 ways[element.get("id")] = (line, tags_of(element))
         elif element.tag == "relation":
@@ -67,22 +68,22 @@ def order_of(route):
 
 
 class Streets:
-    """A graph of places STEP_M apart; its edges know the routes along them."""
+    """A graph of vertices STEP_M apart. Its edges have the routes along them."""
 
     def __init__(self):
         self.at, self.heading, self.weight, self.cells = [], [], [], collections.defaultdict(list)
-        self.edges = {}  # (smaller place, larger place): [routes, length in tunnels, length]
+        self.edges = {}  # (smaller vertex, larger vertex): [routes, samples in tunnels, samples]
 
     def near(self, x, y, heading, without):
         best, best_m = None, SNAP_M
         cell_x, cell_y = int(x // SNAP_M), int(y // SNAP_M)
         for i in range(cell_x - 1, cell_x + 2):
             for j in range(cell_y - 1, cell_y + 2):
-                for place in self.cells[i, j]:
-                    far_m = math.dist(self.at[place], (x, y))
-                    along = heading is None or abs(math.cos(self.heading[place] - heading)) > ALONG
-                    if far_m < best_m and along and place not in without:
-                        best, best_m = place, far_m
+                for vertex in self.cells[i, j]:
+                    far_m = math.dist(self.at[vertex], (x, y))
+                    along = heading is None or abs(math.cos(self.heading[vertex] - heading)) > ALONG
+                    if far_m < best_m and along and vertex not in without:
+                        best, best_m = vertex, far_m
         return best
 
     def new(self, x, y, heading):
@@ -92,11 +93,11 @@ class Streets:
         self.cells[int(x // SNAP_M), int(y // SNAP_M)].append(len(self.at) - 1)
         return len(self.at) - 1
 
-    def draw_to(self, place, x, y):
-        """The middle of all that has come to lie here; the cell stays, as it is but a little off."""
-        n = self.weight[place]
-        self.at[place] = ((self.at[place][0] * n + x) / (n + 1), (self.at[place][1] * n + y) / (n + 1))
-        self.weight[place] = n + 1
+    def draw_to(self, vertex, x, y):
+        """Moves a vertex to the mean of its positions. It stays in its cell, which is accurate enough."""
+        n = self.weight[vertex]
+        self.at[vertex] = ((self.at[vertex][0] * n + x) / (n + 1), (self.at[vertex][1] * n + y) / (n + 1))
+        self.weight[vertex] = n + 1
 
     def add(self, line, routes, in_tunnel):
         own, last, last_own = set(), None, None
@@ -105,20 +106,20 @@ class Streets:
             (ax, ay), (bx, by) = samples[max(number - 3, 0)], samples[min(number + 3, len(samples) - 1)]
             heading = math.atan2(by - ay, bx - ax)
             is_end = number in (0, len(samples) - 1)
-            place = self.near(x, y, None if is_end else heading, own)
-            if place is None:
+            vertex = self.near(x, y, None if is_end else heading, own)
+            if vertex is None:
                 if last_own is not None and math.dist(self.at[last_own], (x, y)) < (1 if is_end else STEP_M):
                     continue
-                place = last_own = self.new(x, y, heading)
-                own.add(place)
-            elif place != last:
-                self.draw_to(place, x, y)
-            if last is not None and place != last:
-                edge = self.edges.setdefault((min(last, place), max(last, place)), [set(), 0, 0])
+                vertex = last_own = self.new(x, y, heading)
+                own.add(vertex)
+            elif vertex != last:
+                self.draw_to(vertex, x, y)
+            if last is not None and vertex != last:
+                edge = self.edges.setdefault((min(last, vertex), max(last, vertex)), [set(), 0, 0])
                 edge[0].update(routes)
                 edge[1] += in_tunnel
                 edge[2] += 1
-            last = place
+            last = vertex
 
 
 def sampled(line):
@@ -130,35 +131,35 @@ def sampled(line):
 
 
 def trace(pieces):
-    """Lists of places along which routes stay the same; a piece is two places, routes and whether it is a tunnel. What
-    shares no route with a piece only crosses it."""
+    """Joins pieces into lists of vertices along which the routes stay the same. A piece has two vertices, its routes,
+    and whether it is a tunnel. Pieces that share no route only cross each other."""
     around = collections.defaultdict(list)
     for number, (a, b, _, _) in enumerate(pieces):
         around[a].append(number)
         around[b].append(number)
 
-    def next_of(number, place):
+    def next_of(number, vertex):
         kind = pieces[number][2:]
-        others = [n for n in around[place] if n != number and pieces[n][2] & kind[0]]
+        others = [n for n in around[vertex] if n != number and pieces[n][2] & kind[0]]
         return others[0] if len(others) == 1 and pieces[others[0]][2:] == kind else None
 
-    def other_end(number, place):
-        return pieces[number][0] if pieces[number][1] == place else pieces[number][1]
+    def other_end(number, vertex):
+        return pieces[number][0] if pieces[number][1] == vertex else pieces[number][1]
 
     done, lines = set(), []
     for first in range(len(pieces)):
         if first in done:
             continue
-        number, place = first, pieces[first][0]  # back to where the stretch begins, or around a ring
-        while (before := next_of(number, place)) is not None and before != first:
-            number, place = before, other_end(before, place)
-        line, numbers = [place], []
+        number, vertex = first, pieces[first][0]  # go back to the start of the stretch, or once around a ring
+        while (before := next_of(number, vertex)) is not None and before != first:
+            number, vertex = before, other_end(before, vertex)
+        line, numbers = [vertex], []
         while number is not None and number not in done:
             done.add(number)
             numbers.append(number)
-            place = other_end(number, place)
-            line.append(place)
-            number = next_of(number, place)
+            vertex = other_end(number, vertex)
+            line.append(vertex)
+            number = next_of(number, vertex)
         lines.append((line, pieces[first][2:], numbers))
     return lines
 
@@ -182,7 +183,7 @@ def stretches(streets):
 
 
 def direct(lines, streets):
-    """Turns stretches so that one goes on where another one that shares a route and runs straight on ends."""
+    """Gives stretches that share a route and continue each other straight on the same direction."""
     ends = collections.defaultdict(list)
     for number, (line, _, _) in enumerate(lines):
         ends[line[0]].append((number, 0))
@@ -208,35 +209,35 @@ def direct(lines, streets):
                     if other in turned or not lines[other][1][0] & lines[number][1][0]:
                         continue
                     turn = math.cos(heading(number, end) - heading(other, other_end))
-                    if turn < 0:  # straight on: both lead away from their place
+                    if turn < 0:  # straight on, because both headings point away from the vertex
                         turned[other] = turned[number] if end != other_end else not turned[number]
                         queue.append(other)
     return [(line[::-1] if turned[n] else line, kind) for n, (line, kind, _) in enumerate(lines)]
 
 
 def smooth(streets):
-    """Each place moves towards the middle of the two neighbours that it lies between the most."""
+    """Moves each vertex towards the middle of the two neighbours that it is most nearly in line with."""
     around = collections.defaultdict(list)
     for a, b in sorted(streets.edges):
         around[a].append(b)
         around[b].append(a)
     for _ in range(6):
         at = list(streets.at)
-        for place, others in around.items():
-            turns = [(turn_at(at, a, place, b), a, b) for i, a in enumerate(others) for b in others[:i]]
+        for vertex, others in around.items():
+            turns = [(turn_at(at, a, vertex, b), a, b) for i, a in enumerate(others) for b in others[:i]]
             if turns and min(turns)[0] < -0.5:
                 _, a, b = min(turns)
-                streets.at[place] = tuple((at[a][i] + 2 * at[place][i] + at[b][i]) / 4 for i in (0, 1))
+                streets.at[vertex] = tuple((at[a][i] + 2 * at[vertex][i] + at[b][i]) / 4 for i in (0, 1))
 
 
 def turn_at(at, a, b, c):
-    """The cosine of the angle at b: -1 is straight on."""
+    """Returns the cosine of the angle at b. -1 is straight on."""
     ux, uy, vx, vy = at[a][0] - at[b][0], at[a][1] - at[b][1], at[c][0] - at[b][0], at[c][1] - at[b][1]
     return (ux * vx + uy * vy) / (math.hypot(ux, uy) * math.hypot(vx, vy) or 1)
 
 
 def rounded(points):
-    """Evened out, corners cut twice, without what lies within FINE_M of a straight line."""
+    """Returns a line that is smoothed, has its corners cut twice, and lacks points within FINE_M of a straight line."""
     for _ in range(6):
         points = points[:1] + [tuple((a[i] + 2 * b[i] + c[i]) / 4 for i in (0, 1))
                                for a, b, c in zip(points, points[1:], points[2:])] + points[-1:]
@@ -277,7 +278,7 @@ def features(ways, routes):
             streets.add([(x * east_m, y * north_m) for x, y in line], along[way], in_tunnel)
         smooth(streets)
         for line, (here, in_tunnel) in direct(stretches(streets), streets):
-            points = rounded([streets.at[place] for place in line])
+            points = rounded([streets.at[vertex] for vertex in line])
             coordinates = [[round(x / east_m, 7), round(y / north_m, 7)] for x, y in points]
             for i, route in enumerate(sorted(here, key=order_of)):
                 properties = {key: value for key, value in route._asdict().items() if value}
@@ -295,7 +296,7 @@ def main():
     except OSError as error:
         sys.exit(f"{path}: cannot be read: {error.strerror}; check the path and its permissions")
     except (xml.ParseError, TypeError, ValueError) as error:
-        sys.exit(f"{path}: no OpenStreetMap XML: {error}; make it with osmium tags-filter ... -f osm")
+        sys.exit(f"{path}: not OpenStreetMap XML: {error}; make it with osmium tags-filter ... -f osm")
     json.dump({"type": "FeatureCollection", "features": list(features(ways, routes))}, sys.stdout,
               ensure_ascii=False, separators=(",", ":"))
 

@@ -1,8 +1,9 @@
-# A style for lines of public transport, side by side where they share a street: two palettes and widths over
+# A style for lines of public transport, side by side if they share a street: two palettes and widths for
 # transit.json.in.
 
 set(transit_zooms 9 12 14 16 19)
-# CSS px at these zooms: lines, how far their middles lie apart, and what their casing has beyond the outermost ones.
+# CSS px at these zooms: the width of lines, the distance between their middles, and how far their casing extends
+# beyond the outermost lines.
 set(transit_width 1.2 2.4 4 6 12)
 set(transit_pitch 1.5 3 5 7.5 15)
 set(transit_border 0.6 1 1.5 2 3)
@@ -24,7 +25,7 @@ set(transit_dark_bus "#59636f")
 set(transit_dark_ferry "#466f8a")
 set(transit_dark_tunnel "rgba(18, 22, 29, 0.65)")
 
-# A curve along the zoom: value(factor, a list's number, another's or 0).
+# Makes a curve over the zoom: factor times the numbers of a list, plus those of another list or 0.
 function(transit_curve out form widths)
   set(text "[\"interpolate\", [\"exponential\", 1.4], [\"zoom\"]")
   foreach(zoom width extra IN ZIP_LISTS transit_zooms ${widths} ARGN)
@@ -42,7 +43,7 @@ function(transit_curve out form widths)
   set(${out} "${text}]" PARENT_SCOPE)
 endfunction()
 
-# Writes transit-theme.json into the folder.
+# Writes transit-THEME.json into the folder.
 function(transit_style theme folder)
   set(THEME ${theme})
   transit_curve(WIDTH plain transit_width)

@@ -1,7 +1,6 @@
-/* Types of expressions: making them, comparing them and naming them.
+/* Types of expressions: makes, compares and names them.
  *
- * Arrays carry the type of their items and their length, up to three levels deep; deeper ones hold any value.
- */
+ * Arrays have the type of their items and their length, up to three levels deep. Deeper ones contain any value. */
 #include "style/typing.h"
 
 #include <stdio.h>
@@ -32,8 +31,8 @@ camber_typing camber_typing_merge(camber_typing a, camber_typing b) {
     return camber_typing_of(a.type == b.type && a.type != CAMBER_TYPE_ARRAY ? a.type : CAMBER_TYPE_VALUE);
 }
 
-/* The type of an array. The walk ends at the first item whose type differs, since the items then have no common
- * type. */
+/* Returns the type of an array. The walk ends at the first item whose type differs, because the items then have no
+ * common type. */
 static camber_typing typing_of_items(const camber_value *array, unsigned depth) {
     camber_typing item = camber_typing_of(CAMBER_TYPE_VALUE);
     for (uint32_t i = 0; i < array->count; i++) {

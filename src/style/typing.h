@@ -1,11 +1,11 @@
-/* The types that expressions have before they are evaluated. */
+/* The static types of expressions. */
 #ifndef CAMBER_STYLE_TYPING_H
 #define CAMBER_STYLE_TYPING_H
 
 #include "features/value.h"
 
 typedef enum camber_type {
-    CAMBER_TYPE_VALUE = 0, /* known only when evaluated */
+    CAMBER_TYPE_VALUE = 0, /* known only during evaluation */
     CAMBER_TYPE_NULL,
     CAMBER_TYPE_BOOL,
     CAMBER_TYPE_NUMBER,
@@ -13,17 +13,17 @@ typedef enum camber_type {
     CAMBER_TYPE_COLOR,
     CAMBER_TYPE_ARRAY,
     CAMBER_TYPE_OBJECT,
-    CAMBER_TYPE_IMAGE,    /* a string that names one */
+    CAMBER_TYPE_IMAGE,    /* a string that names an image */
     CAMBER_TYPE_COLLATOR, /* how strings are compared; its value is a number */
     CAMBER_TYPE_ERROR,    /* has no value, so it fits anywhere */
 } camber_type;
 
-/* Arrays that are nested deeper are arrays of values. */
+/* Arrays nested more deeply are arrays of values. */
 #define CAMBER_ARRAY_DEPTH 3
 #define CAMBER_ANY_LENGTH UINT32_MAX
 
 typedef struct camber_typing {
-    camber_type type;                     /* an array where depth is not 0 */
+    camber_type type;                     /* an array if depth is not 0 */
     camber_type item;                     /* item type of the innermost array */
     uint32_t depth;                       /* how deep arrays are nested; 0: no array */
     uint32_t lengths[CAMBER_ARRAY_DEPTH]; /* the outermost first */
@@ -33,20 +33,21 @@ static inline camber_typing camber_typing_of(camber_type type) {
     return (camber_typing){.type = type};
 }
 camber_typing camber_typing_array(camber_typing item, uint32_t length);
-/* The type of an array's items. */
+/* Returns the type of an array's items. */
 camber_typing camber_typing_item(camber_typing array);
-/* The type of an evaluated value. */
+/* Returns the type of an evaluated value. */
 camber_typing camber_typing_of_value(const camber_value *value);
 
-/* The common type of two items: their type where it is one, else any value. Two arrays have none. */
+/* Returns the common type of two items: their type if it is the same, otherwise any value. Arrays have no common type.
+ */
 camber_typing camber_typing_merge(camber_typing a, camber_typing b);
-/* Whether a value of type actual may stand where expected is wanted. */
+/* Whether a value of type actual may be used where expected is required. */
 bool camber_typing_fits(camber_typing expected, camber_typing actual);
 
-/* "array<number, 2>": the specification's name. */
+/* Writes the specification's name of a type, as "array<number, 2>". */
 #define CAMBER_TYPING_TEXT_SIZE 96
 const char *camber_typing_write(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]);
-/* "a number", "an array<number, 2>". */
+/* Returns the name of a type in messages, as "a number" or "an array<number, 2>". */
 const char *camber_typing_name(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]);
 
 #endif

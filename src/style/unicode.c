@@ -1,12 +1,11 @@
-/* Unicode by hand, for expressions: reading UTF-8, upper and lower case, and the order of a collator.
+/* Unicode for expressions, without a library: reading UTF-8, upper and lower case, and the order of a collator.
  *
- * It knows the scripts that maps are mostly labelled in and that have case or diacritics: Latin, Greek, Cyrillic,
- * Armenian, Georgian. Other letters have one case, and are ordered by code point.
+ * It knows the scripts that are common on maps and have case or diacritics: Latin, Greek, Cyrillic, Armenian, Georgian.
+ * Other letters have one case, and are ordered by code point.
  *
- * A library would know all scripts. ICU is 36 MB installed, and libcamber-map does not link it: only GDAL brings it,
- * late, after the style is compiled. libunistring is 1.8 MB and has no collation by base letters without a locale of
- * the process. Filters on roads need neither, so these tables stay (Debian 12, 2026-11).
- */
+ * A library would know all scripts. ICU takes 36 MB installed, and libcamber-map does not link it: only GDAL loads it,
+ * after the style has been compiled. libunistring takes 1.8 MB, and cannot collate by base letters without a locale of
+ * the process. Filters on roads need neither, so these tables are enough (Debian 12, 2026-11). */
 #include "style/unicode.h"
 
 #include <string.h>
@@ -41,7 +40,7 @@ size_t camber_unicode_write(uint32_t code, char bytes[4]) {
 
 /* ---- Case ---- */
 
-/* Small letters from first to last, every step-th, and the distance to their capitals. */
+/* Every step-th lower-case letter from first to last, and the distance to its upper-case letter. */
 typedef struct range {
     uint16_t first, last, step;
     int16_t to_capital;
@@ -60,7 +59,7 @@ static const range ranges[] = {
 enum { SHARP_S = 0xdf, CAPITAL_SHARP_S = 0x1e9e, DOTLESS_I = 0x131, DOTTED_CAPITAL_I = 0x130, DOT_ABOVE = 0x307 };
 
 size_t camber_unicode_upper(uint32_t code, uint32_t upper[2]) {
-    /* Small letters whose capitals have another small letter. */
+    /* Lower-case letters whose upper-case letter has a different lower-case letter. */
     static const uint16_t odd[][2] = {{0xb5, 0x39c}, {DOTLESS_I, 'I'}, {0x17f, 'S'}, {0x3c2, 0x3a3}};
     upper[0] = code;
     if (code == SHARP_S) {
@@ -93,8 +92,8 @@ size_t camber_unicode_lower(uint32_t code, uint32_t lower[2]) {
 
 /* ---- Order ---- */
 
-/* Base letters of small letters: one for each code from e0, one for each pair from 100. A blank: the letter is its
- * own base. */
+/* Base letters of lower-case letters: latin_1 has one for each code from e0, latin_a one for each pair from 100. A
+ * blank: the letter is its own base. */
 static const char latin_1[] = "aaaaaa ceeeeiiii nooooo  uuuuy y";
 static const char latin_a[] = "aaaccccd eeeeeggggh iiii  jk";
 
@@ -103,7 +102,7 @@ typedef struct base_range {
     char base[3];
 } base_range;
 
-/* Base letters of small letters that the two rows above do not cover. */
+/* Base letters of lower-case letters that the two strings above do not cover. */
 static const base_range bases[] = {
     {0x13a, 0x13e, "l"},        {0x144, 0x148, "n"},        {0x14d, 0x151, "o"},        {0x155, 0x159, "r"},
     {0x15b, 0x161, "s"},        {0x163, 0x165, "t"},        {0x169, 0x173, "u"},        {0x175, 0x175, "w"},
@@ -125,7 +124,7 @@ static uint32_t base_of(uint32_t small) {
     return base;
 }
 
-/* A letter's properties in the order in which they are compared. */
+/* A letter's properties, in the order in which they are compared. */
 typedef struct weight {
     uint32_t base;
     uint32_t mark;
@@ -136,7 +135,7 @@ static bool is_mark(uint32_t code) {
     return code >= 0x300 && code <= 0x36f;
 }
 
-/* Blanks and punctuation stand before digits, and these before letters. */
+/* Orders blanks and punctuation before digits, and digits before letters. */
 static uint32_t rank(uint32_t base) {
     if (base >= 0x80)
         return base + 1024;
@@ -144,7 +143,7 @@ static uint32_t rank(uint32_t base) {
     return base + group;
 }
 
-/* Reads the next letter with the marks behind it; base is 0 at the end. */
+/* Reads the next letter and the combining marks after it. base is 0 at the end. */
 static const char *next_weight(const char *text, weight *made) {
     uint32_t code, small[2];
     *made = (weight){0};

@@ -1,3 +1,4 @@
+/* Resolves URLs of a style: strips the scheme, decodes escapes, and joins relative paths to a folder. */
 #include "style/url.h"
 
 #include <ctype.h>
@@ -17,7 +18,7 @@ static int hex_digit(char c) {
     return isdigit((unsigned char)c) ? c - '0' : isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
 }
 
-/* Decodes %20 and its like; %00 is left as it stands. */
+/* Decodes %20 and the like. %00 stays as it is. */
 static void decode_escapes(char *text) {
     char *out = text;
     for (; *text; text++) {
@@ -48,7 +49,7 @@ bool camber_url_is_remote(const char *text) {
     return starts_with(text, "http://") || starts_with(text, "https://") || starts_with(text, "mapbox://");
 }
 
-/* rest: behind mbtiles:// and its like. */
+/* rest: the part after mbtiles:// or pmtiles://. */
 static camber_status fail_scheme(camber_context *context, const char *what, const char *text, const char *rest) {
     if (camber_url_is_remote(rest))
         return camber_fail(context, CAMBER_ERROR_INPUT,
@@ -80,7 +81,7 @@ camber_status camber_url_resolve(camber_context *context, const char *what, cons
         return CAMBER_ERROR_MEMORY;
     if (is_file)
         decode_escapes(made.path);
-    /* Tiles within an archive are named so elsewhere. */
+    /* This is how other programs name the tiles inside an archive. */
     static const char tail[] = "/{z}/{x}/{y}";
     const size_t length = strlen(made.path), cut = sizeof tail - 1;
     if (made.kind != CAMBER_URL_FILE && length > cut && strcmp(made.path + length - cut, tail) == 0)

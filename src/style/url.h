@@ -6,8 +6,8 @@
 
 typedef enum camber_url_kind {
     CAMBER_URL_FILE = 0,
-    CAMBER_URL_MBTILES, /* named by mbtiles:// */
-    CAMBER_URL_PMTILES, /* named by pmtiles:// */
+    CAMBER_URL_MBTILES, /* after mbtiles:// */
+    CAMBER_URL_PMTILES, /* after pmtiles:// */
 } camber_url_kind;
 
 typedef struct camber_url {
@@ -15,12 +15,12 @@ typedef struct camber_url {
     char *path; /* freed with camber_free */
 } camber_url;
 
-/* Whether the URL leads to the network, where nothing is read from. */
+/* Whether the URL is on the network, from which nothing is read. */
 bool camber_url_is_remote(const char *text);
 
-/* file://, mbtiles://, pmtiles:// and plain paths; relative ones start from the folder of base_path, a file (NULL: the
- * working folder). what names the source in messages. Returns CAMBER_ERROR_INPUT (another scheme; the network),
- * CAMBER_ERROR_MEMORY. */
+/* Resolves file://, mbtiles://, pmtiles:// and plain paths. Relative ones start from the folder of base_path, which is
+ * a file (NULL: the working folder). what names the source in messages. Returns CAMBER_ERROR_INPUT (another scheme, or
+ * the network), CAMBER_ERROR_MEMORY. */
 camber_status camber_url_resolve(camber_context *context, const char *what, const char *text, const char *base_path,
                                  camber_url *url);
 

@@ -77,7 +77,7 @@ camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
     for (size_t s = 0; s < whole->set_count; s++)
         for (size_t k = 0; k < whole->sets[s].pair_count && camber_plan_is_area(whole, whole->sets + s); k++)
             fills = fills || plan->reach_px[plan->pair_rows[whole->sets[s].first_pair + k]] >= 0.0f;
-    return !fills || camber_triangulator_is_here() ? CAMBER_OK : camber_triangulator_tell_missing(plan->context);
+    return !fills || camber_triangulator_is_available() ? CAMBER_OK : camber_triangulator_fail_missing(plan->context);
 }
 
 /* Puts what was filled behind the triangles of the tile. */

@@ -284,7 +284,7 @@ subprocess.run([TOOL, "render", "-q", "--style", "-", "-o", "one.png", "--size",
                input=style('"type":"geojson","data":' + LINE).encode())
 STYLE_OUTSIDE = style(DATA % "../secret.geojson")
 write("secret.geojson", "SECRET:x:0:0:" + LINE)
-styled("a file that is no map", lambda: write("style.json", STYLE_OUTSIDE), "no JSON at line 1")
+styled("a file that is no map", lambda: write("style.json", STYLE_OUTSIDE), "invalid JSON at line 1")
 for name, path in (("there", "../secret.geojson"), ("not there", "../none"), ("a link", "link")):
     styled("beyond the root, " + name, lambda: (os.symlink("../secret.geojson", "link"), write(
         "style.json", style(DATA % path))), "a style may name files only there", options=("--root", "."))

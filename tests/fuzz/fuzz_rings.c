@@ -438,7 +438,7 @@ static bool fill_rings(fuzz_run *run, camber_triangulator *triangulator, const c
  * fuzzer made, one. Another way of sweeping is right about the same rings; camber's own part would be wrong in both. */
 static void use_triangles(fuzz_run *run, const camber_polylines *made, const camber_ring_window *window) {
     camber_triangulator *triangulator = NULL;
-    if (made->stats.kept_segments > TRIANGULATED_MOST || !camber_triangulator_is_here() ||
+    if (made->stats.kept_segments > TRIANGULATED_MOST || !camber_triangulator_is_available() ||
         !fuzz_done(run, camber_triangulator_create(run->context, &triangulator)))
         return;
     if (!fill_rings(run, triangulator, made, window, false))

@@ -816,7 +816,7 @@ expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geoj
 says '^camber: info: style: no layer draws 1 of the 2 features$'
 echo "{\"type\":\"FeatureCollection\",\"features\":[$rail,${line/primary/nothing of a road}]}" >"$tmp/in/undrawn.geojson"
 expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64 --style "$tmp/in/primary.json"
-says '^camber: warning: nothing is drawn: 2 lines of [0-9]* bytes read, but no layer of the style draws any of it: it goes by highway; name a style'
+says '^camber: warning: nothing is drawn: 2 lines of [0-9]* bytes read, but no layer of the style draws any of it: it reads highway; choose a style'
 [ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
 rm -f a.png
 point='{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}}'
@@ -1016,7 +1016,7 @@ printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\352`\0\0\352`\b\006\0\0\0\200\322uB\0\
 echo '{"a": {"x": 0, "y": 0, "width": 60000, "height": 60000, "pixelRatio": 1}}' >"$tmp/in/vast.json"
 sed 's/"version": 8,/& "sprite": "vast",/; s/"line-width": 3/"line-pattern": "a"/' "$tmp/in/own.json" >"$tmp/in/pattern.json"
 expect 65 "a style whose sprite is too large" render --style "$tmp/in/pattern.json" -o a.png
-says '60000 x 60000 px; cut it'
+says '60000 x 60000 px are too large; cut it'
 sed 's/"vast"/"none"/' "$tmp/in/pattern.json" >"$tmp/in/nosprite.json"
 expect 66 "a style whose sprite is not there" render --style "$tmp/in/nosprite.json" -o a.png
 says 'sprite "default": .*/none.png: no such file; check the path in the style'

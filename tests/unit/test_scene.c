@@ -612,9 +612,9 @@ static void test_fill_patterns(void **state) {
         camber_plan_patterns_move(&plan.patterns, &view);
     }
     camber_plan_destroy(&plan);
-    for (size_t i = 0; i < sprites.missed_count; i++)
-        camber_free(t.context, sprites.missed[i]);
-    camber_free(t.context, sprites.missed);
+    for (size_t i = 0; i < sprites.missing_count; i++)
+        camber_free(t.context, sprites.missing[i]);
+    camber_free(t.context, sprites.missing);
     close_town(&t);
 }
 

@@ -575,7 +575,7 @@ static void test_circle(void **state) {
     /* How overlaps come together is not the style's choice, and a layer that nobody sees wants nothing. */
     assert_int_equal(parse(&f, CIRCLE_LAYER("\"metadata\": {\"camber:overlap\": \"unite\"}")), CAMBER_OK);
     assert_int_equal(f.warning_count, 1);
-    assert_non_null(strstr(f.warning, "circles are drawn one over another"));
+    assert_non_null(strstr(f.warning, "circles are drawn on top of each other"));
     assert_int_equal(f.style->layers[0].overlap, CAMBER_OVERLAP_ACCUMULATE);
     assert_false(f.style->accumulates);
     camber_style_destroy(f.style);
@@ -814,7 +814,7 @@ static void test_wrong(void **state) {
         {"{\"version\": 8, \"layers\": [{\"id\": \"a\"}]}", "/layers/0: the layer has no \"type\""},
         {"{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"fill\"}, {\"id\": \"b\", \"type\": \"line\"}, "
          "{\"id\": \"a\", \"type\": \"line\"}]}",
-         "/layers/2/id: \"a\" is the id of /layers/0 too"},
+         "/layers/2/id: \"a\" is also the id of /layers/0"},
         {LINE("\"paint\": {\"line-width\": \"2\"}"),
          "/layers/0/paint/line-width: expected a number or an expression, found a string"},
         {LINE("\"paint\": {\"line-width\": -1}"), "/layers/0/paint/line-width: -1 is out of range"},
@@ -825,7 +825,7 @@ static void test_wrong(void **state) {
         {LINE("\"layout\": 3"), "/layers/0/layout: expected an object, found a number"},
         {LINE("\"layout\": {\"line-cap\": \"pointed\"}"), "/layers/0/layout/line-cap: \"pointed\" is not a line-cap"},
         {LINE("\"paint\": {\"line-dasharray\": [-1, 2]}"), "/layers/0/paint/line-dasharray: -1 is out of range"},
-        {LINE("\"paint\": {\"line-width\": [\"/\", 0, 0]}"), "/layers/0/paint/line-width: the number is none (NaN)"},
+        {LINE("\"paint\": {\"line-width\": [\"/\", 0, 0]}"), "/layers/0/paint/line-width: the number is NaN"},
         {LINE("\"paint\": {\"line-width\": [\"/\", 1, 0]}"), "/layers/0/paint/line-width: the number is infinite"},
         {LINE("\"paint\": {\"line-gap-width\": -1}"), "/layers/0/paint/line-gap-width: -1 is out of range"},
         {LINE("\"paint\": {\"line-translate\": [1]}"), "/layers/0/paint/line-translate: expected"},
@@ -835,10 +835,10 @@ static void test_wrong(void **state) {
         {LINE("\"paint\": {\"line-trim-offset\": [0, 2]}"), "/layers/0/paint/line-trim-offset: 2 is out of range"},
         {LINE("\"paint\": {\"line-layer-opacity\": [\"get\", \"x\"]}"), "/layers/0/paint/line-layer-opacity: "},
         {LINE("\"layout\": {\"line-sort-key\": \"x\"}"), "/layers/0/layout/line-sort-key: expected a number"},
-        {LINE("\"ref\": \"a\""), "/layers/0/ref: the layer refers to another one itself"},
+        {LINE("\"ref\": \"a\""), "/layers/0/ref: the layer itself refers to another one"},
         {LINE("\"ref\": \"b\""), "/layers/0/ref: no layer has this id"},
         {"{\"version\": 8, \"constants\": {}, \"layers\": []}", "/constants: "},
-        {"{\"version\": 8, \"center\": [1, \"x\"], \"layers\": []}", "/center: expected a place"},
+        {"{\"version\": 8, \"center\": [1, \"x\"], \"layers\": []}", "/center: expected a position"},
         {"{\"version\": 8, \"zoom\": 99, \"layers\": []}", "/zoom: 99 is out of range"},
         {"{\"version\": 8, \"state\": {\"a\": 1}, \"layers\": []}", "/state: expected values with a default"},
         {"{\"version\": 8, \"sprite\": [{\"url\": \"x\"}], \"layers\": []}", "/sprite: expected a URL"},
@@ -978,7 +978,7 @@ static void test_many(void **state) {
     append(&t, "]}}]}");
     assert_int_equal(parse(&f, t.bytes), CAMBER_OK);
     assert_int_equal(f.warning_count, 33);
-    assert_non_null(strstr(f.warning, "of 1000001 lengths only the first 128 are drawn"));
+    assert_non_null(strstr(f.warning, "there are 1000001 lengths, and only the first 128 are used"));
     free(t.bytes);
     teardown(&f);
 }

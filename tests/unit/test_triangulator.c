@@ -329,7 +329,7 @@ int main(void) {
         cmocka_unit_test(test_touching), cmocka_unit_test(test_random),  cmocka_unit_test(test_stars),
         cmocka_unit_test(test_streets),
     };
-    if (!camber_triangulator_is_here()) {
+    if (!camber_triangulator_is_available()) {
         print_message("no GLU (Debian: libglu1-mesa)\n");
         return 77;
     }

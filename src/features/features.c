@@ -1,7 +1,7 @@
-/* A set of features in memory: how it grows, and how equal things are kept once.
+/* A set of features in memory: how it grows, and how equal values are stored only once.
  *
- * Input: the lines and attributes that a reader gives, one feature after the other. Output: camber_features. Texts and
- * values are interned, so equal ones have one pointer; features that agree in all attributes form one class.
+ * Input: the lines and attributes from a reader, one feature after the other. Output: camber_features. Texts and values
+ * are interned, so that equal ones have the same pointer; features with equal attributes form one class.
  */
 #include "features/features.h"
 #include "features/mercator.h"
@@ -12,9 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Open addressing with linear probing; at most half of the slots are in use, so that probes stay short. */
+/* Hash tables use open addressing with linear probing. At most half of the slots are in use, so that probes stay short.
+ */
 typedef struct interned {
-    camber_value value; /* the value that the text means as JSON, once it was asked for: an array or an object */
+    camber_value value; /* the array or object that the text means as JSON, once somebody has asked for it */
     char text[];
 } interned;
 
@@ -23,14 +24,14 @@ typedef struct interner {
     size_t string_slots, string_count;
     uint32_t *classes; /* index + 1; 0: free */
     size_t class_slots;
-    camber_value *read; /* the values of a class while it is looked for. NULL: none was */
-    uint32_t layer;     /* the last one that a class was looked for in, and whether layers of the style name it */
+    camber_value *read; /* scratch: the values of a class that is looked up. NULL: none was yet */
+    uint32_t layer;     /* the layer of the last lookup, and whether the style's layers name it */
     bool layer_is_named;
 } interner;
 
 enum { FIRST_SLOTS = 256 };
 
-/* Frees a value whose items and members are the set's own memory. */
+/* Frees a value whose items and members are memory of the set. */
 static void free_value(camber_context *context, camber_value *value) {
     if (value->type == CAMBER_VALUE_ARRAY) {
         camber_value *items = (camber_value *)(uintptr_t)value->items;
@@ -117,12 +118,16 @@ void camber_features_release_points(camber_features *features) {
 
 bool camber_features_get_bounds(const camber_features *features, double bounds[4]) {
     double west = INFINITY, north = INFINITY, east = -INFINITY, south = -INFINITY;
-    for (size_t i = 0; i < features->point_count; i++) {
-        const double x = features->points[2 * i], y = features->points[2 * i + 1];
-        west = x < west ? x : west;
-        east = x > east ? x : east;
-        north = y < north ? y : north;
-        south = y > south ? y : south;
+    for (size_t p = 0; p < features->polyline_count; p++) {
+        if (features->wants_labels && camber_geometry_is_label(camber_features_kind(features, p)))
+            continue;
+        for (size_t i = features->offsets[p]; i < features->offsets[p + 1] && features->points; i++) {
+            const double x = features->points[2 * i], y = features->points[2 * i + 1];
+            west = x < west ? x : west;
+            east = x > east ? x : east;
+            north = y < north ? y : north;
+            south = y > south ? y : south;
+        }
     }
     if (!(west <= east && north <= south))
         return false;
@@ -138,11 +143,21 @@ static bool is_of_files(const camber_features *features) {
     return true;
 }
 
-bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer) {
-    for (size_t i = 0; i < schema->source_layer_count; i++)
-        if (strcmp(schema->source_layers[i], source_layer) == 0)
+static bool has_name(const char *const *names, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(names[i], name) == 0)
             return true;
     return false;
+}
+
+bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer) {
+    return has_name(schema->source_layers, schema->source_layer_count, source_layer);
+}
+
+bool camber_schema_only_labels_layer(const camber_schema *schema, const char *source_layer) {
+    const size_t drawn = schema->drawn_source_layer_count;
+    return schema->label_source_layer_count && !has_name(schema->source_layers, drawn, source_layer) &&
+           has_name(schema->source_layers + drawn, schema->label_source_layer_count, source_layer);
 }
 
 static bool names_layers_of(const camber_schema *one, const camber_schema *other) {
@@ -157,13 +172,25 @@ static camber_property_readers readers_of(const camber_schema *schema, size_t pr
                                     : (camber_property_readers){UINT_MAX, UINT_MAX};
 }
 
+bool camber_schema_draws_property(const camber_schema *schema, size_t property) {
+    const camber_property_readers readers = readers_of(schema, property);
+    const unsigned kinds = readers.kinds | readers.named_kinds;
+    return !kinds || kinds & ~(unsigned)CAMBER_KINDS_OF_LABELS;
+}
+
+bool camber_features_reads_property(const camber_features *features, size_t property) {
+    return features->wants_labels || camber_schema_draws_property(features->schema, property);
+}
+
 static bool reads_the_same(const camber_schema *one, const camber_schema *other) {
-    bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
-                one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
-                one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
-                one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
-                one->wants_plain_areas == other->wants_plain_areas &&
-                one->wants_plain_points == other->wants_plain_points;
+    bool same =
+        one->property_count == other->property_count && one->wants_id == other->wants_id &&
+        one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
+        one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
+        one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
+        one->wants_plain_areas == other->wants_plain_areas && one->wants_plain_points == other->wants_plain_points &&
+        one->wants_label_lines == other->wants_label_lines && one->wants_label_areas == other->wants_label_areas &&
+        one->wants_label_points == other->wants_label_points;
     for (size_t i = 0; same && i < one->property_count; i++) {
         const camber_property_readers a = readers_of(one, i), b = readers_of(other, i);
         same = strcmp(one->properties[i], other->properties[i]) == 0 && a.kinds == b.kinds &&
@@ -183,19 +210,25 @@ static bool is_taken(const camber_features *features, const camber_schema *schem
     return schema->takes && schema->takes(style, one->geometry, features->layer_names[one->layer], &feature);
 }
 
-/* Whether the same classes are plain in it. */
+/* Whether the other style leaves the same classes to plain layers, and its symbol layers take the same. */
 static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
-        if (one->unsorted && schema->wants_plain &&
-            one->plain == is_taken(features, schema, style, one, values_of(features, one)))
+        if (camber_geometry_is_label(one->geometry)) {
+            if (one->labelled != is_taken(features, schema, style, one, values_of(features, one)))
+                return false;
+        } else if (one->unsorted && schema->wants_plain &&
+                   one->plain == is_taken(features, schema, style, one, values_of(features, one)))
             return false;
     }
     return true;
 }
 
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style) {
-    return is_of_files(features) && reads_the_same(features->schema, schema) && takes_the_same(features, schema, style);
+    /* A region drops the classes that no symbol layer takes, so they cannot be asked. */
+    const bool dropped = features->has_region && camber_features_label_kinds(features);
+    return is_of_files(features) && !dropped && reads_the_same(features->schema, schema) &&
+           takes_the_same(features, schema, style);
 }
 
 camber_features_stats camber_features_get_stats(const camber_features *features) {
@@ -220,7 +253,7 @@ void camber_features_reset(camber_features *features, const camber_features_mark
     features->source = mark->source;
 }
 
-/* FNV's low bits are weak for short keys; fold the high ones in. */
+/* The low bits of FNV are weak for short keys, so the high bits are folded into them. */
 static size_t slot_of(uint64_t hash, size_t slots) {
     return (size_t)(hash ^ hash >> 32) & (slots - 1);
 }
@@ -373,14 +406,14 @@ camber_status camber_features_find_layer(camber_features *features, const char *
 
 /* ---- Classes ---- */
 
-/* Whether the value is interned: it is then known by its pointer. */
+/* Whether the value is interned, so that its pointer identifies it. */
 static bool is_pointer(const camber_value *value) {
     return value->type == CAMBER_VALUE_STRING || value->type == CAMBER_VALUE_ARRAY ||
            value->type == CAMBER_VALUE_OBJECT;
 }
 
-/* Interned values are equal where their pointers are. Numbers compare by their bits: a class is a key, and NaN
- * must equal itself. */
+/* Interned values are equal if their pointers are. Numbers are compared by their bits, because a class is a key, and
+ * NaN must equal itself. */
 static bool equal_values(const camber_value *a, const camber_value *b, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (a[i].type != b[i].type)
@@ -441,8 +474,9 @@ static bool grow_classes(camber_features *features) {
 static camber_status add_class(camber_features *features, const camber_feature_class *one, const camber_value *values) {
     const size_t count = features->schema->property_count;
     if (features->class_count >= UINT32_MAX - 1)
-        return camber_fail(features->context, CAMBER_ERROR_LIMIT,
-                           "more than 4294967294 different features; read fewer attributes");
+        return camber_fail(
+            features->context, CAMBER_ERROR_LIMIT,
+            "more than 4294967294 different sets of attributes; use a style that reads fewer attributes");
     if (!camber_grow(features->context, &features->classes, &features->class_capacity, features->class_count + 1,
                      sizeof *features->classes) ||
         !camber_grow(features->context, &features->values, &features->value_capacity, features->value_count + count,
@@ -461,7 +495,7 @@ static bool equal_classes(const camber_feature_class *a, const camber_feature_cl
            a->unsorted == b->unsorted && equal_values(&a->id, &b->id, 1);
 }
 
-/* Whether layers of the style name the source layer of a class: the last answer is kept. */
+/* Whether layers of the style name the source layer of a class. The last answer is remembered. */
 static bool layer_is_named(camber_features *features, const camber_feature_class *one) {
     interner *set = features->interned;
     if (!set->read || set->layer != one->layer)
@@ -471,8 +505,8 @@ static bool layer_is_named(camber_features *features, const camber_feature_class
     return set->layer_is_named;
 }
 
-/* Leaves out the values that no layer reads of such features, so that they make no more classes than are drawn. NULL:
- * no memory. */
+/* Replaces the values that no layer reads for such features by null, so that they do not split classes needlessly.
+ * Returns NULL if there is no memory. */
 static const camber_value *read_values(camber_features *features, const camber_feature_class *one,
                                        const camber_value *values) {
     interner *set = features->interned;
@@ -488,16 +522,21 @@ static const camber_value *read_values(camber_features *features, const camber_f
     return set->read;
 }
 
-unsigned camber_schema_kinds(const camber_schema *schema, bool unsorted) {
+/* The kinds that are drawn. */
+static unsigned drawn_kinds(const camber_schema *schema, bool unsorted) {
     const bool plain_areas = unsorted && schema->wants_plain_areas;
     return CAMBER_KIND_LINE | (schema->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
            (schema->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
            (schema->wants_points || (unsorted && schema->wants_plain_points) ? CAMBER_KIND_POINT : 0u);
 }
 
+unsigned camber_features_kinds(const camber_features *features, bool unsorted) {
+    return drawn_kinds(features->schema, unsorted) | camber_features_label_kinds(features);
+}
+
 const char *camber_features_left_out(unsigned kinds) {
-    const bool areas = kinds & CAMBER_KIND_AREA;
-    if (kinds & CAMBER_KIND_POINT)
+    const bool areas = kinds & CAMBER_KINDS_OF_AREAS;
+    if (kinds & CAMBER_KINDS_OF_POINTS)
         return areas ? "neither line, area nor point (empty geometry)"
                      : "neither line nor point (areas, empty geometry)";
     return areas ? "neither line nor area (points, empty geometry)" : "no line (points, areas, empty geometry)";
@@ -505,7 +544,9 @@ const char *camber_features_left_out(unsigned kinds) {
 
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {
     const camber_feature_class *one = &features->classes[class_index];
-    return !one->unsorted || one->plain || camber_schema_kinds(features->schema, false) >> one->geometry & 1;
+    if (camber_geometry_is_label(one->geometry))
+        return one->labelled;
+    return !one->unsorted || one->plain || drawn_kinds(features->schema, false) >> one->geometry & 1;
 }
 
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
@@ -528,8 +569,11 @@ camber_status camber_features_find_class_of(camber_features *features, const cam
             return CAMBER_OK;
         }
     }
-    made.plain = made.unsorted && features->schema->wants_plain &&
-                 !is_taken(features, features->schema, features->style, &made, read);
+    const bool label = camber_geometry_is_label(made.geometry),
+               asks_plain = made.unsorted && features->schema->wants_plain;
+    const bool taken = (label || asks_plain) && is_taken(features, features->schema, features->style, &made, read);
+    made.plain = !label && asks_plain && !taken;
+    made.labelled = label && taken;
     const camber_status status = add_class(features, &made, read);
     if (status != CAMBER_OK)
         return status;
@@ -549,7 +593,7 @@ camber_status camber_features_renumber_classes(camber_features *features) {
     const size_t count = features->schema->property_count, class_count = features->class_count;
     camber_status status = CAMBER_ERROR_MEMORY;
     size_t kept = 0;
-    uint32_t *numbers = camber_alloc_zero(context, class_count, sizeof *numbers); /* + 1; 0: none yet */
+    uint32_t *numbers = camber_alloc_zero(context, class_count, sizeof *numbers); /* new index + 1; 0: none yet */
     camber_feature_class *classes = camber_alloc(context, class_count, sizeof *classes);
     camber_value *values = camber_alloc(context, class_count * count, sizeof *values);
     if (!numbers || !classes || !values)
@@ -594,7 +638,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
-/* Makes room for this many polylines; the last of them has all of its line. */
+/* Makes room for this many polylines, and gives the last one the progress of a whole line, 0 to 1. */
 static bool grow_progress(camber_features *features, size_t polylines) {
     if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
                      2 * sizeof *features->progress))
@@ -609,7 +653,7 @@ camber_status camber_features_set_progress(camber_features *features, double fir
         for (size_t n = 1; n <= features->polyline_count; n++)
             if (!grow_progress(features, n))
                 return CAMBER_ERROR_MEMORY;
-    if (!features->progress) /* belongs to no polyline */
+    if (!features->progress) /* there is no polyline to set it for */
         return CAMBER_OK;
     features->progress[2 * features->polyline_count - 2] = (float)first;
     features->progress[2 * features->polyline_count - 1] = (float)last;
@@ -623,7 +667,7 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
         !camber_grow(context, &features->points, &features->point_capacity, features->point_count + point_count,
                      2 * sizeof *features->points))
         return CAMBER_ERROR_MEMORY;
-    /* The arrays grow together: one capacity counts the entries of each. */
+    /* The arrays grow together, so one capacity counts the entries of each. */
     if (!camber_grow(context, &features->feature_counts, &count_capacity, features->polyline_count + 2,
                      sizeof *features->feature_counts) ||
         !camber_grow(context, &features->offsets, &offset_capacity, features->polyline_count + 2,
@@ -651,6 +695,13 @@ camber_status camber_features_set_importance(camber_features *features, size_t f
     if (!camber_grow(features->context, &features->importance, &features->importance_capacity, features->point_count,
                      sizeof *features->importance))
         return CAMBER_ERROR_MEMORY;
-    return camber_importance_weigh(features->context, features->points, features->offsets + first_polyline,
-                                   features->polyline_count - first_polyline, features->importance);
+    const size_t labels = camber_features_find_labels(features, first_polyline), end = features->polyline_count;
+    camber_status status = CAMBER_OK;
+    if (labels > first_polyline)
+        status = camber_importance_weigh(features->context, features->points, features->offsets + first_polyline,
+                                         labels - first_polyline, features->importance);
+    if (status == CAMBER_OK && end > labels)
+        status = camber_importance_weigh(features->context, features->points, features->offsets + labels, end - labels,
+                                         features->importance);
+    return status;
 }

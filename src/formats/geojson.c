@@ -1,7 +1,7 @@
 /* Reads a GeoJSON source of a style into a set of features.
  *
  * Input: a JSON document and the source's filter. Output: lines, outlines, areas, points, classes, ids. Damage is
- * counted, not fatal: a line is split where a point is not valid, and what can be read of a feature is kept.
+ * counted and is not fatal: a line is split at points that are not valid, and the readable parts of a feature are kept.
  */
 #include "formats/geojson.h"
 #include "features/mercator.h"
@@ -11,31 +11,33 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Collections in collections. */
+/* how deep collections may be nested */
 enum { DEEPEST = 32 };
-enum { POLYGONS = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA };
+enum { POLYGONS = CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS };
 
-/* A line may go on over the antimeridian, but not round and round. */
+/* A line may continue beyond the antimeridian, but not circle the Earth. */
 static const double FARTHEST_DEG = 540.0;
 
 typedef struct reader {
     camber_context *context;
     camber_features *features;
     const camber_geojson_desc *desc;
-    camber_geojson_stats *stats;
+    camber_geojson_stats *stats; /* of what is being read: those of the description, or these */
+    camber_geojson_stats label_stats;
+    camber_features_stats label_rings;
     const json_t *promote_id;
     bool generate_id;
     unsigned kinds; /* CAMBER_KIND_*: those that are read */
     camber_rings rings;
     camber_value *values;
-    double *points; /* one line */
+    double *points; /* the points of one line */
     size_t capacity;
 
     /* The feature being read. */
     size_t index;
     bool in_collection;
     const char *damage;
-    bool left_out, added; /* added: of the kind being read */
+    bool left_out, added; /* added: of the kind that is being read */
     camber_geometry_kind kind;
     uint32_t class_index;
 } reader;
@@ -71,7 +73,7 @@ static camber_status read_value(reader *self, const json_t *json, camber_value *
     return CAMBER_OK;
 }
 
-/* Reads an id; a text that is a number counts as a number, as in other engines. */
+/* Reads an id. As in other engines, a text that is a number counts as a number. */
 static camber_status read_id(reader *self, const json_t *feature, const json_t *properties, camber_value *id) {
     const json_t *json = json_object_get(feature, "id");
     if (self->promote_id)
@@ -92,15 +94,18 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
     return read_value(self, json, id);
 }
 
-/* Finds the feature's class of the kind. *drawn: the source's filter lets it pass. */
+/* Finds the feature's class for this kind. *drawn: the source's filter accepts it. */
 static camber_status find_class(reader *self, const json_t *feature, bool *drawn) {
     const camber_schema *schema = self->features->schema;
     const json_t *properties = json_object_get(feature, "properties");
     camber_feature_class wanted = {.geometry = self->kind};
     camber_value id = {0};
     camber_status status = camber_features_find_layer(self->features, "", &wanted.layer);
+    for (size_t i = 0; i < schema->property_count; i++)
+        self->values[i] = (camber_value){0};
     for (size_t i = 0; i < schema->property_count && status == CAMBER_OK; i++)
-        status = read_value(self, json_object_get(properties, schema->properties[i]), &self->values[i]);
+        if (camber_features_reads_property(self->features, i))
+            status = read_value(self, json_object_get(properties, schema->properties[i]), &self->values[i]);
     if (status == CAMBER_OK)
         status = read_id(self, feature, properties, &id);
     if (status == CAMBER_OK && schema->wants_all_properties && json_is_object(properties))
@@ -112,18 +117,23 @@ static camber_status find_class(reader *self, const json_t *feature, bool *drawn
     *drawn = !self->desc->matches || self->desc->matches(self->desc->user, &view);
     if (schema->wants_id)
         wanted.id = id;
-    return *drawn ? camber_features_find_class_of(self->features, &wanted, self->values, &self->class_index)
-                  : CAMBER_OK;
+    if (*drawn)
+        status = camber_features_find_class_of(self->features, &wanted, self->values, &self->class_index);
+    if (*drawn && status == CAMBER_OK && camber_geometry_is_label(self->kind))
+        *drawn = camber_features_draw_class(self->features, self->class_index);
+    return status;
 }
 
 /* ---- Geometry ---- */
 
-/* Whether this stands for a number that JSON cannot write: null for NaN, or one beyond a double for an infinity. */
+/* Whether the value stands for a number that JSON cannot express: null for NaN, or a number beyond a double's range for
+ * an infinity. */
 static bool is_no_number(const json_t *json) {
     return json_is_null(json) || fabs(json_number_value(json)) >= CAMBER_JSON_INFINITE;
 }
 
-/* Reads a position; a point that is not valid, as in CAMBER_ERROR_INPUT, becomes a pair of NaN. false: no position. */
+/* Reads a position. A point that is not valid, as described at CAMBER_ERROR_INPUT, becomes a pair of NaN. Returns false
+ * if this is not a position. */
 static bool read_position(const json_t *json, double position[2]) {
     const json_t *longitude = json_array_get(json, 0), *latitude = json_array_get(json, 1);
     if (is_no_number(longitude) || is_no_number(latitude)) {
@@ -152,7 +162,7 @@ static void add_bounds(double bounds[4], const double *points, size_t count) {
     }
 }
 
-/* A feature with several lines is one feature. */
+/* A feature with several lines is added once. */
 static camber_status add_line(reader *self, const double *points, size_t count) {
     camber_status status = CAMBER_OK;
     if (!self->added)
@@ -162,7 +172,7 @@ static camber_status add_line(reader *self, const double *points, size_t count) 
     return status == CAMBER_OK ? camber_features_add_polyline(self->features, points, count) : status;
 }
 
-/* Adds the line that was read, split where points are not valid. */
+/* Adds the line that was read, split at points that are not valid. */
 static camber_status add_parts(reader *self, size_t count) {
     camber_status status = CAMBER_OK;
     size_t first = 0;
@@ -177,7 +187,8 @@ static camber_status add_parts(reader *self, size_t count) {
     return status;
 }
 
-/* Turns a ring so that an outline goes clockwise as seen, with its inside to the right, and a hole the other way. */
+/* Turns a ring so that an outline goes clockwise as seen, with its inside to the right, and a hole counter-clockwise.
+ */
 static void orient_ring(double *points, size_t count, bool hole) {
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -189,7 +200,7 @@ static void orient_ring(double *points, size_t count, bool hole) {
         camber_ring_turn(points, count);
 }
 
-/* Adds the ring that was read, whose inside is filled. Where outlines are read too, they count what is invalid. */
+/* Adds the ring that was read, to be filled. If outlines are read too, they already count its invalid points. */
 static camber_status add_ring(reader *self, size_t count, bool hole) {
     for (size_t i = 0; i < count && !(self->kinds & CAMBER_KIND_POLYGON); i++)
         self->stats->invalid_points += isnan(self->points[2 * i]) != 0;
@@ -214,7 +225,8 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
         return CAMBER_OK;
     }
     const double *last = self->points + 2 * (count - 1);
-    if (ring && (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both are valid */
+    if (ring &&
+        (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both points are valid */
         note_damage(self, "a ring that is not closed");
         if (!area)
             memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
@@ -226,7 +238,7 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
     return add_parts(self, count);
 }
 
-/* A point is a line of one point. */
+/* A point becomes a line of one point. */
 static camber_status read_point(reader *self, const json_t *json) {
     double position[2];
     if (!read_position(json, position)) {
@@ -239,8 +251,8 @@ static camber_status read_point(reader *self, const json_t *json) {
     return CAMBER_OK;
 }
 
-/* depth: how deep the lines, or points, are in the coordinates. hole: all lines of a polygon but the first are holes.
- */
+/* depth: how deep the lines or points are nested in the coordinates. hole: lines after the first of a polygon are
+ * holes. */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool hole) {
     if (!json_is_array(json)) {
         note_damage(self, "coordinates that are not an array");
@@ -285,7 +297,7 @@ static camber_status read_geometry(reader *self, const json_t *geometry, int dep
     return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, false);
 }
 
-/* Whether a geometry has lines, polygons or points at all. */
+/* Whether a geometry contains lines, polygons or points at all. */
 static bool has_kind(const json_t *geometry, camber_geometry_kind kind, int depth) {
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (!type)
@@ -313,14 +325,33 @@ static void end_feature(reader *self) {
         snprintf(stats->damage, sizeof stats->damage, "%s", self->damage);
 }
 
+/* Reads the feature's geometry of a kind, or for symbol layers, if one takes it: that has counts of its own. */
+static camber_status read_kind(reader *self, const json_t *feature, const json_t *geometry) {
+    const camber_geometry_kind kind = self->kind;
+    const bool label = camber_geometry_is_label(kind);
+    camber_geojson_stats *stats = self->stats;
+    camber_features_stats *rings = self->rings.stats;
+    bool drawn = false;
+    self->added = false;
+    camber_status status = find_class(self, feature, &drawn);
+    if (status != CAMBER_OK || !drawn)
+        return status;
+    self->kind = camber_geometry_shape(kind);
+    self->stats = label ? &self->label_stats : stats;
+    self->rings.stats = label ? &self->label_rings : rings;
+    status = read_geometry(self, geometry, 0);
+    self->stats = stats;
+    self->rings.stats = rings;
+    return status;
+}
+
 static camber_status read_feature(reader *self, const json_t *feature, const json_t *geometry) {
     self->damage = NULL;
     self->left_out = !geometry || json_is_null(geometry);
     camber_status status = CAMBER_OK;
     bool any = self->left_out;
-    unsigned unread = 0;
+    unsigned read = 0, unread = 0;
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
-        bool drawn = false;
         self->kind = (camber_geometry_kind)kind;
         if (!has_kind(geometry, self->kind, 0))
             continue;
@@ -329,15 +360,15 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
             unread |= 1u << kind;
             continue;
         }
-        self->added = false;
-        status = find_class(self, feature, &drawn);
-        if (status == CAMBER_OK && drawn)
-            status = read_geometry(self, geometry, 0);
+        read |= 1u << kind;
+        status = read_kind(self, feature, geometry);
     }
     self->kind = CAMBER_GEOMETRY_LINE;
     if (!any)
-        status = read_geometry(self, geometry, 0); /* of an unknown type */
-    self->left_out |= (unread & (CAMBER_KIND_LINE | CAMBER_KIND_POINT)) || (unread & POLYGONS) == POLYGONS;
+        status = read_geometry(self, geometry, 0); /* which reports the unknown type */
+    self->left_out |= (unread & CAMBER_KIND_LINE && !(read & CAMBER_KIND_LABEL_LINE)) ||
+                      (unread & CAMBER_KIND_POINT && !(read & CAMBER_KIND_LABEL_POINT)) ||
+                      (unread & POLYGONS && !(read & POLYGONS));
     end_feature(self);
     return status;
 }
@@ -351,8 +382,7 @@ static camber_status read_root(reader *self) {
         return read_feature(self, NULL, root);
     if (!type || strcmp(type, "FeatureCollection") != 0 || !json_is_array(list))
         return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                           "%s: no GeoJSON; it must be an object of type FeatureCollection with features, a Feature or "
-                           "a geometry",
+                           "%s: not GeoJSON; it must be a FeatureCollection with features, a Feature or a geometry",
                            self->desc->what);
     camber_status status = CAMBER_OK;
     self->in_collection = true;
@@ -374,11 +404,12 @@ camber_status camber_geojson_read(camber_features *features, const camber_geojso
                    .rings.stats = &features->stats};
     self.kinds = desc->kinds;
     if (!desc->kinds)
-        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->schema->wants_areas ? CAMBER_KIND_AREA : 0u) |
-                     (features->schema->wants_points ? CAMBER_KIND_POINT : 0u);
-    *stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
+        self.kinds = CAMBER_KIND_POLYGON | camber_features_kinds(features, false);
+    *stats = self.label_stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
     self.values = camber_alloc(features->context, features->schema->property_count, sizeof *self.values);
     const camber_status status = self.values ? read_root(&self) : CAMBER_ERROR_MEMORY;
+    if (stats->bounds[0] > stats->bounds[2]) /* labels are all that it has */
+        memcpy(stats->bounds, self.label_stats.bounds, sizeof stats->bounds);
     camber_free(features->context, self.points);
     camber_free(features->context, self.values);
     return status;

@@ -1,7 +1,7 @@
 /* Reads vector tiles (Mapbox Vector Tile 2) into a set of features.
  *
- * Input: the decompressed bytes of one tile after the other. Output: features, whose lines and rings go to the
- * stitcher, which cuts them at the tiles' borders. Messages are unpacked by protobuf-c into a bounded pool. Damage is
+ * Input: the decompressed bytes of one tile after the other. Output: features. Their lines and rings go to the
+ * stitcher, which cuts them at the tiles' borders. protobuf-c unpacks messages into a pool of limited size. Damage is
  * counted.
  */
 #include "formats/mvt.h"
@@ -14,18 +14,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The most memory for the unpacked messages of a tile; the largest of real maps take a few megabytes. */
+/* The most memory for a tile's unpacked messages. The largest tiles of real maps need a few megabytes. */
 static const size_t LARGEST_TILE_BYTES = (size_t)256 << 20;
 
-/* How many features are examined to learn whether a layer has lines. */
+/* PEEKED_FEATURES: how many features are examined to find out whether a layer has lines. */
 enum { PEEKED_FEATURES = 32, MOST_LAYERS = 1024 };
 
-/* Names of properties by which one feature is recognised in several tiles, besides the format's own id: OSM's, a
- * common one, TIGER's. */
+/* Properties that identify a feature in several tiles, apart from the format's own id: OSM's, a common one, TIGER's. */
 static const char *const id_keys[] = {"osm_id", "id", "TLID"};
 enum { ID_KEYS = 3 };
 
-/* Properties of tiles that were made from GeoJSON with lineMetrics: where the line was clipped. */
+/* Properties of tiles that were made from GeoJSON with lineMetrics. They say where the line was clipped. */
 static const char *const clip_keys[] = {"mapbox_clip_start", "mapbox_clip_end"};
 
 typedef Camber__Tile__Layer tile_layer;
@@ -36,8 +35,8 @@ struct camber_mvt {
     camber_mvt_desc desc;
     camber_mvt_stats stats;
     camber_pool pool;
-    uint32_t *sorted;     /* the style's properties by name */
-    camber_value *values; /* one feature's */
+    uint32_t *sorted;     /* the style's properties, sorted by name */
+    camber_value *values; /* of one feature */
     camber_mvt_geometry geometry;
     camber_mvt_layer *layers;
     size_t layer_count, layer_capacity;
@@ -48,11 +47,11 @@ struct camber_mvt {
     unsigned kinds; /* CAMBER_KIND_* */
     char name[256];
     uint32_t layer_index;
-    uint32_t *key_properties; /* layer->n_keys; NONE: no property of the style */
+    uint32_t *key_properties; /* layer->n_keys: index of the style's property; NONE: the style does not read it */
     camber_value *known;      /* layer->n_values */
     bool *is_known;
-    uint32_t ids[ID_KEYS], promoted, clips[2]; /* keys */
-    bool unsorted;                             /* the layer is none that the style knows */
+    uint32_t ids[ID_KEYS], promoted, clips[2]; /* indices of keys */
+    bool unsorted;                             /* the layer has no schema that the style knows */
 };
 
 #define NONE UINT32_MAX
@@ -63,7 +62,7 @@ static void note_damage(camber_mvt *mvt, const char *cause) {
                  mvt->address.column, mvt->address.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
 }
 
-/* Says why a message did not unpack. */
+/* Returns the status for a message that could not be unpacked: it is damaged, or the pool is exhausted. */
 static camber_status judge_failure(camber_mvt *mvt, const char *cause) {
     if (mvt->pool.out_of_memory)
         return CAMBER_ERROR_MEMORY;
@@ -76,7 +75,7 @@ static bool is_text(ProtobufCBinaryData bytes, const char *text) {
     return bytes.len == length && (length == 0 || memcmp(bytes.data, text, length) == 0);
 }
 
-/* Copies the text into the pool with a 0 behind it. NULL: refused. */
+/* Copies the text into the pool and appends a 0. Returns NULL if the pool refuses. */
 static char *to_text(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     char *text = camber_pool_alloc(&mvt->pool, bytes.len + 1);
     if (!text)
@@ -121,7 +120,7 @@ static void sort_properties(camber_mvt *mvt) {
     }
 }
 
-/* The name of the property that is the id. */
+/* Returns the name of the property to use as id. */
 static const char *promoted_name(const camber_mvt *mvt) {
     const json_t *promote = mvt->desc.promote_id;
     if (json_is_object(promote))
@@ -156,7 +155,7 @@ static camber_value number_value(double number) {
     return isnan(number) ? (camber_value){0} : (camber_value){.type = CAMBER_VALUE_NUMBER, .number = number};
 }
 
-/* A text that is not UTF-8 counts as no value. */
+/* A text that is not UTF-8 counts as a missing value. */
 static camber_status text_value(camber_mvt *mvt, ProtobufCBinaryData bytes, camber_value *value) {
     json_t *checked = json_stringn((const char *)bytes.data, bytes.len);
     if (bytes.len && !checked)
@@ -220,7 +219,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
             continue;
         status = read_value(mvt, feature->tags[i + 1], &value);
         const ProtobufCBinaryData key = mvt->layer->keys[feature->tags[i]];
-        /* A name that is no UTF-8 is refused, and left out. */
+        /* jansson refuses a key that is not UTF-8, and it is left out. */
         if (status == CAMBER_OK)
             json_object_setn_new(object, (const char *)key.data, key.len, to_json(&value));
     }
@@ -230,7 +229,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
     return status;
 }
 
-/* Reads the values of the style's properties, and the id by which the feature is recognised in other tiles. */
+/* Reads the values of the style's properties, and the id that identifies the feature in other tiles. */
 static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, camber_value *id,
                                camber_tile_feature *stitched, const char **damage) {
     const camber_schema *schema = mvt->desc.features->schema;
@@ -278,13 +277,28 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     return CAMBER_OK;
 }
 
-/* Whether a point is the tile's own: those of its buffer are in the next one, too, unless that is not read. */
+/* Whether a point belongs to this tile. A point in its buffer is in the next tile, too, unless that is not read. */
 static bool is_own(const camber_tile_address *address, const double *point) {
     const double side = ldexp(1.0, address->zoom);
     const double column = floor(point[0] * side) - address->column, row = floor(point[1] * side) - address->row;
     const unsigned beyond = (column < 0 ? CAMBER_SIDE_WEST : 0u) | (column > 0 ? CAMBER_SIDE_EAST : 0u) |
                             (row < 0 ? CAMBER_SIDE_NORTH : 0u) | (row > 0 ? CAMBER_SIDE_SOUTH : 0u);
     return !(beyond & ~address->open_sides);
+}
+
+/* Leaves only the tile's own points in the geometry. */
+static void keep_own_points(camber_mvt *mvt) {
+    camber_mvt_geometry *geometry = &mvt->geometry;
+    size_t kept = 0;
+    for (size_t i = 0; i < geometry->point_count; i++) {
+        double *point = geometry->points + 2 * i;
+        if (!is_own(&mvt->address, point))
+            continue;
+        memmove(geometry->points + 2 * kept, point, 2 * sizeof *point);
+        geometry->ends[kept] = kept + 1;
+        kept++;
+    }
+    geometry->point_count = geometry->line_count = kept;
 }
 
 static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
@@ -304,26 +318,34 @@ static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
     return status;
 }
 
-static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
-                                     const char **damage) {
+/* Finds the class of a feature, and what the stitcher knows of it. */
+static camber_status find_class(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
+                                camber_tile_feature *stitched, const char **damage) {
     const camber_schema *schema = mvt->desc.features->schema;
-    camber_tile_feature stitched = {.column = mvt->address.column,
-                                    .row = mvt->address.row,
-                                    .outline = kind == CAMBER_GEOMETRY_POLYGON,
-                                    .area = kind == CAMBER_GEOMETRY_AREA,
-                                    .progress = {0, 1},
-                                    .open_sides = mvt->address.open_sides};
+    *stitched = (camber_tile_feature){.column = mvt->address.column,
+                                      .row = mvt->address.row,
+                                      .outline = kind == CAMBER_GEOMETRY_POLYGON,
+                                      .area = camber_geometry_is_area(kind),
+                                      .progress = {0, 1},
+                                      .open_sides = mvt->address.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind, .unsorted = mvt->unsorted};
     camber_value promoted = {0};
-    camber_status status = read_tags(mvt, feature, &promoted, &stitched, damage);
+    camber_status status = read_tags(mvt, feature, &promoted, stitched, damage);
     if (schema->wants_id && promoted_name(mvt))
         wanted.id = promoted;
     else if (schema->wants_id && feature->has_id)
         wanted.id = number_value((double)feature->id);
     if (status == CAMBER_OK && schema->wants_all_properties)
         status = read_all_properties(mvt, feature, &wanted.all);
-    if (status == CAMBER_OK)
-        status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched.class_index);
+    return status == CAMBER_OK
+               ? camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched->class_index)
+               : status;
+}
+
+static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
+                                     const char **damage) {
+    camber_tile_feature stitched;
+    const camber_status status = find_class(mvt, feature, kind, &stitched, damage);
     if (status != CAMBER_OK || !camber_features_draw_class(mvt->desc.features, stitched.class_index))
         return status;
     if (kind == CAMBER_GEOMETRY_POINT)
@@ -335,7 +357,7 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
 static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind) {
     const camber_mvt_commands commands = {.words = feature->geometry,
                                           .count = feature->n_geometry,
-                                          .kind = kind,
+                                          .kind = camber_geometry_shape(kind),
                                           .column = mvt->address.column,
                                           .row = mvt->address.row,
                                           .extent = mvt->layer->extent,
@@ -343,11 +365,10 @@ static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature,
     return camber_mvt_geometry_read(&mvt->geometry, &commands);
 }
 
-/* Makes areas of a feature's rings. Where the first of them winds the other way, as some makers of tiles have it, so do
- * all: then holes are those that go clockwise. */
-static void take_rings(camber_mvt *mvt) {
+/* Turns a feature's rings into areas. If the first ring winds the other way, as in tiles of some programs, so do all of
+ * them, and the holes are the rings that go clockwise. */
+static void take_rings(camber_mvt *mvt, camber_features_stats *stats) {
     camber_mvt_geometry *geometry = &mvt->geometry;
-    camber_features_stats *stats = &mvt->desc.features->stats;
     camber_rings rings = {.stats = stats};
     size_t first = 0, points = 0, lines = 0;
     double sign = 0.0;
@@ -368,13 +389,48 @@ static void take_rings(camber_mvt *mvt) {
     geometry->point_count = points;
 }
 
+/* Reads a feature to be drawn. *kept: it has points. */
+static camber_status read_kind(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind, bool *kept,
+                               const char **damage) {
+    const camber_status status = read_geometry(mvt, feature, kind);
+    *damage = *damage ? *damage : mvt->geometry.damage;
+    *kept = *kept || mvt->geometry.line_count;
+    if (status == CAMBER_OK && kind == CAMBER_GEOMETRY_AREA)
+        take_rings(mvt, &mvt->desc.features->stats);
+    return status == CAMBER_OK && mvt->geometry.line_count ? add_to_stitcher(mvt, feature, kind, damage) : status;
+}
+
+/* Reads a feature for symbol layers, if one takes it. A point is a line of one point to the stitcher. */
+static camber_status read_label(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind, bool *kept,
+                                const char **damage) {
+    camber_features_stats ignored = {0};
+    camber_tile_feature stitched;
+    camber_status status = find_class(mvt, feature, kind, &stitched, damage);
+    const bool taken = status == CAMBER_OK && camber_features_draw_class(mvt->desc.features, stitched.class_index);
+    *kept = *kept || (status == CAMBER_OK && !taken);
+    if (!taken)
+        return status;
+    status = read_geometry(mvt, feature, kind);
+    *damage = *damage ? *damage : mvt->geometry.damage;
+    *kept = *kept || mvt->geometry.line_count;
+    if (status != CAMBER_OK || !mvt->geometry.line_count)
+        return status;
+    if (kind == CAMBER_GEOMETRY_LABEL_AREA)
+        take_rings(mvt, &ignored);
+    if (kind == CAMBER_GEOMETRY_LABEL_POINT)
+        keep_own_points(mvt);
+    stitched.has_progress = false;
+    const camber_tile_lines lines = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.line_count};
+    return camber_tile_stitcher_add(mvt->desc.labels, &stitched, &lines);
+}
+
 static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const tile_feature *feature = camber__tile__feature__unpack(&mvt->pool.allocator, bytes.len, bytes.data);
     if (!feature)
         return judge_failure(mvt, "a feature that does not parse");
     mvt->stats.features++;
-    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
-    const unsigned of_type[] = {0, CAMBER_KIND_POINT, CAMBER_KIND_LINE, polygons};
+    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS;
+    const unsigned of_type[] = {0, CAMBER_KINDS_OF_POINTS, CAMBER_KIND_LINE | CAMBER_KIND_LABEL_LINE, polygons};
     const unsigned kinds = mvt->kinds & of_type[(unsigned)feature->type <= 3 ? feature->type : 0];
     mvt->stats.skipped_features += !kinds;
     camber_status status = CAMBER_OK;
@@ -383,13 +439,9 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
         if (!(kinds >> kind & 1))
             continue;
-        status = read_geometry(mvt, feature, (camber_geometry_kind)kind);
-        damage = damage ? damage : mvt->geometry.damage;
-        kept = kept || mvt->geometry.line_count;
-        if (status == CAMBER_OK && kind == CAMBER_GEOMETRY_AREA)
-            take_rings(mvt);
-        if (status == CAMBER_OK && mvt->geometry.line_count)
-            status = add_to_stitcher(mvt, feature, (camber_geometry_kind)kind, &damage);
+        status = camber_geometry_is_label((camber_geometry_kind)kind)
+                     ? read_label(mvt, feature, (camber_geometry_kind)kind, &kept, &damage)
+                     : read_kind(mvt, feature, (camber_geometry_kind)kind, &kept, &damage);
     }
     mvt->stats.kept_features += kept;
     if (damage)
@@ -399,23 +451,26 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
 
 /* ---- A layer ---- */
 
-/* Finds out what of the layer is wanted. */
+/* Returns the kinds of geometry to read from the layer. */
 static unsigned wanted_kinds(const camber_mvt *mvt) {
     const camber_mvt_desc *desc = &mvt->desc;
+    const unsigned labels = desc->labels ? camber_features_label_kinds(desc->features) : 0u;
     for (size_t i = 0; i < desc->layer_count; i++) {
         if (strcmp(desc->layers[i], mvt->name) != 0)
             continue;
         if (desc->layer_kinds)
             return desc->layer_kinds[i];
         if (mvt->unsorted)
-            return camber_schema_kinds(desc->features->schema, true);
-        return CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
+            return camber_features_kinds(desc->features, true);
+        if (camber_schema_only_labels_layer(desc->features->schema, mvt->name))
+            return labels;
+        return labels | CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
                (desc->wants_areas ? CAMBER_KIND_AREA : 0u) | (desc->wants_points ? CAMBER_KIND_POINT : 0u);
     }
     return 0;
 }
 
-/* Lists a layer, where none is wanted and the question is which layers there are. */
+/* Adds the layer to the list of layers, if no layers are wanted and the caller asked which there are. */
 static camber_status list_layer(camber_mvt *mvt) {
     size_t i = 0;
     while (i < mvt->layer_count && strcmp(mvt->layers[i].name, mvt->name) != 0)
@@ -456,10 +511,12 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     if (!mvt->kinds)
         return CAMBER_OK;
     if (layer->extent == 0 || (layer->has_version && (layer->version < 1 || layer->version > 2))) {
-        note_damage(mvt, layer->extent ? "of a version that is neither 1 nor 2" : "its extent is 0");
+        note_damage(mvt, layer->extent ? "its version is neither 1 nor 2" : "its extent is 0");
         return CAMBER_OK;
     }
     mvt->desc.stitcher->grid = fmax(mvt->desc.stitcher->grid, CAMBER_TILE_UNITS / layer->extent);
+    if (mvt->desc.labels)
+        mvt->desc.labels->grid = mvt->desc.stitcher->grid;
     camber_status status = camber_features_find_layer(mvt->desc.features, mvt->name, &mvt->layer_index);
     if (status == CAMBER_OK && !find_keys(mvt))
         status = judge_failure(mvt, "a layer's keys");
@@ -481,7 +538,7 @@ camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *addres
     mvt->name[0] = 0;
     const Camber__Tile__Tile *tile = camber__tile__tile__unpack(&mvt->pool.allocator, size_bytes, bytes);
     if (!tile)
-        return judge_failure(mvt, "no vector tile");
+        return judge_failure(mvt, "it is not a vector tile");
     const camber_pool_mark mark = camber_pool_here(&mvt->pool);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < tile->n_layers && status == CAMBER_OK; i++) {
@@ -498,7 +555,7 @@ void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const
     note_damage(mvt, cause);
 }
 
-/* ---- All of it ---- */
+/* ---- Reader ---- */
 
 camber_status camber_mvt_create(camber_context *context, const camber_mvt_desc *desc, camber_mvt **mvt) {
     const size_t properties = desc->features->schema->property_count;

@@ -1,13 +1,14 @@
-/* Chooses the layers of a file that are read: the one that is named, the roads, or all that hold lines. */
+/* Chooses which layers of a file are read: the one that is named, the roads, or all layers that contain lines. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <string.h>
 
-/* How many features are examined to learn what a layer of no declared type holds. */
+/* How many features are examined if a layer does not declare its geometry type. */
 enum { PEEKED_FEATURES = 32 };
 
-static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
+/* kinds: those that are read, CAMBER_KIND_*. */
+static bool holds_read(OGRwkbGeometryType type, unsigned kinds) {
     switch (wkbFlatten(type)) {
     case wkbUnknown:
     case wkbLineString:
@@ -24,14 +25,14 @@ static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
     case wkbSurface:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbTriangle: return camber_schema_kinds(schema, true) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
+    case wkbTriangle: return kinds & (CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS);
     case wkbPoint:
-    case wkbMultiPoint: return camber_schema_kinds(schema, true) & CAMBER_KIND_POINT;
+    case wkbMultiPoint: return kinds & CAMBER_KINDS_OF_POINTS;
     default: return false;
     }
 }
 
-/* Whether the first features are lines: tiles declare no types. */
+/* Whether the first features are lines. Needed for tiles, which declare no types. */
 static bool begins_with_lines(OGRLayerH layer) {
     bool found = false;
     OGR_L_ResetReading(layer);
@@ -48,7 +49,8 @@ static bool begins_with_lines(OGRLayerH layer) {
     return found;
 }
 
-/* The names that the common schemas give to roads: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER. */
+/* Finds the layer with roads by the names in common schemas: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER.
+ */
 static int find_roads(GDALDatasetH handle) {
     static const char *const names[] = {"transportation", "roads",   "road",     "streets",
                                         "street",         "highway", "highways", "tiger"};
@@ -92,11 +94,13 @@ static camber_status fail_layer(const camber_dataset *dataset) {
     if (dataset->desc->layer)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: no layer \"%s\"; choose one of: %s",
                            dataset->desc->path, dataset->desc->layer, count ? names : "(it has no layers)");
-    return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: no layer with lines; its layers are: %s",
+    return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: no layer has lines; its layers are: %s",
                        dataset->desc->path, count ? names : "(none)");
 }
 
-camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema *schema, int **layers, size_t *count) {
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_features *features, int **layers,
+                                    size_t *count) {
+    const unsigned kinds = camber_features_kinds(features, true), osm_kinds = camber_features_kinds(features, false);
     GDALDatasetH handle = dataset->handle;
     const int total = GDALDatasetGetLayerCount(handle);
     int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1) + 2, sizeof *chosen);
@@ -113,15 +117,17 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema
         one = find_roads(handle);
     else
         for (int i = 0; i < total; i++)
-            if (holds_drawn(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), schema))
+            if (holds_read(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), kinds))
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;
-    /* Closed ways are among the lines; what relations make of ways is in a layer of its own, and so are nodes. */
-    if (dataset->osm && !dataset->desc->layer && schema->wants_areas &&
+    /* Closed ways are in the layer of lines. Areas that relations make of ways have a layer of their own, and so have
+     * nodes. */
+    if (dataset->osm && !dataset->desc->layer && osm_kinds & CAMBER_KINDS_OF_AREAS &&
         (one = find_layer(handle, "multipolygons")) >= 0)
         chosen[found++] = one;
-    if (dataset->osm && !dataset->desc->layer && schema->wants_points && (one = find_layer(handle, "points")) >= 0)
+    if (dataset->osm && !dataset->desc->layer && osm_kinds & CAMBER_KINDS_OF_POINTS &&
+        (one = find_layer(handle, "points")) >= 0)
         chosen[found++] = one;
     if (found == 0) {
         camber_free(dataset->context, chosen);

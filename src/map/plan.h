@@ -119,7 +119,10 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
 /* Whether a layer takes features of the class at a zoom. It may still draw them without width or colour. */
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class);
-/* Whether features of the class are drawn at any of the zooms (drawn.c). */
+/* Whether a symbol layer takes them. A plan does not contain labels. */
+bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
+                        const camber_feature_class *class);
+/* Whether features of the class are drawn at any of the zooms (drawn.c). Labels are not. */
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom);
 /* Finds the box of everything that is drawn at any of the zooms, in world coordinates. It extends past x = 1 if the box

@@ -48,7 +48,7 @@ camber_status camber_font_index_fill(camber_font_index *index, const char *const
     if (!status && has_system)
         status = camber_font_index_add_system(index);
     /* Which of equal fonts is taken must not depend on the order of files in folders. */
-    if (!status)
+    if (!status && index->count)
         qsort(index->entries, index->count, sizeof *index->entries, compare);
     return status ? status : add_shipped(index);
 }

@@ -49,6 +49,8 @@ static camber_status add_file(camber_font_index *index, const char *path) {
     camber_log_soften(index->context, &kept);
     hb_blob_t *blob = camber_face_map_file(index->context, path, &status);
     camber_log_restore(index->context, &kept);
+    if (status == CAMBER_ERROR_MEMORY)
+        return camber_fail(index->context, status, "%s: there is no memory to open this font", path);
     unsigned count = blob ? hb_face_count(blob) : 0;
     count = count < MOST_FONTS_OF_FILE ? count : MOST_FONTS_OF_FILE;
     bool has_any = false;
@@ -67,7 +69,7 @@ static camber_status add_file(camber_font_index *index, const char *path) {
     }
     hb_blob_destroy(blob);
     if (status == CAMBER_ERROR_MEMORY)
-        return camber_fail(index->context, status, "%s: there is no memory to open this font", path);
+        return status;
     if (!has_any)
         camber_log(index->context, CAMBER_LOG_WARNING, "%s: this is no font that can be read: left out", path);
     return CAMBER_OK;

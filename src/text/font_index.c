@@ -48,25 +48,30 @@ static bool has_key(const uint64_t *keys, size_t count, uint64_t key) {
     return false;
 }
 
-size_t camber_font_index_find(const camber_font_index *index, const char *name) {
-    const camber_font_name wanted = camber_font_name_split(name);
+size_t camber_font_index_find_family(const camber_font_index *index, uint64_t family_key,
+                                     const camber_font_style *style) {
     size_t best = SIZE_MAX;
     float least = 0.0f;
     for (size_t i = 0; i < index->count; i++) {
         const camber_font_entry *entry = &index->entries[i];
-        if (!entry->is_broken && has_key(entry->whole_keys, entry->whole_count, wanted.whole_key))
-            return i;
-    }
-    for (size_t i = 0; i < index->count; i++) {
-        const camber_font_entry *entry = &index->entries[i];
-        const float difference = camber_font_style_compare(&entry->style, &wanted.style);
+        const float difference = camber_font_style_compare(&entry->style, style);
         if (!entry->is_broken && (best == SIZE_MAX || difference < least) &&
-            has_key(entry->family_keys, entry->family_count, wanted.family_key)) {
+            has_key(entry->family_keys, entry->family_count, family_key)) {
             best = i;
             least = difference;
         }
     }
     return best;
+}
+
+size_t camber_font_index_find(const camber_font_index *index, const char *name) {
+    const camber_font_name wanted = camber_font_name_split(name);
+    for (size_t i = 0; i < index->count; i++) {
+        const camber_font_entry *entry = &index->entries[i];
+        if (!entry->is_broken && has_key(entry->whole_keys, entry->whole_count, wanted.whole_key))
+            return i;
+    }
+    return camber_font_index_find_family(index, wanted.family_key, &wanted.style);
 }
 
 camber_status camber_font_index_open(camber_font_index *index, size_t number, camber_face **face) {

@@ -55,6 +55,9 @@ camber_status camber_font_index_add_system(camber_font_index *index);
 /* The entry that a style means by a name: the one that is called so, or of its family the one with the nearest style.
  * SIZE_MAX: there is none. */
 size_t camber_font_index_find(const camber_font_index *index, const char *name);
+/* The entry of a family with the nearest style. SIZE_MAX: there is none. */
+size_t camber_font_index_find_family(const camber_font_index *index, uint64_t family_key,
+                                     const camber_font_style *style);
 /* Opens an entry's font. Sets *face to NULL if it is broken. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_font_index_open(camber_font_index *index, size_t entry, camber_face **face);
 

@@ -3,6 +3,8 @@
  * never on earlier texts: a map looks the same whatever is drawn before it. */
 #include "text/fonts.h"
 
+#include "text/scripts.h"
+
 #include <errno.h>
 #include <math.h>
 #include <sys/stat.h>
@@ -325,6 +327,20 @@ static camber_status find_in_folders(camber_fonts *fonts, const camber_font_stac
     return CAMBER_OK;
 }
 
+/* Gives Noto Sans of a character's script, which goes well with the shipped font. */
+static camber_status find_by_script(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code,
+                                    uint32_t *source) {
+    const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
+    const char *name = camber_get_script_name(script, stack->language);
+    const uint64_t key = camber_font_name_key("Noto Sans", name);
+    const size_t entry = name ? camber_font_index_find_family(&fonts->index, key, &stack->style) : SIZE_MAX;
+    uint32_t opened = CAMBER_NO_SOURCE;
+    const camber_status status = entry == SIZE_MAX ? CAMBER_OK : open_entry(fonts, entry, &opened);
+    if (!status && opened != CAMBER_NO_SOURCE && camber_glyph_source_has(&fonts->sources[opened], code))
+        *source = opened;
+    return status;
+}
+
 static camber_status find_in_system(camber_fonts *fonts, camber_font_stack *stack, uint32_t code, uint32_t *source) {
     if (!stack->is_sorted)
         stack->sorted = camber_font_index_sort_system(&fonts->index, &stack->style, stack->language);
@@ -393,6 +409,8 @@ static camber_status find_source_of(camber_fonts *fonts, camber_font_stack *stac
         if (!status && camber_glyph_source_has(&fonts->sources[shipped], code))
             *source = shipped;
     }
+    if (!status && *source == CAMBER_NO_SOURCE)
+        status = find_by_script(fonts, stack, code, source);
     if (!status && *source == CAMBER_NO_SOURCE)
         status = find_in_folders(fonts, stack, code, source);
     if (!status && *source == CAMBER_NO_SOURCE)

@@ -1,8 +1,8 @@
 /* A set of fonts: what draws each character of a stack of fonts, and the numbers of glyphs that texts have.
  *
  * A character is drawn by the first of these that has it: the caller's ranges of glyphs; the fonts of its stack; the
- * fonts that camber ships, so that maps are alike on all machines; fonts of the folders; the system's fonts, in the
- * order in which fontconfig tries them. */
+ * fonts that camber ships, so that maps are alike on all machines; Noto Sans of its script; fonts of the folders; the
+ * system's fonts, in the order in which fontconfig tries them. */
 #ifndef CAMBER_TEXT_FONTS_H
 #define CAMBER_TEXT_FONTS_H
 

@@ -10,16 +10,28 @@
 static const uint32_t MOST_BITMAP_PX = 1024; /* wide or high */
 static const uint32_t MOST_METRIC_PX = 4096;
 
+/* protobuf's memory. */
+typedef struct message_memory {
+    camber_context *context;
+    bool is_exhausted;
+} message_memory;
+
 static void *allocate(void *user, size_t size_bytes) {
-    return camber_alloc(user, 1, size_bytes);
+    message_memory *memory = user;
+    void *block = camber_alloc(memory->context, 1, size_bytes);
+    memory->is_exhausted = memory->is_exhausted || !block;
+    return block;
 }
 
 static void release(void *user, void *block) {
-    camber_free(user, block);
+    camber_free(((message_memory *)user)->context, block);
 }
 
-static ProtobufCAllocator get_allocator(camber_context *context) {
-    return (ProtobufCAllocator){allocate, release, context};
+static void free_message(camber_context *context, Camber__Glyphs__Range *range) {
+    message_memory memory = {.context = context};
+    ProtobufCAllocator allocator = {allocate, release, &memory};
+    if (range)
+        camber__glyphs__range__free_unpacked(range, &allocator);
 }
 
 /* Where the baseline is: below the letter H, which stands on it. */
@@ -58,9 +70,8 @@ camber_status camber_glyph_ranges_open(camber_context *context, camber_glyph_ran
 void camber_glyph_ranges_close(camber_glyph_ranges *ranges) {
     if (!ranges)
         return;
-    ProtobufCAllocator allocator = get_allocator(ranges->context);
     for (size_t i = 0; i < ranges->loaded_count; i++)
-        camber__glyphs__range__free_unpacked(ranges->loaded[i], &allocator);
+        free_message(ranges->context, ranges->loaded[i]);
     camber_free(ranges->context, ranges->loaded);
     camber_free(ranges->context, ranges->glyphs);
     camber_free(ranges->context, ranges->stack);
@@ -104,31 +115,49 @@ static bool note_glyphs(camber_glyph_ranges *ranges, const Camber__Glyphs__Range
     return true;
 }
 
+/* Sets *range to NULL if the bytes are no range. */
+static camber_status unpack(camber_context *context, const uint8_t *bytes, size_t size_bytes,
+                            Camber__Glyphs__Range **range) {
+    message_memory memory = {.context = context};
+    ProtobufCAllocator allocator = {allocate, release, &memory};
+    camber_soft_log kept;
+    camber_log_soften(context, &kept);
+    *range = camber__glyphs__range__unpack(&allocator, size_bytes, bytes);
+    camber_log_restore(context, &kept);
+    return *range || !memory.is_exhausted
+               ? CAMBER_OK
+               : camber_fail(context, CAMBER_ERROR_MEMORY, "there is no memory for a range of glyphs of %zu bytes",
+                             size_bytes);
+}
+
 static camber_status load(camber_glyph_ranges *ranges, uint32_t first) {
     camber_context *context = ranges->context;
+    Camber__Glyphs__Range *range = NULL;
     const uint8_t *bytes = NULL;
     size_t size_bytes = 0;
-    const camber_status status = ranges->read(ranges->user, ranges->stack, first, &bytes, &size_bytes);
-    if (status == CAMBER_ERROR_MEMORY)
+    const camber_status found = ranges->read(ranges->user, ranges->stack, first, &bytes, &size_bytes);
+    if (found == CAMBER_ERROR_MEMORY)
+        return found;
+    camber_status status = found ? CAMBER_OK : unpack(context, bytes, size_bytes, &range);
+    if (!status && !camber_grow(context, &ranges->loaded, &ranges->loaded_capacity, ranges->loaded_count + 1,
+                                sizeof *ranges->loaded))
+        status = CAMBER_ERROR_MEMORY;
+    if (status) {
+        free_message(context, range);
         return status;
-    if (!camber_number_map_set(context, &ranges->asked, first >> 8, 1) ||
-        !camber_grow(context, &ranges->loaded, &ranges->loaded_capacity, ranges->loaded_count + 1,
-                     sizeof *ranges->loaded))
-        return CAMBER_ERROR_MEMORY;
-    if (status == CAMBER_ERROR_NOT_FOUND)
-        return CAMBER_OK;
-    ProtobufCAllocator allocator = get_allocator(context);
-    Camber__Glyphs__Range *range = status ? NULL : camber__glyphs__range__unpack(&allocator, size_bytes, bytes);
+    }
     if (range) {
         ranges->loaded[ranges->loaded_count++] = range;
-        return note_glyphs(ranges, range, first) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+        if (!note_glyphs(ranges, range, first))
+            return CAMBER_ERROR_MEMORY;
     }
-    if (!ranges->is_told)
+    if (!range && found != CAMBER_ERROR_NOT_FOUND && !ranges->is_told) {
         camber_log(context, CAMBER_LOG_WARNING,
                    "glyphs of %s: the range from U+%04X cannot be read: other fonts draw it", ranges->stack,
                    (unsigned)first);
-    ranges->is_told = true;
-    return CAMBER_OK;
+        ranges->is_told = true;
+    }
+    return camber_number_map_set(context, &ranges->asked, first >> 8, 1) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 bool camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code) {

@@ -23,7 +23,7 @@ typedef struct camber_glyph_ranges {
     camber_glyph_range_fn *read;
     void *user;
     char *stack;             /* names of fonts, with commas */
-    camber_number_map asked; /* a range's number -> its index in loaded + 2, or 1: there is none */
+    camber_number_map asked; /* a range's number -> 1: it has been asked for */
     void **loaded;           /* protobuf's messages */
     size_t loaded_count, loaded_capacity;
     camber_number_map found; /* a code point -> its glyph's index in glyphs + 1 */

@@ -1,6 +1,7 @@
 #include "text/scripts.h"
 
 #include <stddef.h>
+#include <string.h>
 
 typedef struct range {
     uint32_t first, last;
@@ -90,4 +91,55 @@ bool camber_is_cursive(uint32_t code) {
         {0x1e900, 0x1e95f}, /* Adlam */
     };
     return code >= 0x600 && IS_IN(ranges, code);
+}
+
+static const char *get_ideographs_name(hb_script_t script, const char *language) {
+    if (script == HB_SCRIPT_HANGUL || (language && strncmp(language, "ko", 2) == 0))
+        return "CJK KR";
+    if (script == HB_SCRIPT_HIRAGANA || script == HB_SCRIPT_KATAKANA || (language && strncmp(language, "ja", 2) == 0))
+        return "CJK JP";
+    if (language && (strcmp(language, "zh-Hant") == 0 || strcmp(language, "zh-TW") == 0))
+        return "CJK TC";
+    return "CJK SC";
+}
+
+const char *camber_get_script_name(hb_script_t script, const char *language) {
+    switch (script) {
+    case HB_SCRIPT_ARABIC: return "Arabic";
+    case HB_SCRIPT_ARMENIAN: return "Armenian";
+    case HB_SCRIPT_BENGALI: return "Bengali";
+    case HB_SCRIPT_CANADIAN_SYLLABICS: return "Canadian Aboriginal";
+    case HB_SCRIPT_CHEROKEE: return "Cherokee";
+    case HB_SCRIPT_DEVANAGARI: return "Devanagari";
+    case HB_SCRIPT_ETHIOPIC: return "Ethiopic";
+    case HB_SCRIPT_GEORGIAN: return "Georgian";
+    case HB_SCRIPT_GUJARATI: return "Gujarati";
+    case HB_SCRIPT_GURMUKHI: return "Gurmukhi";
+    case HB_SCRIPT_HEBREW: return "Hebrew";
+    case HB_SCRIPT_JAVANESE: return "Javanese";
+    case HB_SCRIPT_KANNADA: return "Kannada";
+    case HB_SCRIPT_KHMER: return "Khmer";
+    case HB_SCRIPT_LAO: return "Lao";
+    case HB_SCRIPT_MALAYALAM: return "Malayalam";
+    case HB_SCRIPT_MONGOLIAN: return "Mongolian";
+    case HB_SCRIPT_MYANMAR: return "Myanmar";
+    case HB_SCRIPT_NKO: return "NKo";
+    case HB_SCRIPT_OL_CHIKI: return "Ol Chiki";
+    case HB_SCRIPT_ORIYA: return "Oriya";
+    case HB_SCRIPT_SINHALA: return "Sinhala";
+    case HB_SCRIPT_SYRIAC: return "Syriac";
+    case HB_SCRIPT_TAMIL: return "Tamil";
+    case HB_SCRIPT_TELUGU: return "Telugu";
+    case HB_SCRIPT_THAANA: return "Thaana";
+    case HB_SCRIPT_THAI: return "Thai";
+    case HB_SCRIPT_TIBETAN: return "Tibetan";
+    case HB_SCRIPT_TIFINAGH: return "Tifinagh";
+    case HB_SCRIPT_YI: return "Yi";
+    case HB_SCRIPT_HAN:
+    case HB_SCRIPT_BOPOMOFO:
+    case HB_SCRIPT_HANGUL:
+    case HB_SCRIPT_HIRAGANA:
+    case HB_SCRIPT_KATAKANA: return get_ideographs_name(script, language);
+    default: return NULL;
+    }
 }

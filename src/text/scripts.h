@@ -2,6 +2,8 @@
 #ifndef CAMBER_TEXT_SCRIPTS_H
 #define CAMBER_TEXT_SCRIPTS_H
 
+#include <hb.h>
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,6 +20,9 @@ bool camber_is_upright(uint32_t code);
 bool camber_turns_without_form(uint32_t code);
 /* The code point of its vertical form, or 0. */
 uint32_t camber_get_vertical_form(uint32_t code);
+/* What the family of Noto Sans that has a script is called after "Noto Sans". language: of the text; may be NULL. NULL:
+ * there is none of its own. */
+const char *camber_get_script_name(hb_script_t script, const char *language);
 /* Whether letters of its script touch, so that nothing may come between them. */
 bool camber_is_cursive(uint32_t code);
 

@@ -1,3 +1,4 @@
+/* Tables of characters and scripts. */
 #include "text/scripts.h"
 
 #include <stddef.h>

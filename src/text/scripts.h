@@ -20,8 +20,8 @@ bool camber_is_upright(uint32_t code);
 bool camber_turns_without_form(uint32_t code);
 /* The code point of its vertical form, or 0. */
 uint32_t camber_get_vertical_form(uint32_t code);
-/* What the family of Noto Sans that has a script is called after "Noto Sans". language: of the text; may be NULL. NULL:
- * there is none of its own. */
+/* Names the family of Noto Sans that has a script, without "Noto Sans". language: of the text; may be NULL. NULL: the
+ * script has no family of its own. */
 const char *camber_get_script_name(hb_script_t script, const char *language);
 /* Whether letters of its script touch, so that nothing may come between them. */
 bool camber_is_cursive(uint32_t code);

@@ -54,26 +54,6 @@ static double get_badness(double width, double average, bool is_last) {
     return !is_last ? raggedness : width < average ? raggedness / 2.0 : raggedness * 2.0;
 }
 
-/* Finds the best break before this one among the breaks from `first` on. `from` is what stands at the last newline. */
-static line_break evaluate(const line_break *breaks, size_t first, size_t count, line_break made, double average,
-                           bool is_last, const line_break *from) {
-    double best = from->badness + get_badness(made.x - from->x, average, is_last);
-    made.prior = from->prior;
-    bool is_found = false;
-    for (size_t i = count; i > first; i--) {
-        const double width = made.x - breaks[i - 1].x;
-        const double badness = breaks[i - 1].badness + get_badness(width, average, is_last);
-        /* The last of equal ones counts. */
-        if (is_found ? badness < best : badness <= best) {
-            best = badness;
-            made.prior = (uint32_t)i;
-            is_found = true;
-        }
-    }
-    made.badness += best;
-    return made;
-}
-
 typedef struct breaker {
     const camber_shaping *shaping;
     line_break *breaks;
@@ -89,13 +69,32 @@ static size_t get_reach(const camber_shaping *shaping) {
     return reach < 64 ? 64 : reach;
 }
 
-static void add_break(breaker *b, uint32_t end, double x, double penalty, bool is_newline, bool is_last) {
+/* Finds the best break before this one. Its badness is that of its place so far. */
+static void choose_prior(const breaker *b, line_break *made, bool is_last) {
     const size_t reach = get_reach(b->shaping);
     const size_t first = b->count > b->first + reach ? b->count - reach : b->first;
-    const line_break made = {.end = end, .x = x, .badness = penalty};
-    b->breaks[b->count] = evaluate(b->breaks, first, b->count, made, b->average, is_last, &b->newline);
-    b->count++;
-    if (is_newline) {
+    double best = b->newline.badness + get_badness(made->x - b->newline.x, b->average, is_last);
+    bool is_found = false;
+    made->prior = b->newline.prior;
+    for (size_t i = b->count; i > first; i--) {
+        const line_break *prior = &b->breaks[i - 1];
+        const double badness = prior->badness + get_badness(made->x - prior->x, b->average, is_last);
+        /* The last of equal ones counts. */
+        if (is_found ? badness < best : badness <= best) {
+            best = badness;
+            made->prior = (uint32_t)i;
+            is_found = true;
+        }
+    }
+    made->badness += best;
+}
+
+static void add_break(breaker *b, uint32_t end, double x, double penalty) {
+    line_break made = {.end = end, .x = x, .badness = penalty};
+    const bool is_last = end == b->shaping->count;
+    choose_prior(b, &made, is_last);
+    b->breaks[b->count++] = made;
+    if (!is_last && b->shaping->codes[end - 1] == '\n') {
         b->newline = (line_break){.x = x, .prior = (uint32_t)b->count};
         b->first = b->count;
     }
@@ -123,9 +122,9 @@ static void find_breaks(breaker *b, bool has_width, float spacing) {
         const bool is_ideographic = camber_is_ideographic(code);
         if (is_breakable(code) || is_ideographic || shaping->characters[i].is_image ||
             (i + 2 < shaping->count && next == '('))
-            add_break(b, (uint32_t)i + 1, x, get_penalty(code, next, is_ideographic && has_hints), code == '\n', false);
+            add_break(b, (uint32_t)i + 1, x, get_penalty(code, next, is_ideographic && has_hints));
     }
-    add_break(b, (uint32_t)shaping->count, x, 0.0, false, true);
+    add_break(b, (uint32_t)shaping->count, x, 0.0);
 }
 
 /* A line without the white space at its ends. */

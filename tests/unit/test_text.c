@@ -263,8 +263,10 @@ static double plain_badness(double width, double average, double penalty, bool i
     return raggedness + fabs(penalty) * penalty;
 }
 
+/* made.badness is the penalty of its place. */
 static plain_break plain_evaluate(const plain_break *breaks, size_t count, plain_break made, double average,
-                                  double penalty, bool is_last) {
+                                  bool is_last) {
+    const double penalty = made.badness;
     made.badness = plain_badness(made.x, average, penalty, is_last);
     made.prior = SIZE_MAX;
     for (size_t i = 0; i < count; i++) {
@@ -292,13 +294,13 @@ static size_t plain_lines(const camber_shaping *shaping, double max_width_em, si
         penalty += code == '(' ? 50.0 : 0.0;
         penalty += next == ')' ? 50.0 : 0.0;
         if (strchr("\n &)+-/", (int)code) || (next == '(' && i + 2 < shaping->count)) {
-            breaks[count] = plain_evaluate(breaks, count, (plain_break){.x = x, .end = i + 1}, average, penalty, false);
+            breaks[count] =
+                plain_evaluate(breaks, count, (plain_break){.x = x, .end = i + 1, .badness = penalty}, average, false);
             count++;
         }
     }
     x += (double)shaping->characters[shaping->count - 1].width_em * 24.0;
-    const plain_break last =
-        plain_evaluate(breaks, count, (plain_break){.x = x, .end = shaping->count}, average, 0.0, true);
+    const plain_break last = plain_evaluate(breaks, count, (plain_break){.x = x, .end = shaping->count}, average, true);
     for (size_t at = last.prior; at != SIZE_MAX; at = breaks[at].prior)
         line_count++;
     ends[line_count] = last.end;
@@ -628,6 +630,12 @@ static void test_marks(void **state) {
     run.font_count = 2;
     camber_text *text = NULL;
     assert_int_equal(camber_text_shape(m.fonts, &(camber_text_desc){.runs = &run, .run_count = 1}, &text), CAMBER_OK);
+    if (m.h.warnings) {
+        print_message("there is no Noto Sans or no DejaVu Sans: marks are not looked at\n");
+        camber_text_destroy(text);
+        unmake(&m);
+        skip();
+    }
     assert_int_equal(text->glyph_count, 5);
     assert_int_equal(m.fonts->glyphs[text->glyphs[0].glyph].source, m.fonts->glyphs[text->glyphs[1].glyph].source);
     assert_int_equal(m.fonts->glyphs[text->glyphs[3].glyph].source, m.fonts->glyphs[text->glyphs[4].glyph].source);
@@ -799,7 +807,5 @@ int main(void) {
         cmocka_unit_test(test_invalid),         cmocka_unit_test(test_broken_files),
         cmocka_unit_test(test_no_memory),
     };
-    if (getenv("ONLY"))
-        cmocka_set_test_filter(getenv("ONLY")); // X
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

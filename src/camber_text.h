@@ -18,6 +18,19 @@ extern "C" {
 
 /* ---- Fonts ------------------------------------------------------------------------------------------ */
 
+/* A run of text names a stack of fonts. A character, with the marks on it, is drawn by the first of these that has it:
+ *
+ *     1. the glyphs that the caller's function gives
+ *     2. the fonts of the stack: of a folder, else of the system; a name means the font that is called so, else the one
+ *        of its family with the nearest weight, width and slant
+ *     3. the shipped font: Noto Sans for Latin, Greek and Cyrillic, regular, bold or italic
+ *     4. Noto Sans of the character's script, such as Noto Sans Arabic
+ *     5. any font of the folders
+ *     6. the system's fonts, in the order of fontconfig
+ *
+ * This depends on no earlier text. A warning names each font of a stack that is missing, once; the log at
+ * CAMBER_LOG_INFO says which fonts are drawn with. Glyphs that are colour pictures are left out. */
+
 /* Gives the glyphs of a range of 256 code points, from first on, as a glyph PBF of the style specification. stack: the
  * names of the fonts, separated by commas. *bytes stays valid until the next call.
  * Returns CAMBER_ERROR_NOT_FOUND if there is no such range: other fonts are then asked. */

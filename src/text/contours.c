@@ -5,13 +5,16 @@
  *     o---x     o outside, x inside. The ring enters from the right side and leaves through the top:
  *     |  /      each crossing has one crossing that follows it, so walking from one to the next gives the rings.
  *     o-' o
- */
+ *
+ * Then points that a straight line passes within a small tolerance are left out. */
 #include "text/contours.h"
 
 #include <math.h>
 
 /* Values are rounded down from 255 - (64 + 32 d), d px outside of the edge, so the edge is between 191 and 192. */
 static const float EDGE = 191.5f;
+/* Distance from a ring to the points that are left out of it: 1/40 px of the bitmap. */
+static const float TOLERANCE_EM = 1.0f / 960.0f;
 
 typedef struct grid {
     const camber_contour_source *source;
@@ -77,6 +80,62 @@ static void add_crossing(const grid *g, uint32_t side, camber_outline_maker *mak
     camber_outline_add_point(maker, g->source->left + px * g->source->scale, g->source->top + py * g->source->scale);
 }
 
+/* Directions in which a ring may go on from a point so that all points since then are near the straight line. */
+typedef struct sector {
+    float x, y;      /* the point */
+    float direction; /* of the first point after it; the others are relative to it */
+    float low, high;
+    float reach; /* distance of the farthest point */
+} sector;
+
+static sector begin_sector(float x, float y) {
+    return (sector){.x = x, .y = y, .low = -4.0f, .high = 4.0f};
+}
+
+/* Whether the line from the sector's point to this one passes all points between them. */
+static bool follow(sector *s, float x, float y) {
+    const float dx = x - s->x, dy = y - s->y, distance = hypotf(dx, dy);
+    const float direction = atan2f(dy, dx);
+    if (s->reach == 0.0f)
+        s->direction = direction;
+    const float turn = remainderf(direction - s->direction, 6.28318531f);
+    if (distance < s->reach || turn < s->low || turn > s->high)
+        return false;
+    if (distance > TOLERANCE_EM) {
+        const float half = asinf(TOLERANCE_EM / distance);
+        s->low = fmaxf(s->low, turn - half);
+        s->high = fminf(s->high, turn + half);
+    }
+    s->reach = distance;
+    return true;
+}
+
+/* Leaves out the points of the last ring that are on straight lines between others: stems have one for each pixel. */
+static void thin_ring(camber_outline_maker *maker) {
+    if (maker->status)
+        return;
+    float *points = maker->points + 2 * (size_t)maker->offsets[maker->ring_count - 1];
+    const size_t count = maker->point_count - maker->offsets[maker->ring_count - 1];
+    if (count < 3)
+        return;
+    size_t kept = 1;
+    sector s = begin_sector(points[0], points[1]);
+    for (size_t i = 1; i < count; i++) {
+        const float x = points[2 * i], y = points[2 * i + 1];
+        if (follow(&s, x, y))
+            continue;
+        const float before_x = points[2 * i - 2], before_y = points[2 * i - 1];
+        points[2 * kept] = before_x;
+        points[2 * kept + 1] = before_y;
+        kept++;
+        s = begin_sector(before_x, before_y);
+        follow(&s, x, y);
+    }
+    points[2 * kept] = points[2 * count - 2];
+    points[2 * kept + 1] = points[2 * count - 1];
+    maker->point_count = maker->offsets[maker->ring_count - 1] + kept + 1;
+}
+
 void camber_contours_trace(const camber_contour_source *source, camber_outline_maker *maker) {
     grid g = {source, source->width + 2, source->height + 2, NULL};
     const size_t side_count = 2 * (size_t)g.width * g.height;
@@ -100,6 +159,7 @@ void camber_contours_trace(const camber_contour_source *source, camber_outline_m
             add_crossing(&g, side, maker);
             side = following;
         }
+        thin_ring(maker);
         camber_outline_end_ring(maker);
     }
     camber_free(maker->context, g.next);

@@ -84,9 +84,12 @@ static camber_status add_folder(camber_font_index *index, const char *folder, in
         char path[PATH_MAX];
         struct stat about;
         const int length = snprintf(path, sizeof path, "%s/%s", folder, found->d_name);
-        if (found->d_name[0] == '.' || length < 0 || (size_t)length >= sizeof path || stat(path, &about))
+        if (found->d_name[0] == '.' || length < 0 || (size_t)length >= sizeof path || lstat(path, &about))
             continue;
-        if (S_ISDIR(about.st_mode) && depth < MOST_DEPTH)
+        const bool is_link = S_ISLNK(about.st_mode);
+        if (is_link && stat(path, &about))
+            continue;
+        if (S_ISDIR(about.st_mode) && !is_link && depth < MOST_DEPTH) /* links may lead in a circle */
             status = add_folder(index, path, depth + 1);
         else if (S_ISREG(about.st_mode) && is_font_file(path))
             status = add_file(index, path);

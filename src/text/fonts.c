@@ -5,6 +5,7 @@
 
 #include "text/scripts.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <sys/stat.h>
@@ -483,6 +484,7 @@ static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int expon
 camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
                                        camber_outline *outline) {
     int exponent;
+    assert(glyph < fonts->glyph_count);
     /* One outline serves all tolerances between two powers of 2; that of ranges has no curves. */
     frexpf(tolerance_em > 0.0f ? fminf(fmaxf(tolerance_em, 0x1p-20f), 1.0f) : 1.0f / 256.0f, &exponent);
     exponent--;

@@ -14,13 +14,6 @@ static size_t find_cluster_end(const camber_shaping *shaping, size_t first) {
     return end;
 }
 
-/* Format characters, joiners and selectors of variants go with what stands before them, whatever its font. */
-static bool is_invisible(uint32_t code) {
-    return code == '\n' || code == 0xad || (code >= 0x200b && code <= 0x200f) || (code >= 0x202a && code <= 0x202e) ||
-           (code >= 0x2060 && code <= 0x206f) || (code >= 0xfe00 && code <= 0xfe0f) || code == 0x61c ||
-           (code >= 0xe0000 && code <= 0xe0fff);
-}
-
 static camber_status choose_source(camber_fonts *fonts, size_t first, size_t end) {
     camber_shaping *shaping = &fonts->shaping;
     camber_character *characters = shaping->characters;
@@ -29,7 +22,7 @@ static camber_status choose_source(camber_fonts *fonts, size_t first, size_t end
     size_t visible_count = 0;
     camber_status status = CAMBER_OK;
     for (size_t i = first; i < end; i++)
-        if (!is_invisible(shaping->codes[i]))
+        if (!camber_is_invisible(shaping->codes[i]))
             visible[visible_count++] = shaping->codes[i];
     if (shaping->codes[first] == '\n') /* draws nothing, and ends an item */
         visible_count = 0;

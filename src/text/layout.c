@@ -249,8 +249,10 @@ camber_status camber_shaping_lay_out(camber_fonts *fonts, const camber_text_desc
     l.ascender_em = find_ascender(fonts, desc);
     text->line_height_em = line_height;
     text->lines = camber_alloc(fonts->context, shaping->line_count, sizeof *text->lines);
-    if (!text->lines)
+    text->glyphs = text->lines ? camber_alloc(fonts->context, shaping->glyph_count, sizeof *text->glyphs) : NULL;
+    if (!text->glyphs)
         return CAMBER_ERROR_MEMORY;
+    l.glyph_capacity = shaping->glyph_count;
     for (size_t i = 0; i < shaping->line_count && !status; i++) {
         camber_text_line *line = &text->lines[text->line_count++];
         *line = (camber_text_line){.first = text->glyph_count};

@@ -21,6 +21,12 @@ static bool is_in(const range *ranges, size_t count, uint32_t code) {
 }
 #define IS_IN(ranges, code) is_in(ranges, sizeof(ranges) / sizeof *(ranges), code)
 
+bool camber_is_invisible(uint32_t code) {
+    return code == '\n' || code == 0xad || code == 0x61c || (code >= 0x200b && code <= 0x200f) ||
+           (code >= 0x202a && code <= 0x202e) || (code >= 0x2060 && code <= 0x206f) ||
+           (code >= 0xfe00 && code <= 0xfe0f) || (code >= 0xe0000 && code <= 0xe0fff);
+}
+
 bool camber_is_ideographic(uint32_t code) {
     static const range ranges[] = {
         {0x2e80, 0x2fdf},   /* radicals */

@@ -11,6 +11,9 @@
 static inline bool camber_is_white(uint32_t code) {
     return code == ' ' || (code >= 9 && code <= 13);
 }
+/* Whether it has no glyph of its own: format characters, joiners and selectors of variants, which go with the character
+ * before them, whatever its font. */
+bool camber_is_invisible(uint32_t code);
 /* Whether a line may break after it, as between ideographs. */
 bool camber_is_ideographic(uint32_t code);
 /* Whether it stands upright in vertical lines. */

@@ -69,7 +69,7 @@ static camber_status add_range_glyph(camber_fonts *fonts, const camber_text_item
     const camber_glyph_source *source = &fonts->sources[item->source];
     const uint32_t code = shaping->codes[character];
     const uint32_t chosen = choose_form(source, code, form, shaping->characters[character].level & 1, item->is_upright);
-    if (chosen == FRIBIDI_CHAR_FILL || !camber_glyph_source_has(source, chosen))
+    if (chosen == FRIBIDI_CHAR_FILL || camber_is_invisible(code) || !camber_glyph_source_has(source, chosen))
         return CAMBER_OK;
     camber_item_glyph *glyph = add_glyph(fonts);
     if (!glyph)

@@ -501,6 +501,31 @@ static void test_ranges(void **state) {
     unmake(&m);
 }
 
+/* Arabic letters are drawn in the forms in which they join, and with ligatures, if there are glyphs for these. */
+static void test_arabic_ranges(void **state) {
+    (void)state;
+    static const char *const names[] = {"Open Sans Semibold", "Arial Unicode MS Bold"};
+    /* From left to right: lam and alef as one, a space, then beh with alef before it. */
+    static const uint32_t wanted[] = {0xfefb, ' ', 0xfe8f, 0xfe8d};
+    static glyph_folder folder;
+    char path[2048];
+    maker m;
+    if (!open_ranges(&m, &folder, path))
+        skip();
+    camber_text_run run = run_of("\xd8\xa7\xd8\xa8 \xd9\x84\xd8\xa7", names);
+    run.font_count = 2;
+    camber_text *text = NULL;
+    const camber_text_desc desc = {.runs = &run, .run_count = 1, .letter_spacing_em = 0.5f};
+    assert_int_equal(camber_text_shape(m.fonts, &desc, &text), CAMBER_OK);
+    assert_int_equal(text->glyph_count, 4);
+    for (size_t i = 0; i < 4; i++)
+        assert_int_equal(m.fonts->glyphs[text->glyphs[i].glyph].number, wanted[i]);
+    assert_true(text->right - text->left < 2.5f); /* without the spacing */
+    assert_int_equal(m.h.warnings, 0);
+    camber_text_destroy(text);
+    unmake(&m);
+}
+
 /* Ideographs stand upright below each other, Latin letters are turned, and lines follow each other to the left. */
 static void test_vertical(void **state) {
     (void)state;
@@ -795,16 +820,27 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_beside_hb_shape), cmocka_unit_test(test_bidi_beside_unicode),
-        cmocka_unit_test(test_order),           cmocka_unit_test(test_both_directions),
-        cmocka_unit_test(test_breaks),          cmocka_unit_test(test_breaks_plainly),
-        cmocka_unit_test(test_anchors),         cmocka_unit_test(test_spacing_and_scale),
-        cmocka_unit_test(test_outlines),        cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_vertical),        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_missing_font),    cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_pictograph),      cmocka_unit_test(test_marks),
-        cmocka_unit_test(test_threads),         cmocka_unit_test(test_long),
-        cmocka_unit_test(test_invalid),         cmocka_unit_test(test_broken_files),
+        cmocka_unit_test(test_beside_hb_shape),
+        cmocka_unit_test(test_bidi_beside_unicode),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_both_directions),
+        cmocka_unit_test(test_breaks),
+        cmocka_unit_test(test_breaks_plainly),
+        cmocka_unit_test(test_anchors),
+        cmocka_unit_test(test_spacing_and_scale),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_arabic_ranges),
+        cmocka_unit_test(test_vertical),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_missing_font),
+        cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_pictograph),
+        cmocka_unit_test(test_marks),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_long),
+        cmocka_unit_test(test_invalid),
+        cmocka_unit_test(test_broken_files),
         cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

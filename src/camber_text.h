@@ -18,6 +18,19 @@ extern "C" {
 
 /* ---- Fonts ------------------------------------------------------------------------------------------ */
 
+/* A run of text names a stack of fonts. A character, with the marks on it, is drawn by the first of these that has it:
+ *
+ *     1. the glyphs that the caller's function gives
+ *     2. the fonts of the stack: of a folder, else of the system; a name means the font that is called so, else the one
+ *        of its family with the nearest weight, width and slant
+ *     3. the shipped font: Noto Sans for Latin, Greek and Cyrillic, regular, bold or italic
+ *     4. Noto Sans of the character's script, such as Noto Sans Arabic
+ *     5. any font of the folders
+ *     6. the system's fonts, in the order of fontconfig
+ *
+ * This depends on no earlier text. A warning names each font of a stack that is missing, once; the log at
+ * CAMBER_LOG_INFO says which fonts are drawn with. Glyphs that are colour pictures are left out. */
+
 /* Gives the glyphs of a range of 256 code points, from first on, as a glyph PBF of the style specification. stack: the
  * names of the fonts, separated by commas. *bytes stays valid until the next call.
  * Returns CAMBER_ERROR_NOT_FOUND if there is no such range: other fonts are then asked. */
@@ -76,7 +89,7 @@ typedef enum camber_text_justify {
     CAMBER_JUSTIFY_AUTO, /* towards the anchor's side */
 } camber_text_justify;
 
-/* How a run that is smaller than others of its line stands beside them. */
+/* How a run that is smaller than others of its line stands next to them. */
 typedef enum camber_text_align {
     CAMBER_ALIGN_BOTTOM = 0, /* on their baseline */
     CAMBER_ALIGN_CENTER,
@@ -87,9 +100,10 @@ typedef enum camber_text_align {
 typedef struct camber_text_run {
     const char *text; /* UTF-8, size_bytes of it; what is invalid is shown as U+FFFD. NULL: an image */
     size_t size_bytes;
-    const char *const *fonts; /* font_count names, each with its style, such as "Noto Sans Bold"; the first is preferred */
+    const char *const
+        *fonts; /* font_count names, each with its style, such as "Noto Sans Bold"; the first is preferred */
     size_t font_count;
-    float scale;                          /* of the text's size. 0: 1 */
+    float scale;                           /* of the text's size. 0: 1 */
     float image_width_em, image_height_em; /* of an image */
     camber_text_align align;
 } camber_text_run;
@@ -112,11 +126,11 @@ typedef struct camber_text_desc {
 typedef struct camber_text_glyph {
     uint32_t glyph; /* of the fonts. CAMBER_NO_GLYPH: the run's image, whose top left corner is at x, y */
     uint32_t run;
-    uint32_t byte;   /* where in the run's text its character begins */
-    float x, y;      /* its origin, from the text's anchor */
-    float advance;   /* along the line, with the spacing */
-    float scale;     /* of its outline */
-    bool turned;     /* its outline is turned by 90 degrees clockwise */
+    uint32_t byte; /* where in the run's text its character begins */
+    float x, y;    /* its origin, from the text's anchor */
+    float advance; /* along the line, with the spacing */
+    float scale;   /* of its outline */
+    bool turned;   /* its outline is turned by 90 degrees clockwise */
 } camber_text_glyph;
 
 typedef struct camber_text_line {
@@ -133,6 +147,8 @@ typedef struct camber_text {
     float left, top, right, bottom; /* box around all lines, each line_height_em high, from the anchor */
     float line_height_em;
     bool vertical;
+    camber_text_anchor anchor; /* as it is placed now */
+    camber_text_justify justify;
 } camber_text;
 
 /* Shapes and lays out a text. An empty one has no lines. A character that no font has is drawn as the box that its font

@@ -40,9 +40,8 @@ static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, c
     return kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POLYGON || (kind == CAMBER_GEOMETRY_POINT && points);
 }
 
-/* Whether features of the class come to the layer's filter. */
-static bool comes_to(const camber_features *features, const camber_style_layer *layer,
-                     const camber_feature_class *class) {
+bool camber_plan_comes_to(const camber_features *features, const camber_style_layer *layer,
+                          const camber_feature_class *class) {
     if (layer->plain && !class->plain)
         return false;
     if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
@@ -63,14 +62,14 @@ bool camber_plan_takes(const camber_features *features, const camber_style_layer
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
     const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
                       (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
-    return layer->kind != CAMBER_LAYER_BACKGROUND && fits && comes_to(features, layer, class) &&
+    return layer->kind != CAMBER_LAYER_BACKGROUND && fits && camber_plan_comes_to(features, layer, class) &&
            camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
                         const camber_feature_class *class) {
     const camber_style_layer *layer = drawn->look.layer;
-    if (!takes_kind(layer, drawn->part, class->geometry) || !comes_to(features, layer, class))
+    if (!takes_kind(layer, drawn->part, class->geometry) || !camber_plan_comes_to(features, layer, class))
         return false;
     const camber_feature_view feature = camber_plan_view_of(features, class);
     return camber_style_layer_matches(layer, camber_view_style_zoom(view), &feature);

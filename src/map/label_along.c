@@ -18,18 +18,20 @@ static const double UPRIGHT_MIDDLE_EM = 0.38;
 double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end) {
     const camber_text_glyph *g = text->glyphs;
     double low = INFINITY, high = -INFINITY;
-    size_t i = first;
-    for (; i < text->glyph_count && g[i].run == g[first].run && g[i].byte == g[first].byte; i++) {
-        const double advance = fmax((double)g[i].advance - letter_spacing_em, 0.0);
-        double from = (double)(text->vertical ? g[i].y : g[i].x), to = from + advance;
-        if (text->vertical && !g[i].turned && g[i].glyph != CAMBER_NO_GLYPH) {
-            from -= (UPRIGHT_MIDDLE_EM + 0.5) * (double)g[i].scale;
-            to = from + (double)g[i].scale;
+    size_t i = first + 1;
+    while (i < text->glyph_count && g[i].run == g[first].run && g[i].byte == g[first].byte)
+        i++;
+    for (size_t k = first; k < i; k++) {
+        double from = (double)(text->vertical ? g[k].y : g[k].x);
+        double to = from + fmax((double)g[k].advance - (k + 1 == i ? letter_spacing_em : 0.0), 0.0);
+        if (text->vertical && !g[k].turned && g[k].glyph != CAMBER_NO_GLYPH) {
+            from -= (UPRIGHT_MIDDLE_EM + 0.5) * (double)g[k].scale;
+            to = from + (double)g[k].scale;
         }
         low = fmin(low, from);
         high = fmax(high, to);
     }
-    *end = i > first ? i : first + 1;
+    *end = i;
     return 0.5 * (low + high);
 }
 

@@ -189,7 +189,8 @@ static camber_status add_runs(camber_label_layout *layout, const camber_symbol *
     for (size_t i = 0; i < symbol->section_count; i++) {
         const camber_symbol_section *section = symbol->sections + i;
         camber_label_run run = {.look = rule->text_look,
-                                .image = section->image ? camber_label_find_image(layout, section->image) : NULL};
+                                .image = section->image ? camber_label_find_image(layout, section->image) : NULL,
+                                .image_scale = (float)section->scale};
         camber_label_look look = layout->looks[rule->text_look];
         if (section->has_color)
             look.color = section->color;

@@ -109,7 +109,7 @@ static camber_status add_glyph(item_maker *m, const camber_label_form *form, con
     if (g->glyph == CAMBER_NO_GLYPH) {
         if (!run->image)
             return CAMBER_OK;
-        const double scale = m->layout->view->ratio * (double)g->scale / run->image->pixel_ratio;
+        const double scale = m->layout->view->ratio * (double)run->image_scale / run->image->pixel_ratio;
         item.icon = run->image;
         size[0] = run->image->width * scale;
         size[1] = run->image->height * scale;

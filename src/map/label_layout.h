@@ -35,6 +35,7 @@ typedef struct camber_label_rule {
 typedef struct camber_label_run {
     uint32_t look;
     const camber_sprite_image *image; /* NULL: it is text, or its image is missing */
+    float image_scale;
 } camber_label_run;
 
 /* What a layer's labels of a class show. */

@@ -170,20 +170,19 @@ static bool make_runs(camber_label_layout *layout, const camber_symbol *symbol) 
         const camber_symbol_section *section = symbol->sections + i;
         const camber_sprite_image *image = section->image ? camber_label_find_image(layout, section->image) : NULL;
         const double em = symbol->text_size_px;
-        words->runs[i] =
-            (camber_text_run){.text = section->image  ? NULL
-                                      : section->text ? section->text
-                                                      : "",
-                              .size_bytes = !section->image && section->text ? strlen(section->text) : 0,
-                              .fonts = section->fonts,
-                              .font_count = section->font_count,
-                              .scale = (float)section->scale,
-                              .align = section->align,
-                              .image_width_em = image ? (float)(image->width / image->pixel_ratio / em) : 0.0f,
-                              .image_height_em = image ? (float)(image->height / image->pixel_ratio / em) : 0.0f};
-        if (section->image && !image) { /* a gap is not wanted */
+        words->runs[i] = (camber_text_run){
+            .text = section->image  ? NULL
+                    : section->text ? section->text
+                                    : "",
+            .size_bytes = !section->image && section->text ? strlen(section->text) : 0,
+            .fonts = section->fonts,
+            .font_count = section->font_count,
+            .scale = (float)section->scale,
+            .align = section->align,
+            .image_width_em = image ? (float)(image->width / image->pixel_ratio * section->scale / em) : 0.0f,
+            .image_height_em = image ? (float)(image->height / image->pixel_ratio * section->scale / em) : 0.0f};
+        if (section->image && !image) /* a gap is not wanted */
             words->runs[i].text = "";
-        }
     }
     return true;
 }

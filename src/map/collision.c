@@ -30,14 +30,14 @@ void camber_collision_free(camber_collision *collision) {
 
 /* ---- Shapes ---- */
 
-static bool circles_meet(const camber_shape *a, const camber_shape *b) {
+static bool circles_meet(const camber_obstacle *a, const camber_obstacle *b) {
     const double dx = 0.5 * ((double)a->x0 + (double)a->x1 - (double)b->x0 - (double)b->x1);
     const double dy = 0.5 * ((double)a->y0 + (double)a->y1 - (double)b->y0 - (double)b->y1);
     const double reach = (double)a->radius + (double)b->radius;
     return dx * dx + dy * dy < reach * reach;
 }
 
-static bool circle_meets_box(const camber_shape *circle, const camber_shape *box) {
+static bool circle_meets_box(const camber_obstacle *circle, const camber_obstacle *box) {
     const double x = 0.5 * ((double)circle->x0 + (double)circle->x1),
                  y = 0.5 * ((double)circle->y0 + (double)circle->y1);
     const double dx = x - fmin(fmax(x, (double)box->x0), (double)box->x1);
@@ -45,7 +45,7 @@ static bool circle_meets_box(const camber_shape *circle, const camber_shape *box
     return dx * dx + dy * dy <= (double)circle->radius * (double)circle->radius;
 }
 
-bool camber_shapes_meet(const camber_shape *a, const camber_shape *b) {
+bool camber_obstacles_meet(const camber_obstacle *a, const camber_obstacle *b) {
     if (!(a->x0 <= b->x1 && a->x1 >= b->x0 && a->y0 <= b->y1 && a->y1 >= b->y0))
         return false;
     if (a->radius > 0.0f)
@@ -69,20 +69,20 @@ static size_t cell_of(double offset, double cell, size_t count) {
     return at <= 0.0 ? 0 : at >= (double)(count - 1) ? count - 1 : (size_t)at;
 }
 
-static cell_range cells_of(const camber_collision *c, const camber_shape *shape) {
+static cell_range cells_of(const camber_collision *c, const camber_obstacle *shape) {
     return (cell_range){cell_of((double)shape->x0 - c->bounds.x0, c->cell, c->columns),
                         cell_of((double)shape->y0 - c->bounds.y0, c->cell, c->rows),
                         cell_of((double)shape->x1 - c->bounds.x0, c->cell, c->columns),
                         cell_of((double)shape->y1 - c->bounds.y0, c->cell, c->rows)};
 }
 
-bool camber_collision_holds(const camber_collision *collision, const camber_shape *shape) {
+bool camber_collision_holds(const camber_collision *collision, const camber_obstacle *shape) {
     const camber_box *b = &collision->bounds;
     return (double)shape->x1 >= b->x0 && (double)shape->x0 < b->x1 && (double)shape->y1 >= b->y0 &&
            (double)shape->y0 < b->y1;
 }
 
-bool camber_collision_hits(const camber_collision *collision, const camber_shape *shape,
+bool camber_collision_hits(const camber_collision *collision, const camber_obstacle *shape,
                            camber_symbol_overlap overlap) {
     const camber_collision *c = collision;
     if (overlap == CAMBER_OVERLAP_ALWAYS || !camber_collision_holds(c, shape))
@@ -92,14 +92,14 @@ bool camber_collision_hits(const camber_collision *collision, const camber_shape
         for (size_t x = range.x0; x <= range.x1; x++)
             for (uint32_t e = c->cells[y * c->columns + x]; e; e = c->entries[e - 1].next) {
                 const uint32_t there = c->entries[e - 1].shape;
-                if (camber_shapes_meet(shape, c->shapes + there) &&
+                if (camber_obstacles_meet(shape, c->shapes + there) &&
                     !may_overlap(overlap, (camber_symbol_overlap)c->overlaps[there]))
                     return true;
             }
     return false;
 }
 
-camber_status camber_collision_add(camber_collision *collision, const camber_shape *shape,
+camber_status camber_collision_add(camber_collision *collision, const camber_obstacle *shape,
                                    camber_symbol_overlap overlap) {
     camber_collision *c = collision;
     if (!camber_collision_holds(c, shape))

@@ -15,13 +15,6 @@ enum { ARENA_ROOM = 4096, RULES_COMPARED = 4, LOOKS_COMPARED = 64 };
 
 /* ---- Images ---- */
 
-const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name) {
-    const camber_sprite_image *image = layout->sprites ? camber_sprites_find(layout->sprites, name) : NULL;
-    if (!image && layout->sprites)
-        (void)camber_sprites_miss(layout->sprites, name);
-    return image && image->width && image->height ? image : NULL;
-}
-
 static uint32_t find_number(void *user, const char *name) {
     const camber_sprites *sprites = user;
     const camber_sprite_image *image = sprites ? camber_sprites_find(sprites, name) : NULL;
@@ -35,7 +28,8 @@ static void note_missing(void *user, const char *name) {
 
 /* ---- Looks ---- */
 
-camber_status camber_label_look_add(camber_label_layout *layout, const camber_label_look *look, uint32_t *index) {
+/* Adds a look, or finds its equal. */
+static camber_status add_look(camber_label_layout *layout, const camber_label_look *look, uint32_t *index) {
     const size_t first = layout->look_count > LOOKS_COMPARED ? layout->look_count - LOOKS_COMPARED : 0;
     for (size_t i = layout->look_count; i-- > first;) {
         const camber_label_look *other = layout->looks + i;
@@ -147,7 +141,7 @@ static camber_status make_rule(camber_label_layout *layout, const camber_symbol 
     find_translation(view, &s->icon, rule->icon_translate_px);
     find_anchors(s, rule);
     const camber_label_look text = look_of(&s->text, rule->text_flat, view->ratio);
-    return camber_label_look_add(layout, &text, &rule->text_look);
+    return add_look(layout, &text, &rule->text_look);
 }
 
 /* Finds a rule for the symbol among the last ones, or adds one. icon: what its icon is, for the look. */
@@ -164,7 +158,7 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
     const camber_label_look look = icon && icon->sdf ? look_of(&symbol->icon, made.icon_flat, layout->view->ratio)
                                                      : plain_look(&symbol->icon, made.icon_flat);
     if (status == CAMBER_OK)
-        status = camber_label_look_add(layout, &look, &made.icon_look);
+        status = add_look(layout, &look, &made.icon_look);
     if (status != CAMBER_OK)
         return status;
     for (size_t i = layout->rule_count; i-- > 0 && i + RULES_COMPARED >= layout->rule_count;) {
@@ -183,6 +177,21 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
 
 /* ---- Forms ---- */
 
+/* How much less a feature matters than others, as far as its tile or file says so. A style may order labels itself;
+ * many rely on the order of features in tiles, which ranks also give. */
+static double weight_of(const camber_features *features, const camber_feature_view *feature) {
+    static const struct {
+        const char *name;
+        double sign;
+    } ranks[] = {{"rank", 1.0}, {"scalerank", 1.0}, {"localrank", 1.0}, {"population", -1.0}};
+    for (size_t r = 0; r < sizeof ranks / sizeof *ranks; r++)
+        for (size_t i = 0; i < features->schema->property_count; i++)
+            if (strcmp(features->schema->properties[i], ranks[r].name) == 0 &&
+                feature->values[i].type == CAMBER_VALUE_NUMBER && isfinite(feature->values[i].number))
+                return ranks[r].sign * feature->values[i].number;
+    return 0.0;
+}
+
 static camber_status add_runs(camber_label_layout *layout, const camber_symbol *symbol, camber_label_form *form) {
     const camber_label_rule *rule = layout->rules + form->rule;
     form->first_run = (uint32_t)layout->run_count;
@@ -196,7 +205,7 @@ static camber_status add_runs(camber_label_layout *layout, const camber_symbol *
             look.color = section->color;
         if (run.image && !run.image->sdf)
             look = plain_look(&symbol->text, rule->text_flat);
-        if (camber_label_look_add(layout, &look, &run.look) != CAMBER_OK ||
+        if (add_look(layout, &look, &run.look) != CAMBER_OK ||
             !camber_grow(layout->context, &layout->runs, &layout->run_capacity, layout->run_count + 1,
                          sizeof *layout->runs))
             return CAMBER_ERROR_MEMORY;
@@ -239,6 +248,8 @@ camber_status camber_label_form_make(camber_label_layout *layout, const camber_l
     camber_status status = camber_layer_look_symbol(look, &feature, layout->sprites ? &images : NULL, &arena, &symbol);
     if (status == CAMBER_OK)
         status = add_form(layout, &symbol, form);
+    if (status == CAMBER_OK && *form != CAMBER_NO_FORM)
+        layout->forms[*form].weight = weight_of(layout->features, &feature);
     camber_arena_free(&arena);
     return status;
 }

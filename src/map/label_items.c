@@ -160,7 +160,7 @@ static camber_label_frame frame_on(const item_maker *m, const camber_label_rule 
     const camber_track_point point = camber_label_track_point(&m->track, distance);
     double cosine = 1.0, sine = 0.0;
     if (rule->symbol.text.rotation_alignment == CAMBER_ALIGN_MAP) {
-        /* What goes down goes along the line. */
+        /* The text's way down is the line's way. */
         cosine = m->track.vertical ? point.sine : point.cosine;
         sine = m->track.vertical ? -point.cosine : point.sine;
     }

@@ -71,10 +71,14 @@ static uint8_t find_worlds(const layout_maker *m, const camber_box *box) {
     return worlds;
 }
 
+static bool is_finite(const double *point) {
+    return isfinite(point[0]) && isfinite(point[1]);
+}
+
 static camber_box box_of(const camber_features *f, size_t first_polyline, size_t end_polyline) {
     camber_box box = CAMBER_BOX_EMPTY;
     for (size_t i = f->offsets[first_polyline]; i < f->offsets[end_polyline]; i++)
-        if (isfinite(f->points[2 * i]) && isfinite(f->points[2 * i + 1]))
+        if (is_finite(f->points + 2 * i))
             camber_box_add(&box, f->points[2 * i], f->points[2 * i + 1]);
     return box;
 }
@@ -164,13 +168,45 @@ static camber_status add_candidate(layout_maker *m, const thing *t, const double
 static bool is_kept(const layout_maker *m, size_t i, size_t first, size_t end) {
     const camber_features *f = m->layout->features;
     return (i == first || i + 1 == end || !f->importance || !((double)f->importance[i] < m->least_importance)) &&
-           isfinite(f->points[2 * i]) && isfinite(f->points[2 * i + 1]);
+           is_finite(f->points + 2 * i);
 }
 
-/* Lines that were merged may run either way, and rings may begin anywhere, as their order in the file decides. They are
- * measured from the end, or from the point, that comes first in the order of coordinates. */
 static int compare_points(const double *a, const double *b) {
     return a[0] != b[0] ? (a[0] < b[0] ? -1 : 1) : a[1] != b[1] ? (a[1] < b[1] ? -1 : 1) : 0;
+}
+
+/* Where a polyline's path begins, and which way it goes. Lines that were merged may run either way, and rings of them
+ * may begin anywhere, as the order in the file decides: they begin with the end, or the point, that comes first in the
+ * order of coordinates. */
+typedef struct path_order {
+    const double *points;
+    size_t count;
+    size_t start; /* of a ring */
+    bool ring, reversed;
+} path_order;
+
+static path_order find_order(const camber_features *f, size_t polyline) {
+    path_order order = {.points = f->points + 2 * f->offsets[polyline],
+                        .count = f->offsets[polyline + 1] - f->offsets[polyline]};
+    if (order.count < 2 || !f->feature_counts || f->feature_counts[polyline] < 2)
+        return order;
+    const size_t last = order.count - 1;
+    order.ring = order.count > 3 && compare_points(order.points, order.points + 2 * last) == 0;
+    for (size_t i = 1; i < last && order.ring; i++)
+        if (compare_points(order.points + 2 * i, order.points + 2 * order.start) < 0)
+            order.start = i;
+    const size_t before = order.ring ? (order.start + last - 1) % last : last;
+    const size_t after = order.ring ? (order.start + 1) % last : 0;
+    order.reversed = compare_points(order.points + 2 * before, order.points + 2 * after) < 0;
+    return order;
+}
+
+/* The polyline's point that is the k-th of its path. */
+static size_t point_in_order(const path_order *order, size_t k) {
+    const size_t last = order->count - 1;
+    if (!order->ring)
+        return order->reversed ? last - k : k;
+    return (order->start + (order->reversed ? last - k : k)) % last;
 }
 
 static bool make_room(layout_maker *m, size_t count) {
@@ -182,19 +218,19 @@ static bool make_room(layout_maker *m, size_t count) {
 /* Reads a polyline into the path, in px from its first point. *reversed: it runs the other way. */
 static camber_status read_path(layout_maker *m, size_t polyline, bool *reversed) {
     const camber_features *f = m->layout->features;
-    const size_t first = f->offsets[polyline], end = f->offsets[polyline + 1], count = end - first;
-    const double scale = m->layout->view->scale_px, *points = f->points + 2 * first;
+    const size_t first = f->offsets[polyline], end = f->offsets[polyline + 1];
+    const double scale = m->layout->view->scale_px;
+    const path_order order = find_order(f, polyline);
     m->path.count = 0;
-    *reversed = false;
-    if (count < 2)
+    *reversed = order.reversed;
+    if (order.count < 2)
         return CAMBER_OK;
-    if (!make_room(m, count))
+    if (!make_room(m, order.count))
         return CAMBER_ERROR_MEMORY;
-    const bool merged = f->feature_counts && f->feature_counts[polyline] > 1;
-    *reversed = merged && compare_points(points + 2 * (count - 1), points) < 0;
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = *reversed ? end - 1 - k : first + k;
-        if (!is_kept(m, i, first, end))
+    for (size_t k = 0; k < order.count; k++) {
+        const size_t i = first + point_in_order(&order, k);
+        const bool is_end = k == 0 || k + 1 == order.count;
+        if (is_end ? !is_finite(f->points + 2 * i) : !is_kept(m, i, first, end))
             continue;
         const double *at = f->points + 2 * i;
         if (m->path.count == 0)
@@ -429,7 +465,7 @@ camber_status camber_label_layout_make(camber_label_layout *layout) {
                       .anchors.context = layout->context};
     layout->lens = camber_view_lens_of(layout->view);
     set_reach(&m, REACH_PX * layout->view->ratio);
-    camber_status status = find_things(&m);
+    camber_status status = layout->features->points ? find_things(&m) : CAMBER_OK;
     if (status == CAMBER_OK && m.thing_count) {
         status = sort_things(&m);
         for (size_t i = 0; i < layout->features->style->layer_count && status == CAMBER_OK; i++)

@@ -1,4 +1,4 @@
-/* A view's labels before they are placed: what each would show, and where.
+/* A view's labels before they are placed.
  *
  *     features -> things (what the view may see) -> for each layer and class a form (rule, texts, icon)
  *     form, geometry -> candidates: a form at an anchor */
@@ -38,7 +38,7 @@ typedef struct camber_label_run {
     float image_scale;
 } camber_label_run;
 
-/* What a layer's labels of a class show. */
+/* The texts and the icon that a layer's labels of a class show. */
 typedef struct camber_label_form {
     uint32_t rule;
     uint32_t first_run;    /* of the text */
@@ -46,6 +46,7 @@ typedef struct camber_label_form {
     camber_text *vertical; /* the same, downwards. NULL: it is not written so */
     const camber_sprite_image *icon;
     double sort_key;
+    double weight; /* of two with one sort key the lighter comes first */
     uint64_t hash; /* of its words and its icon */
 } camber_label_form;
 
@@ -61,7 +62,7 @@ typedef struct camber_label_candidate {
     uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it stands on */
     double x, y;            /* of the anchor, px of the plane */
     uint64_t rank;          /* which of two that are alike comes first: a hash of its place and words */
-    /* What placement says: */
+    /* Placement fills these in. */
     bool shows_text, shows_icon, vertical;
     uint8_t anchor; /* of the rule's */
     camber_box box; /* around what is shown */
@@ -115,8 +116,6 @@ camber_status camber_label_text_make(camber_label_layout *layout, const camber_s
 void camber_label_words_free(camber_label_layout *layout);
 /* Finds an image, and tells if it is missing. NULL: it is. */
 const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name);
-/* Adds a look, or finds its equal. */
-camber_status camber_label_look_add(camber_label_layout *layout, const camber_label_look *look, uint32_t *index);
 
 static inline const camber_label_rule *camber_label_rule_of(const camber_label_layout *layout,
                                                             const camber_label_candidate *c) {

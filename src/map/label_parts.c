@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* What is nearer the horizon than this is not labelled, as in MapLibre. */
+/* Anchors that are nearer the horizon than this have no labels, as in MapLibre. */
 static const double LEAST_NEARNESS = 0.6;
 
 static double depth_of(const camber_label_layout *layout, const double plane[2], double seen[2]) {

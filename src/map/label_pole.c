@@ -7,8 +7,9 @@
 
 #include <math.h>
 
-/* A side of the polygon's box has no more squares at first than this; and the squares that are looked at in all. */
-enum { MOST_SQUARES_A_SIDE = 64, MOST_LOOKS = 4096 };
+/* A side of the polygon's box has no more squares at first than this; and the edges that are looked at in all, after
+ * which the best point so far must do. */
+enum { MOST_SQUARES_A_SIDE = 64, MOST_EDGES = 1 << 26 };
 
 typedef struct square {
     double x, y, half;
@@ -23,7 +24,7 @@ typedef struct pole_search {
     size_t ring_count;
     square *heap; /* the one with the most comes first */
     size_t count, capacity;
-    size_t looks;
+    size_t edges; /* that were looked at */
 } pole_search;
 
 static double square_distance(const double *a, const double *b, double x, double y) {
@@ -55,7 +56,7 @@ static double distance_of(const pole_search *s, double x, double y) {
 static square look(pole_search *s, double x, double y, double half) {
     square made = {.x = x, .y = y, .half = half, .distance = distance_of(s, x, y)};
     made.most = made.distance + half * 1.4142135623730951;
-    s->looks++;
+    s->edges += s->offsets[s->ring_count] - s->offsets[0];
     return made;
 }
 
@@ -123,7 +124,7 @@ camber_status camber_pole_find(camber_context *context, const double *points, co
     const double side = fmax(fmin(width, height), fmax(width, height) / MOST_SQUARES_A_SIDE);
     square best = first_guess(&s);
     bool made = !(side > 0.0) || !isfinite(side) || cover(&s, &box, side);
-    while (made && s.count && s.looks < MOST_LOOKS) {
+    while (made && s.count && s.edges < MOST_EDGES) {
         const square top = pop(&s);
         if (top.distance > best.distance)
             best = top;

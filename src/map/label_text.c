@@ -139,6 +139,15 @@ static camber_status shape(camber_label_layout *layout, const camber_text_desc *
     return CAMBER_OK;
 }
 
+/* ---- Images ---- */
+
+const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name) {
+    const camber_sprite_image *image = layout->sprites ? camber_sprites_find(layout->sprites, name) : NULL;
+    if (!image && layout->sprites)
+        (void)camber_sprites_miss(layout->sprites, name);
+    return image && image->width && image->height ? image : NULL;
+}
+
 /* ---- Texts of symbols ---- */
 
 /* Whether the script of a character may be written downwards, its characters upright. */

@@ -28,8 +28,8 @@ typedef struct camber_label_item {
      * px = (x + xx * u + xy * v, y + yx * u + yy * v). If the look is flat, px are of the map's plane; else they are of
      * the picture as it is seen, whatever the pitch. */
     float x, y, xx, xy, yx, yy;
-    /* Of an icon that is fitted to a text: px of the picture that a px of the image takes where it is not stretched, if
-     * it has parts that are. 0: all of it is stretched. */
+    /* An icon that is fitted to a text keeps the parts of its image that must not be stretched: a px of these is so
+     * many px of the picture. 0: the icon is not fitted. */
     float unstretched_px;
 } camber_label_item;
 

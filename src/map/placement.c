@@ -1,8 +1,8 @@
 /* Decides which labels are shown.
  *
  * Input: candidates by layer. Output: what each shows. Main idea (MapLibre's): later layers come first, and in a layer
- * the order is by sort key, then by what nothing but the map decides. Each label in turn takes its shapes in the
- * picture, unless others have them. */
+ * the order is by sort key, by rank, then by a hash of place and words, so that the order of the input does not matter.
+ * Each label in turn takes its shapes in the picture, unless others have them. */
 #include "map/collision.h"
 #include "map/label_layout.h"
 
@@ -25,7 +25,7 @@ typedef struct placer {
     camber_label_layout *layout;
     camber_collision grid;
     camber_label_track track;
-    camber_shape *shapes; /* of the text in hand, then of its icon */
+    camber_obstacle *shapes; /* of the text in hand, then of its icon */
     size_t shape_count, shape_capacity;
     said *said;
     size_t said_count, said_capacity;
@@ -44,12 +44,12 @@ typedef struct tried {
 
 typedef struct ordered {
     const camber_label_candidate *candidate;
-    double keys[2]; /* the sort key, and the order in the layer */
+    double keys[3]; /* the sort key, the order in the layer, the weight */
 } ordered;
 
 static int compare(const void *a, const void *b) {
     const ordered *p = a, *q = b;
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 3; i++)
         if (p->keys[i] < q->keys[i] || p->keys[i] > q->keys[i])
             return p->keys[i] < q->keys[i] ? -1 : 1;
     const camber_label_candidate *c = p->candidate, *d = q->candidate;
@@ -79,7 +79,8 @@ static ordered *sort_layer(const camber_label_layout *layout, const camber_layou
         else if (s->order == CAMBER_SYMBOL_ORDER_SOURCE)
             order = c->feature;
         const bool by_key = s->has_sort_key && s->order != CAMBER_SYMBOL_ORDER_VIEWPORT_Y;
-        list[i] = (ordered){c, {by_key ? layout->forms[c->form].sort_key : 0.0, order}};
+        const camber_label_form *form = layout->forms + c->form;
+        list[i] = (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}};
     }
     if (list)
         qsort(list, layer->candidate_count, sizeof *list, compare);
@@ -130,7 +131,7 @@ static camber_status say(placer *p, uint64_t words, const camber_label_candidate
 
 /* ---- Shapes ---- */
 
-static camber_status add_shape(placer *p, camber_shape shape) {
+static camber_status add_shape(placer *p, camber_obstacle shape) {
     if (!camber_grow(p->layout->context, &p->shapes, &p->shape_capacity, p->shape_count + 1, sizeof *p->shapes))
         return CAMBER_ERROR_MEMORY;
     p->shapes[p->shape_count++] = shape;
@@ -138,7 +139,7 @@ static camber_status add_shape(placer *p, camber_shape shape) {
 }
 
 /* A label that avoids edges does not cross those of the picture. */
-static bool crosses_edge(const camber_view *view, const camber_shape *shape) {
+static bool crosses_edge(const camber_view *view, const camber_obstacle *shape) {
     return shape->x0 < 0.0f || shape->y0 < 0.0f || shape->x1 > (float)view->width || shape->y1 > (float)view->height;
 }
 
@@ -164,7 +165,7 @@ static camber_status add_box(placer *p, const camber_label_frame *frame, camber_
     *added = camber_label_bounds(p->layout, frame, &padded, &b);
     if (!*added)
         return CAMBER_OK;
-    return add_shape(p, (camber_shape){(float)b.x0, (float)b.y0, (float)b.x1, (float)b.y1, 0.0f});
+    return add_shape(p, (camber_obstacle){(float)b.x0, (float)b.y0, (float)b.x1, (float)b.y1, 0.0f});
 }
 
 /* ---- Text ---- */
@@ -188,8 +189,8 @@ static camber_status add_circles(placer *p, const camber_label_candidate *c, con
         double at[2] = {point.x, point.y};
         if (track->flat && !(camber_lens_see(&p->layout->lens, at, at) > 0.0))
             continue;
-        const camber_shape circle = {(float)(at[0] - radius), (float)(at[1] - radius), (float)(at[0] + radius),
-                                     (float)(at[1] + radius), (float)radius};
+        const camber_obstacle circle = {(float)(at[0] - radius), (float)(at[1] - radius), (float)(at[0] + radius),
+                                        (float)(at[1] + radius), (float)radius};
         if (add_shape(p, circle) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
     }
@@ -295,7 +296,7 @@ static camber_status try_icon(placer *p, const camber_label_candidate *c, const 
 static camber_status take(placer *p, const tried *part, const camber_symbol_part *as, camber_label_candidate *c) {
     camber_status status = CAMBER_OK;
     for (size_t i = part->first_shape; i < part->first_shape + part->shape_count && status == CAMBER_OK; i++) {
-        const camber_shape *shape = p->shapes + i;
+        const camber_obstacle *shape = p->shapes + i;
         camber_box_add(&c->box, (double)shape->x0, (double)shape->y0);
         camber_box_add(&c->box, (double)shape->x1, (double)shape->y1);
         if (!as->ignore_placement)

@@ -162,12 +162,12 @@ static double next_share(uint32_t *state) {
 
 /* ---- The grid ---- */
 
-static camber_shape random_shape(uint32_t *state) {
+static camber_obstacle random_shape(uint32_t *state) {
     const double x = next_share(state) * 500.0 - 50.0, y = next_share(state) * 300.0 - 50.0;
     const double w = next_share(state) * 60.0, h = next_share(state) * 20.0;
     if (next_share(state) < 0.5)
-        return (camber_shape){(float)x, (float)y, (float)(x + w), (float)(y + h), 0.0f};
-    return (camber_shape){(float)x, (float)y, (float)(x + w), (float)(y + w), (float)(0.5 * w)};
+        return (camber_obstacle){(float)x, (float)y, (float)(x + w), (float)(y + h), 0.0f};
+    return (camber_obstacle){(float)x, (float)y, (float)(x + w), (float)(y + w), (float)(0.5 * w)};
 }
 
 static void test_collision(void **state) {
@@ -175,17 +175,17 @@ static void test_collision(void **state) {
     enum { SHAPES = 400 };
     town *t = open_town(NAMES("names", "\"text-size\":12"));
     camber_collision grid;
-    camber_shape shapes[SHAPES];
+    camber_obstacle shapes[SHAPES];
     camber_symbol_overlap overlaps[SHAPES];
     uint32_t seed = 1;
     assert_int_equal(camber_collision_make(t->context, (camber_box){0.0, 0.0, 400.0, 200.0}, 32.0, &grid), CAMBER_OK);
     size_t there = 0, hits = 0;
     for (int i = 0; i < SHAPES; i++) {
-        const camber_shape shape = random_shape(&seed);
+        const camber_obstacle shape = random_shape(&seed);
         const camber_symbol_overlap overlap = (camber_symbol_overlap)(next_share(&seed) * 3.0);
         bool hit = false;
         for (size_t k = 0; k < there && overlap != CAMBER_OVERLAP_ALWAYS; k++)
-            hit |= camber_shapes_meet(&shape, shapes + k) &&
+            hit |= camber_obstacles_meet(&shape, shapes + k) &&
                    (overlap == CAMBER_OVERLAP_NEVER || overlaps[k] == CAMBER_OVERLAP_NEVER);
         const bool held = camber_collision_holds(&grid, &shape);
         if (held)
@@ -282,8 +282,7 @@ static void test_variable_anchors(void **state) {
     assert_near(labels.labels[0].box.x0, 300.0 + 20.0, 0.01);
     assert_near((double)labels.items[0].x, 300.0 + 20.0 + 2.0, 4.0);
     camber_labels_free(&labels);
-    /* What is in its way sends it to the left. */
-    t->features = t->features;
+    /* A label in its way sends it to the left. */
     close_town(t);
     t = open_town(NAMES("names", "\"text-variable-anchor\":[\"left\",\"right\"],\"text-radial-offset\":1,"
                                  "\"text-size\":20,\"symbol-sort-key\":[\"match\",[\"get\",\"name\"],\"Wall\",0,1]"));
@@ -542,7 +541,7 @@ static void test_pitch(void **state) {
     }
 }
 
-/* ---- What holds of all labels ---- */
+/* ---- Many labels ---- */
 
 #define MANY                                                                                                           \
     NAMES("streets", "\"symbol-placement\":\"line\",\"text-size\":12,\"symbol-spacing\":120")                          \

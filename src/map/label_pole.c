@@ -25,6 +25,8 @@ typedef struct pole_search {
     square *heap; /* the one with the most comes first */
     size_t count, capacity;
     size_t edges; /* that were looked at */
+    double best;  /* distance of the best point so far */
+    double precision;
 } pole_search;
 
 static double square_distance(const double *a, const double *b, double x, double y) {
@@ -38,11 +40,14 @@ static double square_distance(const double *a, const double *b, double x, double
     return across * across / length;
 }
 
-static double distance_of(const pole_search *s, double x, double y) {
+/* The distance of a point from the edges, negative outside. Stops at an edge that is nearer than `enough`. */
+static double distance_of(pole_search *s, double x, double y, double enough) {
+    const double bound = enough > 0.0 ? enough * enough : -1.0;
     bool inside = false;
     double least = INFINITY;
     for (size_t r = 0; r < s->ring_count; r++) {
-        for (size_t i = s->offsets[r]; i + 1 < s->offsets[r + 1]; i++) {
+        s->edges += s->offsets[r + 1] - s->offsets[r];
+        for (size_t i = s->offsets[r]; i + 1 < s->offsets[r + 1] && least > bound; i++) {
             const double *a = s->points + 2 * i, *b = a + 2;
             if ((a[1] > y) != (b[1] > y) && x < (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]) + a[0])
                 inside = !inside;
@@ -50,17 +55,22 @@ static double distance_of(const pole_search *s, double x, double y) {
             least = distance < least ? distance : least;
         }
     }
-    return inside ? sqrt(least) : -sqrt(least);
+    return least <= bound ? -INFINITY : inside ? sqrt(least) : -sqrt(least);
 }
 
+/* Looks at a square. One whose middle is no better, and that cannot hold a point that is better by the precision, has
+ * no distance. */
 static square look(pole_search *s, double x, double y, double half) {
-    square made = {.x = x, .y = y, .half = half, .distance = distance_of(s, x, y)};
-    made.most = made.distance + half * 1.4142135623730951;
-    s->edges += s->offsets[s->ring_count] - s->offsets[0];
+    const double reach = half * 1.4142135623730951;
+    square made = {.x = x, .y = y, .half = half};
+    made.distance = distance_of(s, x, y, fmin(s->best, s->best + s->precision - reach));
+    made.most = made.distance + reach;
     return made;
 }
 
 static bool push(pole_search *s, square pushed) {
+    if (!isfinite(pushed.distance))
+        return true;
     if (!camber_grow(s->context, &s->heap, &s->capacity, s->count + 1, sizeof *s->heap))
         return false;
     size_t at = s->count++;
@@ -118,18 +128,25 @@ static bool cover(pole_search *s, const camber_box *box, double side) {
 
 camber_status camber_pole_find(camber_context *context, const double *points, const size_t *offsets, size_t ring_count,
                                double precision, double pole[2]) {
-    pole_search s = {.context = context, .points = points, .offsets = offsets, .ring_count = ring_count};
+    pole_search s = {.context = context,
+                     .points = points,
+                     .offsets = offsets,
+                     .ring_count = ring_count,
+                     .best = -INFINITY,
+                     .precision = precision};
     const camber_box box = box_of(&s);
     const double width = box.x1 - box.x0, height = box.y1 - box.y0;
     const double side = fmax(fmin(width, height), fmax(width, height) / MOST_SQUARES_A_SIDE);
     square best = first_guess(&s);
+    s.best = best.distance;
     bool made = !(side > 0.0) || !isfinite(side) || cover(&s, &box, side);
     while (made && s.count && s.edges < MOST_EDGES) {
         const square top = pop(&s);
         if (top.distance > best.distance)
             best = top;
+        s.best = best.distance;
         if (!(top.most - best.distance > precision))
-            break;
+            continue;
         const double half = 0.5 * top.half;
         for (int i = 0; i < 4 && made; i++)
             made = push(&s, look(&s, top.x + (i & 1 ? half : -half), top.y + (i & 2 ? half : -half), half));

@@ -275,6 +275,44 @@ static void test_order(void **state) {
     }
 }
 
+/* Of two features the one of the lower rank comes first, if the style reads ranks. */
+static void test_rank(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        town *t = open_town(NAMES("names", "\"text-size\":[\"case\",[\"has\",\"rank\"],12,14]"));
+        add_point(t, "One", 300.0, 200.0);
+        add_point(t, "Two", 305.0, 202.0);
+        for (size_t c = 0; c < 2; c++)
+            for (size_t p = 0; p < t->style->schema.property_count; p++)
+                if (strcmp(t->style->schema.properties[p], "rank") == 0)
+                    t->values[t->classes[c].first_value + p] =
+                        (camber_value){.type = CAMBER_VALUE_NUMBER, .number = c == (size_t)i ? 1.0 : 2.0};
+        camber_labels labels = place(t);
+        assert_int_equal(labels.label_count, 1);
+        assert_int_equal(labels.labels[0].feature, i);
+        camber_labels_free(&labels);
+        close_town(t);
+    }
+}
+
+/* A view across the antimeridian shows the labels of both sides. */
+static void test_antimeridian(void **state) {
+    (void)state;
+    town *t = open_town(NAMES("names", "\"text-size\":12"));
+    add_point(t, "West", 1000.0, 512.0);
+    add_point(t, "East", 24.0, 512.0);
+    see(t,
+        (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.0, .longitude = 180.0, .width = 200, .height = 100});
+    camber_labels labels = place(t);
+    assert_int_equal(labels.label_count, 2);
+    for (size_t i = 0; i < 2; i++) {
+        const camber_label *label = labels.labels + i;
+        assert_near(0.5 * (label->box.x0 + label->box.x1), label->feature == 0 ? 100.0 - 24.0 : 100.0 + 24.0, 0.01);
+    }
+    camber_labels_free(&labels);
+    close_town(t);
+}
+
 static void test_variable_anchors(void **state) {
     (void)state;
     town *t = open_town(NAMES("names", "\"text-variable-anchor\":[\"left\",\"right\",\"top\"],\"text-radial-offset\":1,"
@@ -636,12 +674,39 @@ static void test_avoid_edges(void **state) {
     close_town(t);
 }
 
+/* Without memory placing fails, and leaves nothing behind. */
+static void test_memory(void **state) {
+    (void)state;
+    town *t = open_town(MANY);
+    add_many(t, 17, false);
+    camber_labels labels = place(t);
+    const size_t count = labels.label_count;
+    camber_labels_free(&labels);
+    const uint64_t held = t->context->budget->held_bytes;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    size_t failures = 0;
+    for (uint64_t more = 0; status != CAMBER_OK; more += 4096 + more / 16) {
+        camber_budget_allow(t->context->budget, held + more);
+        status = camber_labels_place(&t->features, &t->view, t->fonts, &t->sprites, &labels);
+        assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
+        failures += status != CAMBER_OK;
+        if (status != CAMBER_OK)
+            camber_labels_free(&labels);
+    }
+    assert_true(failures > 10);
+    assert_int_equal(labels.label_count, count);
+    camber_labels_free(&labels);
+    close_town(t);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_collision),
         cmocka_unit_test(test_point),
         cmocka_unit_test(test_overlap),
         cmocka_unit_test(test_order),
+        cmocka_unit_test(test_rank),
+        cmocka_unit_test(test_antimeridian),
         cmocka_unit_test(test_variable_anchors),
         cmocka_unit_test(test_turns),
         cmocka_unit_test(test_area),
@@ -656,6 +721,7 @@ int main(void) {
         cmocka_unit_test(test_shuffled),
         cmocka_unit_test(test_apart),
         cmocka_unit_test(test_avoid_edges),
+        cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

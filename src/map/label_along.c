@@ -165,7 +165,7 @@ static camber_status set_text(const camber_label_layout *layout, const camber_la
     track->side = turned ? -1.0 : 1.0;
     track->shift = track->side * rule->offsets_em[0][0] * track->size;
     track->across = rule->offsets_em[0][1] * track->size;
-    measure(rule, track->vertical ? form->vertical : form->text, track);
+    measure(rule, track->vertical && form->vertical ? form->vertical : form->text, track);
     return lay(track, line, c, layout->lines[c->line].reversed == turned);
 }
 
@@ -181,7 +181,7 @@ camber_status camber_label_track_find(const camber_label_layout *layout, const c
                             .flat = rule->text_flat || !layout->lens.pitched};
     const double nearness = camber_label_nearness(layout, c);
     *fits = false;
-    if (!(nearness > 0.0))
+    if (!(nearness > 0.0) || !form->text)
         return CAMBER_OK;
     track->flat = line.flat;
     track->size = rule->text_px * (!layout->lens.pitched ? 1.0 : line.flat ? 1.0 / nearness : nearness);

@@ -449,6 +449,7 @@ static camber_status lay_out_layer(layout_maker *m, size_t index, double zoom) {
     for (size_t c = 0; c < l->features->class_count && status == CAMBER_OK; c++)
         if (m->class_things[c] < m->class_things[c + 1])
             status = lay_out_class(m, (uint32_t)c);
+    m->look = NULL;
     if (status != CAMBER_OK || l->candidate_count == first)
         return status;
     if (!camber_grow(l->context, &l->layers, &l->layer_capacity, l->layer_count + 1, sizeof *l->layers))

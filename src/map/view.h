@@ -62,16 +62,15 @@ typedef struct camber_view_lens {
 } camber_view_lens;
 
 camber_view_lens camber_view_lens_of(const camber_view *view);
-/* Px of the plane to px of the picture as it is seen. Returns the depth: 1 at the centre, more above it. At 0 and
- * below, the point is not in front of the camera, and seen is untouched. */
+/* Px of the plane to px of the picture as it is seen. Returns the depth: 1 at the centre, more above it. 0: the
+ * point is not in front of the camera, and it is not seen. */
 static inline double camber_lens_see(const camber_view_lens *lens, const double *plane, double *seen) {
-    if (!lens->pitched) {
-        seen[0] = plane[0];
-        seen[1] = plane[1];
-        return 1.0;
-    }
     const double x = plane[0] - lens->half_width, y = plane[1] - lens->half_height;
     const double depth = 1.0 - lens->perspective.fall * y;
+    seen[0] = plane[0];
+    seen[1] = plane[1];
+    if (!lens->pitched)
+        return 1.0;
     if (!(depth > 1e-6))
         return 0.0;
     seen[0] = lens->half_width + x / depth;

@@ -65,8 +65,12 @@ static camber_status list_shown(const camber_label_layout *layout, const camber_
 
 /* ---- Items ---- */
 
+/* Adds an item, unless it is transparent. */
 static camber_status add_item(item_maker *m, const camber_label_item *item) {
     camber_labels *l = m->labels;
+    const camber_label_look *look = m->layout->looks + item->look;
+    if (!(look->color.a > 0.0f) && !(look->halo_color.a > 0.0f && look->halo_width_px > 0.0f))
+        return CAMBER_OK;
     if (!camber_grow(l->context, &l->items, &m->item_capacity, l->item_count + 1, sizeof *l->items))
         return CAMBER_ERROR_MEMORY;
     l->items[l->item_count++] = *item;

@@ -275,7 +275,7 @@ static void test_order(void **state) {
     }
 }
 
-/* Of two features the one of the lower rank comes first, if the style reads ranks. */
+/* The feature of the lower rank comes first, if the style reads ranks. */
 static void test_rank(void **state) {
     (void)state;
     for (int i = 0; i < 2; i++) {

@@ -287,6 +287,14 @@ CAMBER_API camber_status camber_features_read_sources(camber_features *features,
  * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path);
 
+/* Reads the fonts that labels are drawn with; without this call symbol layers are left out. Call it before files are
+ * read, since what is only labelled is read only for labels. Glyphs that the style names (as files: nothing is
+ * downloaded) are used before fonts. desc may be NULL. base_path is as in camber_features_read_sources.
+ * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, an unknown scheme),
+ * CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_features_read_fonts(camber_features *features, const camber_fonts_desc *desc,
+                                                    const char *base_path);
+
 /* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */
 
 /* The views that a scene is made for. */

@@ -5,6 +5,8 @@
  * layer's icons come first, then the halos of all its texts, then the texts. */
 #include "map/label_shapes.h"
 
+#include "base/perspective.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -32,14 +34,38 @@ static bool begin_ring(rings *r, uint32_t row, size_t points) {
     return true;
 }
 
-/* Adds u, v of the item's outline. */
-static void add_point(rings *r, const camber_label_item *item, float u, float v) {
-    r->points[2 * r->point_count] = item->x + item->xx * u + item->xy * v;
-    r->points[2 * r->point_count + 1] = item->y + item->yx * u + item->yy * v;
-    r->point_count++;
+/* How a picture with a pitch shows the plane in which all shapes are drawn. */
+typedef struct tilt {
+    bool pitched;
+    double x, y; /* the picture's middle */
+    double cosine, fall;
+} tilt;
+
+static tilt tilt_of(const camber_view *view) {
+    if (!(view->pitch_deg > 0.0))
+        return (tilt){0};
+    const camber_perspective p = camber_perspective_of(view->pitch_deg, view->height);
+    return (tilt){true, 0.5 * view->width, 0.5 * view->height, p.cosine, p.fall};
 }
 
-static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item) {
+/* Moves a point of the picture to where the plane has it; p: px, x and y. It may be beyond what the camera sees. */
+static void unproject(const tilt *t, float p[2]) {
+    const double y = (double)p[1] - t->y, away = fmax(t->cosine + t->fall * y, 1e-3);
+    const double plane_y = y / away;
+    p[0] = (float)(t->x + ((double)p[0] - t->x) * (1.0 - t->fall * plane_y));
+    p[1] = (float)(t->y + plane_y);
+}
+
+/* Adds u, v of the item's outline. */
+static void add_point(rings *r, const camber_label_item *item, const tilt *t, float u, float v) {
+    float *p = r->points + 2 * r->point_count++;
+    p[0] = item->x + item->xx * u + item->xy * v;
+    p[1] = item->y + item->yx * u + item->yy * v;
+    if (t)
+        unproject(t, p);
+}
+
+static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item, const tilt *t) {
     const double size_px = fmax(hypot((double)item->xx, (double)item->yx), hypot((double)item->xy, (double)item->yy));
     camber_outline outline;
     if (!(size_px > 0.0))
@@ -54,20 +80,20 @@ static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label
             return CAMBER_ERROR_MEMORY;
         for (uint32_t k = first; k <= end; k++) {
             const float *point = outline.points + 2 * (k < end ? k : first);
-            add_point(r, item, point[0], point[1]);
+            add_point(r, item, t, point[0], point[1]);
         }
     }
     return status;
 }
 
-static camber_status add_icon(rings *r, const camber_label_item *item, uint32_t row) {
+static camber_status add_icon(rings *r, const camber_label_item *item, const tilt *t, uint32_t row) {
     static const float corners[][2] = {{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}, {0.0f, 0.0f}};
     if (!begin_ring(r, row, 5))
         return CAMBER_ERROR_MEMORY;
     const float edge_x = 1.0f / (float)item->icon->width, edge_y = 1.0f / (float)item->icon->height;
     for (size_t i = 0; i < 5; i++) {
         const float u = corners[i][0], v = corners[i][1];
-        add_point(r, item, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
+        add_point(r, item, t, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
     }
     return CAMBER_OK;
 }
@@ -142,9 +168,15 @@ typedef struct shape_maker {
     const camber_labels *labels;
     camber_fonts *fonts;
     camber_label_shapes *shapes;
+    tilt tilt;
     rings texts, icons;
     size_t *image_of; /* by icon */
 } shape_maker;
+
+/* NULL: the item is drawn in the plane as it is. */
+static const tilt *tilt_for(const shape_maker *m, const camber_label_item *item) {
+    return m->tilt.pitched && !m->labels->looks[item->look].flat ? &m->tilt : NULL;
+}
 
 static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) {
     camber_label_shapes *s = m->shapes;
@@ -157,14 +189,14 @@ static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) 
         camber_fill *fill = s->fills + s->look_count + s->icon_count;
         status = find_image(s, item->icon, m->image_of + s->icon_count);
         if (status == CAMBER_OK)
-            status = add_icon(&m->icons, item, (uint32_t)s->icon_count);
+            status = add_icon(&m->icons, item, tilt_for(m, item), (uint32_t)s->icon_count);
         place_image(item, m->labels->looks + item->look, fill);
         s->paints[s->look_count + s->icon_count++].fill = fill;
     }
     for (size_t i = 0; i < layer->glyph_count && status == CAMBER_OK; i++) {
         const camber_label_item *item = m->labels->items + layer->first_glyph + i;
         range->has_halo |= s->halos[item->look].width_px > 0.0f;
-        status = add_glyph(&m->texts, m->fonts, item);
+        status = add_glyph(&m->texts, m->fonts, item, tilt_for(m, item));
     }
     range->icon_count = m->icons.ring_count - range->first_icon;
     range->ring_count = m->texts.ring_count - range->first_ring;
@@ -200,10 +232,12 @@ static camber_status make_layers(shape_maker *m) {
     return status;
 }
 
-camber_status camber_label_shapes_make(const camber_labels *labels, camber_fonts *fonts, camber_label_shapes *shapes) {
+camber_status camber_label_shapes_make(const camber_labels *labels, const camber_view *view, camber_fonts *fonts,
+                                       camber_label_shapes *shapes) {
     shape_maker m = {.labels = labels,
                      .fonts = fonts,
                      .shapes = shapes,
+                     .tilt = tilt_of(view),
                      .texts = {.context = labels->context},
                      .icons = {.context = labels->context}};
     *shapes = (camber_label_shapes){0};

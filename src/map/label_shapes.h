@@ -33,7 +33,8 @@ typedef struct camber_label_shapes {
 
 /* Makes the shapes of labels in the picture. camber_label_shapes_free frees also what a failure left.
  * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
-camber_status camber_label_shapes_make(const camber_labels *labels, camber_fonts *fonts, camber_label_shapes *shapes);
+camber_status camber_label_shapes_make(const camber_labels *labels, const camber_view *view, camber_fonts *fonts,
+                                       camber_label_shapes *shapes);
 void camber_label_shapes_free(camber_label_shapes *shapes);
 
 /* Tessellates the shapes into the mesh's companion, and icons into the companion's companion. Without labels both are

@@ -161,7 +161,7 @@ static camber_status make_labels(camber_scene *scene) {
     camber_status status =
         camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
+        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
     camber_labels_free(&labels);
     return status;
 }
@@ -175,14 +175,15 @@ static camber_status look(camber_scene *scene, const camber_features *features, 
     scene->zoom = scene->own;
     scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
     scene->view = scene->zoom->view;
+    status = make_labels(scene); /* first, since making the network may take the features' points */
+    if (status != CAMBER_OK)
+        return status;
     if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
         scene->geometry = *former;
         *former = (camber_plan_network){0};
     } else {
         status = make_geometry(scene, spent);
     }
-    if (status == CAMBER_OK)
-        status = make_labels(scene);
     return status == CAMBER_OK ? make_pair_passes(scene) : status;
 }
 

@@ -87,9 +87,10 @@ typedef enum camber_text_align {
 typedef struct camber_text_run {
     const char *text; /* UTF-8, size_bytes of it; what is invalid is shown as U+FFFD. NULL: an image */
     size_t size_bytes;
-    const char *const *fonts; /* font_count names, each with its style, such as "Noto Sans Bold"; the first is preferred */
+    const char *const
+        *fonts; /* font_count names, each with its style, such as "Noto Sans Bold"; the first is preferred */
     size_t font_count;
-    float scale;                          /* of the text's size. 0: 1 */
+    float scale;                           /* of the text's size. 0: 1 */
     float image_width_em, image_height_em; /* of an image */
     camber_text_align align;
 } camber_text_run;
@@ -112,11 +113,11 @@ typedef struct camber_text_desc {
 typedef struct camber_text_glyph {
     uint32_t glyph; /* of the fonts. CAMBER_NO_GLYPH: the run's image, whose top left corner is at x, y */
     uint32_t run;
-    uint32_t byte;   /* where in the run's text its character begins */
-    float x, y;      /* its origin, from the text's anchor */
-    float advance;   /* along the line, with the spacing */
-    float scale;     /* of its outline */
-    bool turned;     /* its outline is turned by 90 degrees clockwise */
+    uint32_t byte; /* where in the run's text its character begins */
+    float x, y;    /* its origin, from the text's anchor */
+    float advance; /* along the line, with the spacing */
+    float scale;   /* of its outline */
+    bool turned;   /* its outline is turned by 90 degrees clockwise */
 } camber_text_glyph;
 
 typedef struct camber_text_line {
@@ -133,6 +134,8 @@ typedef struct camber_text {
     float left, top, right, bottom; /* box around all lines, each line_height_em high, from the anchor */
     float line_height_em;
     bool vertical;
+    camber_text_anchor anchor; /* as it is placed now */
+    camber_text_justify justify;
 } camber_text;
 
 /* Shapes and lays out a text. An empty one has no lines. A character that no font has is drawn as the box that its font

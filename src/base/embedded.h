@@ -1,4 +1,4 @@
-/* Text files that the build embeds in the library (src/embed.cmake). Each text ends with a 0. */
+/* Files that the build embeds in the library (src/embed.cmake). Each is followed by a 0. */
 #ifndef CAMBER_BASE_EMBEDDED_H
 #define CAMBER_BASE_EMBEDDED_H
 
@@ -22,6 +22,9 @@ extern const char camber_style_openmaptiles_light[], camber_style_openmaptiles_d
 extern const unsigned long camber_style_openmaptiles_light_size, camber_style_openmaptiles_dark_size;
 extern const char camber_style_transit_light[], camber_style_transit_dark[];
 extern const unsigned long camber_style_transit_light_size, camber_style_transit_dark_size;
+/* src/text/fonts/ */
+extern const unsigned char camber_font_regular[], camber_font_bold[], camber_font_italic[];
+extern const unsigned long camber_font_regular_size, camber_font_bold_size, camber_font_italic_size;
 extern const char camber_osmconf[]; /* src/gdal/osmconf.ini */
 extern const unsigned long camber_osmconf_size;
 

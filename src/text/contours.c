@@ -1,0 +1,105 @@
+/* Marching squares. Corners are the centres of pixels, and one row and column more on each side, which are outside. A
+ * ring crosses the sides of squares at which one end is inside and the other is not. In each square, it goes from the
+ * side that it enters by to the side that it leaves by, with the inside to its right:
+ *
+ *     o---x     o outside, x inside. The ring enters from the right side and leaves through the top:
+ *     |  /      each crossing has one crossing that follows it, so walking from one to the next gives the rings.
+ *     o-' o
+ */
+#include "text/contours.h"
+
+#include <math.h>
+
+/* Values are rounded down from 255 - (64 + 32 d), d px outside of the edge, so the edge is between 191 and 192. */
+static const float EDGE = 191.5f;
+
+typedef struct grid {
+    const camber_contour_source *source;
+    uint32_t width, height; /* corners */
+    uint32_t *next;         /* a crossing -> the next one + 1. 0: nothing crosses there, or it is done */
+} grid;
+
+static float get_value(const grid *g, uint32_t x, uint32_t y) {
+    if (x == 0 || y == 0 || x > g->source->width || y > g->source->height)
+        return 0.0f;
+    return (float)g->source->values[(size_t)(y - 1) * g->source->width + (x - 1)];
+}
+
+/* The number of a square's side: its top (0), right (1), bottom (2), left (3). Sides are numbered by the corner at
+ * their left or top end. */
+static uint32_t get_side(const grid *g, uint32_t x, uint32_t y, int side) {
+    switch (side) {
+    case 0: return 2 * (y * g->width + x);
+    case 1: return 2 * (y * g->width + x + 1) + 1;
+    case 2: return 2 * ((y + 1) * g->width + x);
+    default: return 2 * (y * g->width + x) + 1;
+    }
+}
+
+static void join_sides(grid *g, uint32_t x, uint32_t y, int from, int to) {
+    g->next[get_side(g, x, y, from)] = get_side(g, x, y, to) + 1;
+}
+
+/* Walk around a square clockwise: top left, top right, bottom right, bottom left. A ring enters the square through a
+ * side on which the walk goes out of the inside, and leaves it through one on which the walk goes in. */
+static void join_square(grid *g, uint32_t x, uint32_t y) {
+    const float values[4] = {get_value(g, x, y), get_value(g, x + 1, y), get_value(g, x + 1, y + 1),
+                             get_value(g, x, y + 1)};
+    int in[2], out[2], count = 0, out_count = 0;
+    for (int side = 0; side < 4; side++) {
+        const bool from = values[side] > EDGE, to = values[(side + 1) & 3] > EDGE;
+        if (!from && to)
+            in[count++] = side;
+        else if (from && !to)
+            out[out_count++] = side;
+    }
+    if (count == 1)
+        join_sides(g, x, y, out[0], in[0]);
+    else if (count == 2) {
+        /* Two corners across from each other are inside. They are one if the middle is. */
+        const bool is_joined = values[0] + values[1] + values[2] + values[3] > 4.0f * EDGE;
+        for (int i = 0; i < 2; i++) {
+            const int after = (in[i] + 1) & 3, before = (in[i] + 3) & 3;
+            join_sides(g, x, y, is_joined ? before : after, in[i]);
+        }
+    }
+}
+
+static void add_crossing(const grid *g, uint32_t side, camber_outline_maker *maker) {
+    const uint32_t x = side / 2 % g->width, y = side / 2 / g->width;
+    const bool is_vertical = side & 1;
+    const float a = get_value(g, x, y);
+    const float b = is_vertical ? get_value(g, x, y + 1) : get_value(g, x + 1, y);
+    const float share = (EDGE - a) / (b - a);
+    const float px = (float)x - 0.5f + (is_vertical ? 0.0f : share);
+    const float py = (float)y - 0.5f + (is_vertical ? share : 0.0f);
+    camber_outline_add_point(maker, g->source->left + px * g->source->scale, g->source->top + py * g->source->scale);
+}
+
+void camber_contours_trace(const camber_contour_source *source, camber_outline_maker *maker) {
+    grid g = {source, source->width + 2, source->height + 2, NULL};
+    const size_t side_count = 2 * (size_t)g.width * g.height;
+    if (maker->status)
+        return;
+    g.next = camber_alloc_zero(maker->context, side_count, sizeof *g.next);
+    if (!g.next) {
+        maker->status = CAMBER_ERROR_MEMORY;
+        return;
+    }
+    for (uint32_t y = 0; y + 1 < g.height; y++)
+        for (uint32_t x = 0; x + 1 < g.width; x++)
+            join_square(&g, x, y);
+    for (size_t first = 0; first < side_count && !maker->status; first++) {
+        if (!g.next[first])
+            continue;
+        camber_outline_begin_ring(maker);
+        for (uint32_t side = (uint32_t)first; g.next[side];) {
+            const uint32_t following = g.next[side] - 1;
+            g.next[side] = 0;
+            add_crossing(&g, side, maker);
+            side = following;
+        }
+        camber_outline_end_ring(maker);
+    }
+    camber_free(maker->context, g.next);
+}

@@ -1,0 +1,68 @@
+/* The font files that text may be drawn with, and what each is called: first those of the caller's folders, then
+ * those that fontconfig knows, then the fonts that camber ships. A file is opened when a text needs it. */
+#ifndef CAMBER_TEXT_FONT_INDEX_H
+#define CAMBER_TEXT_FONT_INDEX_H
+
+#include "text/face.h"
+#include "text/font_name.h"
+
+#include <fontconfig/fontconfig.h>
+
+enum { CAMBER_FONT_KEYS = 8 };
+
+typedef enum camber_font_origin {
+    CAMBER_FONT_FROM_FOLDER = 0,
+    CAMBER_FONT_FROM_SYSTEM,
+    CAMBER_FONT_SHIPPED,
+} camber_font_origin;
+
+typedef struct camber_font_entry {
+    camber_font_origin origin;
+    char *path;                                                           /* of a shipped font: its name */
+    uint32_t index;                                                       /* camber_face_open's */
+    uint64_t whole_keys[CAMBER_FONT_KEYS], family_keys[CAMBER_FONT_KEYS]; /* font_name.h */
+    size_t whole_count, family_count;
+    camber_font_style style;
+    FcPattern *pattern;         /* of the system; else NULL */
+    const unsigned char *bytes; /* of a shipped font */
+    size_t size_bytes;
+    camber_face *face; /* NULL: not opened yet */
+    bool is_broken;    /* it could not be opened, which the log says */
+} camber_font_entry;
+
+typedef struct camber_font_index {
+    camber_context *context;
+    camber_font_entry *entries; /* by origin, then by path */
+    size_t count, capacity;
+    FcConfig *config; /* NULL: without the system's fonts */
+} camber_font_index;
+
+/* Fills a zeroed index. */
+camber_status camber_font_index_fill(camber_font_index *index, const char *const *folders, size_t folder_count,
+                                     bool has_system);
+void camber_font_index_free(camber_font_index *index);
+
+/* Appends an entry for the file, whose path is copied. NULL: no memory. The pointer is valid until the next one. */
+camber_font_entry *camber_font_index_add(camber_font_index *index, camber_font_origin origin, const char *path);
+/* Adds keys if there is room; a name that is NULL or empty adds none. */
+void camber_font_entry_name(camber_font_entry *entry, const char *family, const char *style, const char *full_name);
+
+/* Adds the files of a folder, whose suffix says that they are fonts, and those of folders in it. */
+camber_status camber_font_index_add_folder(camber_font_index *index, const char *folder);
+/* Adds the system's fonts that have outlines. */
+camber_status camber_font_index_add_system(camber_font_index *index);
+
+/* The entry that a style means by a name: the one that is called so, or of its family the one with the nearest style.
+ * SIZE_MAX: there is none. */
+size_t camber_font_index_find(const camber_font_index *index, const char *name);
+/* Opens an entry's font. Sets *face to NULL if it is broken. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_font_index_open(camber_font_index *index, size_t entry, camber_face **face);
+
+/* The system's fonts in the order in which it would try them for a style and a language, as patterns of entries. NULL:
+ * there are none. */
+FcFontSet *camber_font_index_sort_system(const camber_font_index *index, const camber_font_style *style,
+                                         const char *language);
+/* The entry of a pattern. SIZE_MAX: there is none. */
+size_t camber_font_index_find_pattern(const camber_font_index *index, const FcPattern *pattern);
+
+#endif

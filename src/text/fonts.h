@@ -1,0 +1,88 @@
+/* A set of fonts: what draws each character of a stack of fonts, and the numbers of glyphs that texts have.
+ *
+ * A character is drawn by the first of these that has it: the caller's ranges of glyphs; the fonts of its stack; the
+ * fonts that camber ships, so that maps are alike on all machines; fonts of the folders; the system's fonts, in the
+ * order in which fontconfig tries them. */
+#ifndef CAMBER_TEXT_FONTS_H
+#define CAMBER_TEXT_FONTS_H
+
+#include "text/font_index.h"
+#include "text/glyph_ranges.h"
+#include "text/number_map.h"
+#include "text/shaping.h"
+
+#include "camber_text.h"
+
+/* What draws glyphs: a face, or ranges. */
+typedef struct camber_glyph_source {
+    camber_face *face;
+    camber_glyph_ranges *ranges;
+    const char *name;         /* in messages */
+    camber_number_map glyphs; /* a glyph's number in the font, or its code point -> its number in the set + 1 */
+} camber_glyph_source;
+
+/* The fonts that a run names. */
+typedef struct camber_font_stack {
+    uint64_t key; /* of its names and language */
+    char **names;
+    size_t name_count;
+    char *language; /* NULL: none */
+    camber_font_style style;
+    float ascender_em;
+    uint32_t ranges_source; /* CAMBER_NO_SOURCE: none */
+    bool is_resolved, is_sorted;
+    uint32_t *named; /* named_count sources */
+    size_t named_count;
+    FcFontSet *sorted;            /* the system's fonts */
+    camber_number_map sources_of; /* a code point -> its source + 1 */
+} camber_font_stack;
+
+#define CAMBER_NO_SOURCE UINT32_MAX
+
+/* An outline for a tolerance. */
+typedef struct camber_made_outline camber_made_outline;
+struct camber_made_outline {
+    camber_made_outline *next;
+    int exponent; /* of the tolerance */
+    camber_outline outline;
+    void *block;
+};
+
+typedef struct camber_font_glyph {
+    uint32_t source;
+    uint32_t number; /* in the face; of ranges, the code point */
+    camber_made_outline *outlines;
+} camber_font_glyph;
+
+struct camber_fonts {
+    camber_context *context;
+    char **folders;
+    size_t folder_count;
+    bool has_system, is_filled;
+    camber_glyph_range_fn *read;
+    void *read_user;
+    camber_font_index index; /* filled when a text needs a font */
+    uint32_t *entry_sources; /* of each entry: its source + 1, or 0 */
+    camber_glyph_source *sources;
+    size_t source_count, source_capacity;
+    camber_font_stack *stacks;
+    size_t stack_count, stack_capacity;
+    camber_font_glyph *glyphs;
+    size_t glyph_count, glyph_capacity;
+    uint64_t *told; /* hashes of the names and scripts that a warning has told */
+    size_t told_count, told_capacity;
+    camber_shaping shaping;
+};
+
+/* Gives the stack of a run. The index stays valid, pointers to stacks do not. */
+camber_status camber_fonts_find_stack(camber_fonts *fonts, const char *const *names, size_t name_count,
+                                      const char *language, uint32_t *stack);
+/* Gives the source of a character and the marks on it: the one that has them all if there is one, else that of the
+ * first. CAMBER_NO_SOURCE: nothing is to be drawn. */
+camber_status camber_fonts_find_source(camber_fonts *fonts, uint32_t stack, const uint32_t *codes, size_t count,
+                                       uint32_t *source);
+bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code);
+/* Gives the number of a glyph in the set. */
+camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint32_t number, uint32_t *glyph);
+
+#endif

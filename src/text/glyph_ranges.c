@@ -1,0 +1,161 @@
+#include "text/glyph_ranges.h"
+
+#include "text/contours.h"
+
+#include <glyphs.pb-c.h>
+
+static const uint32_t MOST_BITMAP_PX = 1024; /* wide or high */
+static const uint32_t MOST_METRIC_PX = 4096;
+
+static void *allocate(void *user, size_t size_bytes) {
+    return camber_alloc(user, 1, size_bytes);
+}
+
+static void release(void *user, void *block) {
+    camber_free(user, block);
+}
+
+static ProtobufCAllocator get_allocator(camber_context *context) {
+    return (ProtobufCAllocator){allocate, release, context};
+}
+
+/* Where the baseline is: below the letter H, which stands on it. */
+static float find_ascender(camber_glyph_ranges *ranges) {
+    static const char letters[] = "HEIx";
+    for (const char *letter = letters; *letter; letter++) {
+        const uint32_t index = camber_number_map_get(&ranges->found, (uint32_t)*letter);
+        const camber_range_glyph *glyph = index ? &ranges->glyphs[index - 1] : NULL;
+        if (glyph && glyph->height)
+            return ((float)glyph->height - (float)glyph->top) / CAMBER_RANGE_EM_PX;
+    }
+    return 26.0f / CAMBER_RANGE_EM_PX;
+}
+
+camber_status camber_glyph_ranges_open(camber_context *context, camber_glyph_range_fn *read, void *user,
+                                       const char *stack, camber_glyph_ranges **ranges) {
+    camber_glyph_ranges *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    *made = (camber_glyph_ranges){.context = context, .read = read, .user = user};
+    made->stack = camber_copy_string(context, stack);
+    bool has_letter = false;
+    camber_status status = made->stack ? camber_glyph_ranges_has(made, 'H', &has_letter) : CAMBER_ERROR_MEMORY;
+    if (status) {
+        camber_glyph_ranges_close(made);
+        return status;
+    }
+    made->ascender_em = find_ascender(made);
+    *ranges = made;
+    return CAMBER_OK;
+}
+
+void camber_glyph_ranges_close(camber_glyph_ranges *ranges) {
+    if (!ranges)
+        return;
+    ProtobufCAllocator allocator = get_allocator(ranges->context);
+    for (size_t i = 0; i < ranges->loaded_count; i++)
+        camber__glyphs__range__free_unpacked(ranges->loaded[i], &allocator);
+    camber_free(ranges->context, ranges->loaded);
+    camber_free(ranges->context, ranges->glyphs);
+    camber_free(ranges->context, ranges->stack);
+    camber_number_map_free(ranges->context, &ranges->asked);
+    camber_number_map_free(ranges->context, &ranges->found);
+    camber_free(ranges->context, ranges);
+}
+
+/* Whether a glyph can be used; a bitmap that does not fit its size is no bitmap. */
+static bool check_glyph(const Camber__Glyphs__Glyph *glyph, uint32_t first, camber_range_glyph *checked) {
+    const int32_t most = (int32_t)MOST_METRIC_PX;
+    if (!glyph->has_id || glyph->id < first || glyph->id - first > 255 || glyph->advance > MOST_METRIC_PX ||
+        glyph->left < -most || glyph->left > most || glyph->top < -most || glyph->top > most)
+        return false;
+    *checked = (camber_range_glyph){.left = glyph->left, .top = glyph->top, .advance = glyph->advance};
+    if (glyph->width && glyph->height && glyph->width <= MOST_BITMAP_PX && glyph->height <= MOST_BITMAP_PX &&
+        glyph->bitmap.len ==
+            (size_t)(glyph->width + 2 * CAMBER_RANGE_BORDER_PX) * (glyph->height + 2 * CAMBER_RANGE_BORDER_PX)) {
+        checked->values = glyph->bitmap.data;
+        checked->width = glyph->width;
+        checked->height = glyph->height;
+    }
+    return true;
+}
+
+/* Notes the glyphs of a range; of two glyphs of a code point, the first counts. */
+static bool note_glyphs(camber_glyph_ranges *ranges, const Camber__Glyphs__Range *range, uint32_t first) {
+    for (size_t i = 0; i < range->n_stacks; i++)
+        for (size_t j = 0; j < range->stacks[i]->n_glyphs; j++) {
+            const Camber__Glyphs__Glyph *glyph = range->stacks[i]->glyphs[j];
+            camber_range_glyph checked;
+            if (!check_glyph(glyph, first, &checked) || camber_number_map_get(&ranges->found, glyph->id))
+                continue;
+            if (!camber_grow(ranges->context, &ranges->glyphs, &ranges->glyph_capacity, ranges->glyph_count + 1,
+                             sizeof *ranges->glyphs))
+                return false;
+            ranges->glyphs[ranges->glyph_count++] = checked;
+            if (!camber_number_map_set(ranges->context, &ranges->found, glyph->id, (uint32_t)ranges->glyph_count))
+                return false;
+        }
+    return true;
+}
+
+static camber_status load(camber_glyph_ranges *ranges, uint32_t first) {
+    camber_context *context = ranges->context;
+    const uint8_t *bytes = NULL;
+    size_t size_bytes = 0;
+    const camber_status status = ranges->read(ranges->user, ranges->stack, first, &bytes, &size_bytes);
+    if (status == CAMBER_ERROR_MEMORY)
+        return status;
+    if (!camber_number_map_set(context, &ranges->asked, first >> 8, 1) ||
+        !camber_grow(context, &ranges->loaded, &ranges->loaded_capacity, ranges->loaded_count + 1,
+                     sizeof *ranges->loaded))
+        return CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_ERROR_NOT_FOUND)
+        return CAMBER_OK;
+    ProtobufCAllocator allocator = get_allocator(context);
+    Camber__Glyphs__Range *range = status ? NULL : camber__glyphs__range__unpack(&allocator, size_bytes, bytes);
+    if (range) {
+        ranges->loaded[ranges->loaded_count++] = range;
+        return note_glyphs(ranges, range, first) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    }
+    if (!ranges->is_told)
+        camber_log(context, CAMBER_LOG_WARNING,
+                   "glyphs of %s: the range from U+%04X cannot be read: other fonts draw it", ranges->stack,
+                   (unsigned)first);
+    ranges->is_told = true;
+    return CAMBER_OK;
+}
+
+camber_status camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code, bool *has) {
+    if (!camber_number_map_get(&ranges->asked, code >> 8)) {
+        const camber_status status = load(ranges, code & ~255u);
+        if (status)
+            return status;
+    }
+    *has = camber_number_map_get(&ranges->found, code) != 0;
+    return CAMBER_OK;
+}
+
+static const camber_range_glyph *get_glyph(const camber_glyph_ranges *ranges, uint32_t code) {
+    const uint32_t index = camber_number_map_get(&ranges->found, code);
+    return index ? &ranges->glyphs[index - 1] : NULL;
+}
+
+float camber_glyph_ranges_advance_em(const camber_glyph_ranges *ranges, uint32_t code) {
+    const camber_range_glyph *glyph = get_glyph(ranges, code);
+    return glyph ? (float)glyph->advance / CAMBER_RANGE_EM_PX : 0.0f;
+}
+
+void camber_glyph_ranges_draw(const camber_glyph_ranges *ranges, uint32_t code, camber_outline_maker *maker) {
+    const camber_range_glyph *glyph = get_glyph(ranges, code);
+    if (!glyph || !glyph->values)
+        return;
+    const camber_contour_source source = {
+        .values = glyph->values,
+        .width = glyph->width + 2 * CAMBER_RANGE_BORDER_PX,
+        .height = glyph->height + 2 * CAMBER_RANGE_BORDER_PX,
+        .left = ((float)glyph->left - CAMBER_RANGE_BORDER_PX) / CAMBER_RANGE_EM_PX,
+        .top = (-(float)glyph->top - CAMBER_RANGE_BORDER_PX) / CAMBER_RANGE_EM_PX - ranges->ascender_em,
+        .scale = 1.0f / CAMBER_RANGE_EM_PX,
+    };
+    camber_contours_trace(&source, maker);
+}

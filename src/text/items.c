@@ -1,0 +1,120 @@
+/* Cuts a text into items: stretches that one source draws, in one script and one direction. */
+#include "text/fonts.h"
+#include "text/scripts.h"
+
+/* The end of a cluster: a character with the marks on it. */
+static size_t find_cluster_end(const camber_shaping *shaping, size_t first) {
+    size_t end = first + 1;
+    while (end < shaping->count && shaping->characters[end].is_mark && !shaping->characters[first].is_image &&
+           shaping->characters[end].run == shaping->characters[first].run)
+        end++;
+    return end;
+}
+
+/* Format characters, joiners and selectors of variants go with what stands before them, whatever its font. */
+static bool is_invisible(uint32_t code) {
+    return code == '\n' || code == 0xad || (code >= 0x200b && code <= 0x200f) || (code >= 0x202a && code <= 0x202e) ||
+           (code >= 0x2060 && code <= 0x206f) || (code >= 0xfe00 && code <= 0xfe0f) || code == 0x61c ||
+           (code >= 0xe0000 && code <= 0xe0fff);
+}
+
+enum { MOST_MARKS = 16 }; /* that choose a font with their letter */
+
+static camber_status choose_source(camber_fonts *fonts, size_t first, size_t end) {
+    camber_shaping *shaping = &fonts->shaping;
+    camber_character *characters = shaping->characters;
+    const uint32_t stack = shaping->stacks[characters[first].run];
+    const size_t count = end - first < MOST_MARKS ? end - first : MOST_MARKS;
+    uint32_t visible[MOST_MARKS], source = CAMBER_NO_SOURCE;
+    size_t visible_count = 0;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < count; i++)
+        if (!is_invisible(shaping->codes[first + i]))
+            visible[visible_count++] = shaping->codes[first + i];
+    if (shaping->codes[first] == '\n') /* draws nothing, and ends an item */
+        visible_count = 0;
+    else if (visible_count && !characters[first].is_image)
+        status = camber_fonts_find_source(fonts, stack, visible, visible_count, &source);
+    else if (first && !characters[first].is_image && characters[first - 1].run == characters[first].run)
+        source = characters[first - 1].source;
+    for (size_t i = first; i < end && !status; i++)
+        characters[i].source = source;
+    return status;
+}
+
+/* Characters of all scripts, such as spaces, are of the script before them, or at a text's beginning after them. */
+static void spread_scripts(camber_shaping *shaping) {
+    hb_script_t script = HB_SCRIPT_COMMON;
+    for (size_t i = 0; i < shaping->count && script == HB_SCRIPT_COMMON; i++) {
+        const hb_script_t own = shaping->characters[i].script;
+        if (own != HB_SCRIPT_INHERITED && own != HB_SCRIPT_UNKNOWN)
+            script = own;
+    }
+    for (size_t i = 0; i < shaping->count; i++) {
+        const hb_script_t own = shaping->characters[i].script;
+        if (own == HB_SCRIPT_COMMON || own == HB_SCRIPT_INHERITED || own == HB_SCRIPT_UNKNOWN)
+            shaping->characters[i].script = script;
+        else
+            script = own;
+    }
+}
+
+static bool is_same_item(const camber_character *a, const camber_character *b) {
+    return a->run == b->run && a->source == b->source && a->script == b->script && a->level == b->level &&
+           !a->is_image && !b->is_image && a->is_upright == b->is_upright;
+}
+
+/* The language of a text that has none: ideographs beside kana are Japanese, and beside hangul Korean. */
+static const char *guess_language(const camber_shaping *shaping) {
+    bool has_ideographs = false;
+    for (size_t i = 0; i < shaping->count; i++) {
+        const hb_script_t script = shaping->characters[i].script;
+        if (script == HB_SCRIPT_HIRAGANA || script == HB_SCRIPT_KATAKANA)
+            return "ja";
+        if (script == HB_SCRIPT_HANGUL)
+            return "ko";
+        has_ideographs = has_ideographs || script == HB_SCRIPT_HAN;
+    }
+    return has_ideographs ? "zh" : NULL;
+}
+
+static camber_status find_stacks(camber_fonts *fonts, const camber_text_desc *desc) {
+    camber_shaping *shaping = &fonts->shaping;
+    const char *language = desc->language ? desc->language : guess_language(shaping);
+    camber_status status = CAMBER_OK;
+    if (!camber_grow(fonts->context, &shaping->stacks, &shaping->stack_capacity, desc->run_count,
+                     sizeof *shaping->stacks))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < desc->run_count && !status; i++) {
+        const camber_text_run *run = &desc->runs[i];
+        shaping->stacks[i] = 0;
+        if (run->text)
+            status = camber_fonts_find_stack(fonts, run->fonts, run->font_count, language, &shaping->stacks[i]);
+    }
+    return status;
+}
+
+camber_status camber_shaping_itemize(camber_fonts *fonts, const camber_text_desc *desc) {
+    camber_shaping *shaping = &fonts->shaping;
+    camber_character *characters = shaping->characters;
+    camber_status status = find_stacks(fonts, desc);
+    for (size_t first = 0, end; first < shaping->count && !status; first = end) {
+        end = find_cluster_end(shaping, first);
+        status = choose_source(fonts, first, end);
+        for (size_t i = first; i < end; i++)
+            characters[i].is_upright = desc->vertical && camber_is_upright(shaping->codes[first]);
+    }
+    spread_scripts(shaping);
+    for (size_t first = 0, end; first < shaping->count && !status; first = end) {
+        for (end = first + 1; end < shaping->count && is_same_item(&characters[first], &characters[end]); end++)
+            ;
+        if (!camber_grow(fonts->context, &shaping->items, &shaping->item_capacity, shaping->item_count + 1,
+                         sizeof *shaping->items))
+            return CAMBER_ERROR_MEMORY;
+        shaping->items[shaping->item_count++] = (camber_text_item){.first = (uint32_t)first,
+                                                                   .end = (uint32_t)end,
+                                                                   .source = characters[first].source,
+                                                                   .is_upright = characters[first].is_upright};
+    }
+    return status;
+}

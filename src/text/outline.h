@@ -1,0 +1,33 @@
+/* Outlines of glyphs: rings in em units, y down, whose outer ones have positive areas. */
+#ifndef CAMBER_TEXT_OUTLINE_H
+#define CAMBER_TEXT_OUTLINE_H
+
+#include "text/face.h"
+
+#include "camber_text.h"
+
+/* An outline that grows. */
+typedef struct camber_outline_maker {
+    camber_context *context;
+    float *points; /* point_count pairs */
+    size_t point_count, point_capacity;
+    uint32_t *offsets;
+    size_t ring_count, offset_capacity;
+    float scale;        /* of the font's units to ems */
+    float tolerance_em; /* of flattened curves */
+    camber_status status;
+} camber_outline_maker;
+
+void camber_outline_begin_ring(camber_outline_maker *maker);
+void camber_outline_add_point(camber_outline_maker *maker, float x, float y);
+/* Drops the ring if it has no area. */
+void camber_outline_end_ring(camber_outline_maker *maker);
+/* Orients the rings, and copies them into one block, which camber_free frees. An outline without rings has none. */
+camber_status camber_outline_finish(camber_outline_maker *maker, camber_outline *outline, void **block);
+
+/* Draws a glyph of a font, by its number there. */
+void camber_outline_draw_glyph(camber_outline_maker *maker, const camber_face *face, uint32_t glyph);
+/* Whether a glyph has an outline. */
+bool camber_face_has_outline(const camber_face *face, uint32_t glyph);
+
+#endif

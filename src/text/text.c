@@ -1,0 +1,31 @@
+/* Makes texts. */
+#include "text/fonts.h"
+
+void camber_text_destroy(camber_text *text) {
+    if (!text)
+        return;
+    camber_context *context = text->context;
+    camber_free(context, text->glyphs);
+    camber_free(context, text->lines);
+    camber_free(context, text);
+}
+
+camber_status camber_text_shape(camber_fonts *fonts, const camber_text_desc *desc, camber_text **text) {
+    camber_context *context = fonts->context;
+    camber_shaping *shaping = &fonts->shaping;
+    camber_text *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    *made = (camber_text){.context = context, .vertical = desc->vertical};
+    camber_status status = camber_shaping_read(context, shaping, desc);
+    status = status ? status : camber_shaping_order(context, shaping);
+    status = status ? status : camber_shaping_itemize(fonts, desc);
+    status = status ? status : camber_shaping_shape(fonts, desc);
+    status = status ? status : camber_shaping_break(context, shaping, desc);
+    status = status ? status : camber_shaping_lay_out(fonts, desc, made);
+    if (status)
+        camber_text_destroy(made);
+    else
+        *text = made;
+    return status;
+}

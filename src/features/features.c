@@ -119,12 +119,16 @@ void camber_features_release_points(camber_features *features) {
 
 bool camber_features_get_bounds(const camber_features *features, double bounds[4]) {
     double west = INFINITY, north = INFINITY, east = -INFINITY, south = -INFINITY;
-    for (size_t i = 0; i < features->point_count; i++) {
-        const double x = features->points[2 * i], y = features->points[2 * i + 1];
-        west = x < west ? x : west;
-        east = x > east ? x : east;
-        north = y < north ? y : north;
-        south = y > south ? y : south;
+    for (size_t p = 0; p < features->polyline_count; p++) {
+        if (features->wants_labels && camber_geometry_is_label(camber_features_kind(features, p)))
+            continue;
+        for (size_t i = features->offsets[p]; i < features->offsets[p + 1] && features->points; i++) {
+            const double x = features->points[2 * i], y = features->points[2 * i + 1];
+            west = x < west ? x : west;
+            east = x > east ? x : east;
+            north = y < north ? y : north;
+            south = y > south ? y : south;
+        }
     }
     if (!(west <= east && north <= south))
         return false;
@@ -140,11 +144,21 @@ static bool is_of_files(const camber_features *features) {
     return true;
 }
 
-bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer) {
-    for (size_t i = 0; i < schema->source_layer_count; i++)
-        if (strcmp(schema->source_layers[i], source_layer) == 0)
+static bool has_name(const char *const *names, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(names[i], name) == 0)
             return true;
     return false;
+}
+
+bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer) {
+    return has_name(schema->source_layers, schema->source_layer_count, source_layer);
+}
+
+bool camber_schema_only_labels_layer(const camber_schema *schema, const char *source_layer) {
+    const size_t drawn = schema->drawn_source_layer_count;
+    return schema->label_source_layer_count && !has_name(schema->source_layers, drawn, source_layer) &&
+           has_name(schema->source_layers + drawn, schema->label_source_layer_count, source_layer);
 }
 
 static bool names_layers_of(const camber_schema *one, const camber_schema *other) {
@@ -159,13 +173,21 @@ static camber_property_readers readers_of(const camber_schema *schema, size_t pr
                                     : (camber_property_readers){UINT_MAX, UINT_MAX};
 }
 
+bool camber_features_reads_property(const camber_features *features, size_t property) {
+    const camber_property_readers readers = readers_of(features->schema, property);
+    const unsigned kinds = readers.kinds | readers.named_kinds;
+    return features->wants_labels || !kinds || kinds & ~(unsigned)CAMBER_KINDS_OF_LABELS;
+}
+
 static bool reads_the_same(const camber_schema *one, const camber_schema *other) {
-    bool same = one->property_count == other->property_count && one->wants_id == other->wants_id &&
-                one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
-                one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
-                one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
-                one->wants_plain_areas == other->wants_plain_areas &&
-                one->wants_plain_points == other->wants_plain_points;
+    bool same =
+        one->property_count == other->property_count && one->wants_id == other->wants_id &&
+        one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
+        one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
+        one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
+        one->wants_plain_areas == other->wants_plain_areas && one->wants_plain_points == other->wants_plain_points &&
+        one->wants_label_lines == other->wants_label_lines && one->wants_label_areas == other->wants_label_areas &&
+        one->wants_label_points == other->wants_label_points;
     for (size_t i = 0; same && i < one->property_count; i++) {
         const camber_property_readers a = readers_of(one, i), b = readers_of(other, i);
         same = strcmp(one->properties[i], other->properties[i]) == 0 && a.kinds == b.kinds &&
@@ -185,19 +207,25 @@ static bool is_taken(const camber_features *features, const camber_schema *schem
     return schema->takes && schema->takes(style, one->geometry, features->layer_names[one->layer], &feature);
 }
 
-/* Whether the same classes are plain in it. */
+/* Whether the same classes are plain in it, and the same are labelled. */
 static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
-        if (one->unsorted && schema->wants_plain &&
-            one->plain == is_taken(features, schema, style, one, values_of(features, one)))
+        if (camber_geometry_is_label(one->geometry)) {
+            if (one->labelled != is_taken(features, schema, style, one, values_of(features, one)))
+                return false;
+        } else if (one->unsorted && schema->wants_plain &&
+                   one->plain == is_taken(features, schema, style, one, values_of(features, one)))
             return false;
     }
     return true;
 }
 
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style) {
-    return is_of_files(features) && reads_the_same(features->schema, schema) && takes_the_same(features, schema, style);
+    /* A region drops the classes that no symbol layer takes, so they cannot be asked. */
+    const bool dropped = features->has_region && camber_features_label_kinds(features);
+    return is_of_files(features) && !dropped && reads_the_same(features->schema, schema) &&
+           takes_the_same(features, schema, style);
 }
 
 camber_features_stats camber_features_get_stats(const camber_features *features) {
@@ -490,16 +518,21 @@ static const camber_value *read_values(camber_features *features, const camber_f
     return set->read;
 }
 
-unsigned camber_schema_kinds(const camber_schema *schema, bool unsorted) {
+/* The kinds that are drawn. */
+static unsigned drawn_kinds(const camber_schema *schema, bool unsorted) {
     const bool plain_areas = unsorted && schema->wants_plain_areas;
     return CAMBER_KIND_LINE | (schema->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
            (schema->wants_areas || plain_areas ? CAMBER_KIND_AREA : 0u) |
            (schema->wants_points || (unsorted && schema->wants_plain_points) ? CAMBER_KIND_POINT : 0u);
 }
 
+unsigned camber_features_kinds(const camber_features *features, bool unsorted) {
+    return drawn_kinds(features->schema, unsorted) | camber_features_label_kinds(features);
+}
+
 const char *camber_features_left_out(unsigned kinds) {
-    const bool areas = kinds & CAMBER_KIND_AREA;
-    if (kinds & CAMBER_KIND_POINT)
+    const bool areas = kinds & CAMBER_KINDS_OF_AREAS;
+    if (kinds & CAMBER_KINDS_OF_POINTS)
         return areas ? "neither line, area nor point (empty geometry)"
                      : "neither line nor point (areas, empty geometry)";
     return areas ? "neither line nor area (points, empty geometry)" : "no line (points, areas, empty geometry)";
@@ -507,7 +540,9 @@ const char *camber_features_left_out(unsigned kinds) {
 
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index) {
     const camber_feature_class *one = &features->classes[class_index];
-    return !one->unsorted || one->plain || camber_schema_kinds(features->schema, false) >> one->geometry & 1;
+    if (camber_geometry_is_label(one->geometry))
+        return one->labelled;
+    return !one->unsorted || one->plain || drawn_kinds(features->schema, false) >> one->geometry & 1;
 }
 
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
@@ -530,8 +565,11 @@ camber_status camber_features_find_class_of(camber_features *features, const cam
             return CAMBER_OK;
         }
     }
-    made.plain = made.unsorted && features->schema->wants_plain &&
-                 !is_taken(features, features->schema, features->style, &made, read);
+    const bool label = camber_geometry_is_label(made.geometry),
+               asks_plain = made.unsorted && features->schema->wants_plain;
+    const bool taken = (label || asks_plain) && is_taken(features, features->schema, features->style, &made, read);
+    made.plain = !label && asks_plain && !taken;
+    made.labelled = label && taken;
     const camber_status status = add_class(features, &made, read);
     if (status != CAMBER_OK)
         return status;
@@ -653,6 +691,13 @@ camber_status camber_features_set_importance(camber_features *features, size_t f
     if (!camber_grow(features->context, &features->importance, &features->importance_capacity, features->point_count,
                      sizeof *features->importance))
         return CAMBER_ERROR_MEMORY;
-    return camber_importance_weigh(features->context, features->points, features->offsets + first_polyline,
-                                   features->polyline_count - first_polyline, features->importance);
+    const size_t labels = camber_features_find_labels(features, first_polyline), end = features->polyline_count;
+    camber_status status = CAMBER_OK;
+    if (labels > first_polyline)
+        status = camber_importance_weigh(features->context, features->points, features->offsets + first_polyline,
+                                         labels - first_polyline, features->importance);
+    if (status == CAMBER_OK && end > labels)
+        status = camber_importance_weigh(features->context, features->points, features->offsets + labels, end - labels,
+                                         features->importance);
+    return status;
 }

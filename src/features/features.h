@@ -20,6 +20,7 @@ typedef struct camber_feature_class {
     const camber_value *all; /* an object of all properties, where the style wants them. NULL: none */
     bool unsorted;           /* its file has no schema that says what is a road, a river, a building */
     bool plain;              /* no layer takes it, at whatever zoom: it is drawn by layers that are plain */
+    bool labelled;           /* of a label's kind: a symbol layer takes it */
 } camber_feature_class;
 
 struct camber_features {
@@ -59,6 +60,7 @@ struct camber_features {
     char **layer_names; /* source layers, in the order in which they were found */
     size_t layer_count, layer_capacity;
 
+    bool wants_labels;    /* files are read for symbol layers, too (labels.c) */
     bool has_region;      /* files are read for the region alone */
     camber_region region; /* what a scene needs: read_for.c */
     uint32_t source;      /* the source of classes that are found from now on; CAMBER_NO_SOURCE at first */
@@ -111,9 +113,14 @@ camber_status camber_features_find_class(camber_features *features, uint32_t lay
 /* Does the same with an id and all properties; wanted's source, first_value and plain are not read. */
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index);
+/* The kinds of geometry that are read of features, CAMBER_KIND_*. unsorted: as a class has it. */
+unsigned camber_features_kinds(const camber_features *features, bool unsorted);
+/* Whether a property is read of features: one that only symbol layers read is not if no labels are wanted. */
+bool camber_features_reads_property(const camber_features *features, size_t property);
 /* Names what is left out if these kinds are read, to follow "left out what is". */
 const char *camber_features_left_out(unsigned kinds);
-/* Whether features of a class are kept: those of some kinds are read in case that they are plain. */
+/* Whether features of a class are kept: those of some kinds are read in case that they are plain, and those of labels
+ * in case that a symbol layer takes them. */
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
 /* Adds a polyline to the feature that was added last. points: pairs of world coordinates. */
@@ -125,6 +132,22 @@ camber_status camber_features_add_attribution(camber_features *features, const c
 /* Cuts the attribution back to this many bytes, a former attribution_size. */
 void camber_features_cut_attribution(camber_features *features, size_t size);
 
+/* ---- Labels (labels.c): the same features once more, of kinds of their own ---- */
+
+/* Files that are read from now on give the features of symbol layers, too. */
+void camber_features_want_labels(camber_features *features);
+/* The kinds of labels that are read, CAMBER_KIND_*. 0: none. */
+unsigned camber_features_label_kinds(const camber_features *features);
+/* The first polyline of labels among those from this one on, if labels come last. polyline_count: there is none. */
+size_t camber_features_find_labels(const camber_features *features, size_t first_polyline);
+/* Puts the features of labels behind all others of first_polyline and after it, which have no importance yet. So labels
+ * change nothing about the lines that are drawn. */
+camber_status camber_features_part_labels(camber_features *features, size_t first_polyline);
+/* How many features are there, without those of labels. */
+size_t camber_features_count_drawn(const camber_features *features);
+/* Counts features, polylines and points for the stats, without those of labels. */
+void camber_features_count(camber_features *features);
+
 typedef enum camber_merge_rule {
     CAMBER_MERGE_ANY = 0,  /* where exactly two ends of a class meet */
     CAMBER_MERGE_DIRECTED, /* the same, but only the end of one with the start of another */
@@ -132,7 +155,8 @@ typedef enum camber_merge_rule {
 } camber_merge_rule;
 
 /* Merges the lines of first_polyline and after it, if merges, and not the areas, and weighs their points; counts the
- * time of both. Where the style goes by directions, ANY is DIRECTED. Lines outside the region of the set go. */
+ * time of both. Where the style goes by directions, ANY is DIRECTED. Lines outside the region of the set go. Lines of
+ * labels are always merged, whatever their directions. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule);
 /* Merges lines of first_polyline and after it. */

@@ -136,7 +136,7 @@ static bool add_point(camber_frontier *f, size_t point, bool end) {
 /* A line whose points are all one is a dot, which has no ends. */
 static bool has_ends(const camber_features *features, size_t polyline, uint32_t class_index) {
     const size_t begin = features->offsets[polyline], end = features->offsets[polyline + 1];
-    if (features->classes[class_index].geometry != CAMBER_GEOMETRY_LINE)
+    if (camber_geometry_shape(features->classes[class_index].geometry) != CAMBER_GEOMETRY_LINE)
         return false;
     for (size_t i = begin + 1; i < end; i++)
         if (memcmp(features->points + 2 * begin, features->points + 2 * i, 2 * sizeof *features->points) != 0)
@@ -148,7 +148,7 @@ static bool has_ends(const camber_features *features, size_t polyline, uint32_t 
 static bool touches(camber_frontier *f, size_t polyline) {
     const camber_features *features = f->features;
     size_t next;
-    if (camber_features_kind(features, polyline) != CAMBER_GEOMETRY_AREA)
+    if (!camber_geometry_is_area(camber_features_kind(features, polyline)))
         return camber_features_touch(features, &features->region, polyline, &next);
     if (polyline < f->area_end)
         return f->area_touches;

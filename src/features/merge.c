@@ -21,10 +21,11 @@ typedef struct merger {
     camber_features *features;
     size_t first_polyline;
     size_t line_count;
-    uint32_t *partner; /* by end: the end that it is joined with; CAMBER_NO_END: none */
-    uint32_t *next;    /* by the straight rule: another end at the same node; CAMBER_NO_END */
-    uint8_t *met;      /* ends at the node of which this end was the first, up to 3 */
-    uint32_t *slots;   /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
+    camber_geometry_kind kind; /* the lines that are merged; others stay */
+    uint32_t *partner;         /* by end: the end that it is joined with; CAMBER_NO_END: none */
+    uint32_t *next;            /* by the straight rule: another end at the same node; CAMBER_NO_END */
+    uint8_t *met;              /* ends at the node of which this end was the first, up to 3 */
+    uint32_t *slots;           /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
     size_t slot_count;
     bool *visited;
     camber_chain *chains;
@@ -51,7 +52,7 @@ static uint32_t class_of(const merger *m, uint32_t end) {
 static bool has_ends(const merger *m, size_t line) {
     size_t count;
     const double *points = line_points(m, line, &count);
-    if (m->features->classes[class_of(m, (uint32_t)(2 * line))].geometry != CAMBER_GEOMETRY_LINE)
+    if (m->features->classes[class_of(m, (uint32_t)(2 * line))].geometry != m->kind)
         return false;
     for (size_t i = 1; i < count; i++)
         if (memcmp(points, points + 2 * i, 2 * sizeof *points) != 0)
@@ -287,9 +288,11 @@ done:
     return status;
 }
 
-camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
+static camber_status merge(camber_features *features, size_t first_polyline, camber_merge_rule rule,
+                           camber_geometry_kind kind) {
     camber_context *context = features->context;
     merger m = {.features = features,
+                .kind = kind,
                 .first_polyline = first_polyline,
                 .line_count = features->polyline_count - first_polyline,
                 .slot_count = 16};
@@ -330,13 +333,28 @@ done:
     return status;
 }
 
+camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
+    return merge(features, first_polyline, rule, CAMBER_GEOMETRY_LINE);
+}
+
+/* Merges the lines of labels, which come last: a street's pieces of one name become one line. They are not counted. */
+static camber_status merge_labels(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
+    const size_t counted = features->stats.merged_polylines;
+    const camber_status status =
+        merge(features, camber_features_find_labels(features, first_polyline), rule, CAMBER_GEOMETRY_LABEL_LINE);
+    features->stats.merged_polylines = counted;
+    return status;
+}
+
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule) {
     const double start_ms = camber_now_ms();
     const bool directed = rule == CAMBER_MERGE_ANY && features->schema->directed;
-    camber_status status = CAMBER_OK;
-    if (merges)
+    camber_status status = camber_features_part_labels(features, first_polyline);
+    if (status == CAMBER_OK && merges)
         status = camber_features_merge(features, first_polyline, directed ? CAMBER_MERGE_DIRECTED : rule);
+    if (status == CAMBER_OK && features->wants_labels)
+        status = merge_labels(features, first_polyline, rule);
     camber_features_shrink(features);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)

@@ -161,7 +161,7 @@ bool camber_features_touch(const camber_features *features, const camber_region 
                            size_t *next) {
     const size_t *offsets = features->offsets + polyline;
     *next = polyline + 1;
-    if (camber_features_kind(features, polyline) != CAMBER_GEOMETRY_AREA)
+    if (!camber_geometry_is_area(camber_features_kind(features, polyline)))
         return camber_region_touches(region, features->points + 2 * offsets[0], offsets[1] - offsets[0]);
     while (*next < features->polyline_count &&
            features->polyline_feature[*next] == features->polyline_feature[polyline])

@@ -27,7 +27,25 @@ enum {
     CAMBER_KIND_LABEL_LINE = 1 << CAMBER_GEOMETRY_LABEL_LINE,
     CAMBER_KIND_LABEL_AREA = 1 << CAMBER_GEOMETRY_LABEL_AREA,
     CAMBER_KIND_LABEL_POINT = 1 << CAMBER_GEOMETRY_LABEL_POINT,
+    CAMBER_KINDS_OF_LABELS = CAMBER_KIND_LABEL_LINE | CAMBER_KIND_LABEL_AREA | CAMBER_KIND_LABEL_POINT,
+    CAMBER_KINDS_OF_AREAS = CAMBER_KIND_AREA | CAMBER_KIND_LABEL_AREA,
+    CAMBER_KINDS_OF_POINTS = CAMBER_KIND_POINT | CAMBER_KIND_LABEL_POINT,
 };
+
+static inline bool camber_geometry_is_label(camber_geometry_kind kind) {
+    return CAMBER_KINDS_OF_LABELS >> kind & 1;
+}
+/* Whether its lines are the rings of an area. */
+static inline bool camber_geometry_is_area(camber_geometry_kind kind) {
+    return CAMBER_KINDS_OF_AREAS >> kind & 1;
+}
+/* The drawn kind that has the same geometry. */
+static inline camber_geometry_kind camber_geometry_shape(camber_geometry_kind kind) {
+    return kind == CAMBER_GEOMETRY_LABEL_LINE    ? CAMBER_GEOMETRY_LINE
+           : kind == CAMBER_GEOMETRY_LABEL_AREA  ? CAMBER_GEOMETRY_AREA
+           : kind == CAMBER_GEOMETRY_LABEL_POINT ? CAMBER_GEOMETRY_POINT
+                                                 : kind;
+}
 
 /* The type that a style's filters know a kind by. */
 static inline const char *camber_geometry_type(camber_geometry_kind kind) {
@@ -62,27 +80,31 @@ typedef struct camber_schema {
     size_t property_count;
     /* property_count: of what each is read; of nothing if only a source's filter reads it. NULL: all of everything. */
     camber_property_readers *property_readers;
-    /* The source layers that layers name, each once; first those that a visible layer names. They belong to the
-     * layers. */
+    /* The source layers that layers name, each once; first those that a visible layer names which is no
+     * symbol layer. They belong to the layers. */
     const char **source_layers;
     size_t source_layer_count, drawn_source_layer_count;
-    bool wants_id;             /* an expression reads the feature's id */
-    bool wants_all_properties; /* an expression reads properties that it does not name */
+    size_t label_source_layer_count; /* those behind the drawn ones, which visible symbol layers name */
+    bool wants_id;                   /* an expression reads the feature's id */
+    bool wants_all_properties;       /* an expression reads properties that it does not name */
     bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool wants_polygons; /* outlines are drawn: by a line layer whose filter does not leave polygons out, by a fill
                             layer that has a colour for them, or their corners by a circle layer */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
     bool wants_points;   /* a circle layer is drawn whose filter does not leave points out */
+    /* A symbol layer is drawn whose filter does not leave these out. */
+    bool wants_label_lines, wants_label_areas, wants_label_points;
     /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
-    /* Whether a layer that is not plain draws such features of this source layer at any zoom. NULL: none does. */
+    /* Whether a layer that is not plain draws such features of this source layer at any zoom; of a label's kind,
+     * whether a symbol layer takes them. NULL: none does. */
     bool (*takes)(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature);
 } camber_schema;
 
 /* Whether the style has a layer of its own for this source layer, so that it knows what the layer holds. */
 bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer);
-/* The kinds of geometry that are read of features, CAMBER_KIND_*. unsorted: as a class has it. */
-unsigned camber_schema_kinds(const camber_schema *schema, bool unsorted);
+/* Whether visible layers name it, but none except symbol layers. */
+bool camber_schema_only_labels_layer(const camber_schema *schema, const char *source_layer);
 
 #endif

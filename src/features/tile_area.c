@@ -113,7 +113,7 @@ camber_status camber_tile_stitcher_add_ring(camber_tile_stitcher *stitcher, cons
 void camber_features_pin_borders(camber_features *features, size_t first_polyline, int zoom) {
     const double tiles = ldexp(1.0, zoom);
     for (size_t p = first_polyline; p < features->polyline_count; p++) {
-        if (camber_features_kind(features, p) != CAMBER_GEOMETRY_AREA)
+        if (!camber_geometry_is_area(camber_features_kind(features, p)))
             continue;
         for (size_t i = features->offsets[p]; i < features->offsets[p + 1]; i++) {
             const double x = features->points[2 * i] * tiles, y = features->points[2 * i + 1] * tiles;

@@ -336,7 +336,7 @@ done:
     return status;
 }
 
-camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features) {
+static camber_status finish(camber_tile_stitcher *stitcher, camber_features *features, bool directed) {
     camber_context *context = stitcher->context;
     joiner join = {.stitcher = stitcher, .head_count = 1024};
     camber_status status = CAMBER_ERROR_MEMORY;
@@ -349,7 +349,6 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
     for (size_t i = 0; i < 2 * stitcher->line_count; i++)
         join.partner[i] = NONE;
     drop_repeated_border_lines(&join);
-    const bool directed = features->schema->directed;
     /* Tiles with a coarser grid than 2048 round correspondingly more. */
     const double reach = REACH * fmin(fmax(1, stitcher->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
     const join_pass passes[] = {{true, EXACT, directed},
@@ -365,5 +364,16 @@ done:
     camber_free(context, join.partner);
     camber_free(context, join.next);
     camber_free(context, join.heads);
+    return status;
+}
+
+camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features) {
+    return finish(stitcher, features, features->schema->directed);
+}
+
+camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features) {
+    const size_t joined = features->stats.joined_pieces;
+    const camber_status status = finish(labels, features, false);
+    features->stats.joined_pieces = joined;
     return status;
 }

@@ -41,6 +41,8 @@ camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const cam
 void camber_features_pin_borders(camber_features *features, size_t first_polyline, int zoom);
 /* Joins the lines and adds them to the set. Where the style is directed, an end is joined only to a start. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
+/* Does so for labels, whatever the directions of their lines. Pieces that are joined are not counted. */
+camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features);
 
 /* ---- Between the two ---- */
 

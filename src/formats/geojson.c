@@ -13,7 +13,7 @@
 
 /* Collections in collections. */
 enum { DEEPEST = 32 };
-enum { POLYGONS = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA };
+enum { POLYGONS = CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS };
 
 /* A line may go on over the antimeridian, but not round and round. */
 static const double FARTHEST_DEG = 540.0;
@@ -22,7 +22,9 @@ typedef struct reader {
     camber_context *context;
     camber_features *features;
     const camber_geojson_desc *desc;
-    camber_geojson_stats *stats;
+    camber_geojson_stats *stats; /* of what is being read: those of the description, or these */
+    camber_geojson_stats label_stats;
+    camber_features_stats label_rings;
     const json_t *promote_id;
     bool generate_id;
     unsigned kinds; /* CAMBER_KIND_*: those that are read */
@@ -99,8 +101,11 @@ static camber_status find_class(reader *self, const json_t *feature, bool *drawn
     camber_feature_class wanted = {.geometry = self->kind};
     camber_value id = {0};
     camber_status status = camber_features_find_layer(self->features, "", &wanted.layer);
+    for (size_t i = 0; i < schema->property_count; i++)
+        self->values[i] = (camber_value){0};
     for (size_t i = 0; i < schema->property_count && status == CAMBER_OK; i++)
-        status = read_value(self, json_object_get(properties, schema->properties[i]), &self->values[i]);
+        if (camber_features_reads_property(self->features, i))
+            status = read_value(self, json_object_get(properties, schema->properties[i]), &self->values[i]);
     if (status == CAMBER_OK)
         status = read_id(self, feature, properties, &id);
     if (status == CAMBER_OK && schema->wants_all_properties && json_is_object(properties))
@@ -112,8 +117,11 @@ static camber_status find_class(reader *self, const json_t *feature, bool *drawn
     *drawn = !self->desc->matches || self->desc->matches(self->desc->user, &view);
     if (schema->wants_id)
         wanted.id = id;
-    return *drawn ? camber_features_find_class_of(self->features, &wanted, self->values, &self->class_index)
-                  : CAMBER_OK;
+    if (*drawn)
+        status = camber_features_find_class_of(self->features, &wanted, self->values, &self->class_index);
+    if (*drawn && status == CAMBER_OK && camber_geometry_is_label(self->kind))
+        *drawn = camber_features_draw_class(self->features, self->class_index);
+    return status;
 }
 
 /* ---- Geometry ---- */
@@ -313,14 +321,33 @@ static void end_feature(reader *self) {
         snprintf(stats->damage, sizeof stats->damage, "%s", self->damage);
 }
 
+/* Reads the feature's geometry of a kind, or for symbol layers, if one takes it: that has counts of its own. */
+static camber_status read_kind(reader *self, const json_t *feature, const json_t *geometry) {
+    const camber_geometry_kind kind = self->kind;
+    const bool label = camber_geometry_is_label(kind);
+    camber_geojson_stats *stats = self->stats;
+    camber_features_stats *rings = self->rings.stats;
+    bool drawn = false;
+    self->added = false;
+    camber_status status = find_class(self, feature, &drawn);
+    if (status != CAMBER_OK || !drawn)
+        return status;
+    self->kind = camber_geometry_shape(kind);
+    self->stats = label ? &self->label_stats : stats;
+    self->rings.stats = label ? &self->label_rings : rings;
+    status = read_geometry(self, geometry, 0);
+    self->stats = stats;
+    self->rings.stats = rings;
+    return status;
+}
+
 static camber_status read_feature(reader *self, const json_t *feature, const json_t *geometry) {
     self->damage = NULL;
     self->left_out = !geometry || json_is_null(geometry);
     camber_status status = CAMBER_OK;
     bool any = self->left_out;
-    unsigned unread = 0;
+    unsigned read = 0, unread = 0;
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
-        bool drawn = false;
         self->kind = (camber_geometry_kind)kind;
         if (!has_kind(geometry, self->kind, 0))
             continue;
@@ -329,15 +356,15 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
             unread |= 1u << kind;
             continue;
         }
-        self->added = false;
-        status = find_class(self, feature, &drawn);
-        if (status == CAMBER_OK && drawn)
-            status = read_geometry(self, geometry, 0);
+        read |= 1u << kind;
+        status = read_kind(self, feature, geometry);
     }
     self->kind = CAMBER_GEOMETRY_LINE;
     if (!any)
         status = read_geometry(self, geometry, 0); /* of an unknown type */
-    self->left_out |= (unread & (CAMBER_KIND_LINE | CAMBER_KIND_POINT)) || (unread & POLYGONS) == POLYGONS;
+    self->left_out |= (unread & CAMBER_KIND_LINE && !(read & CAMBER_KIND_LABEL_LINE)) ||
+                      (unread & CAMBER_KIND_POINT && !(read & CAMBER_KIND_LABEL_POINT)) ||
+                      (unread & POLYGONS && !(read & POLYGONS));
     end_feature(self);
     return status;
 }
@@ -374,11 +401,12 @@ camber_status camber_geojson_read(camber_features *features, const camber_geojso
                    .rings.stats = &features->stats};
     self.kinds = desc->kinds;
     if (!desc->kinds)
-        self.kinds = CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | (features->schema->wants_areas ? CAMBER_KIND_AREA : 0u) |
-                     (features->schema->wants_points ? CAMBER_KIND_POINT : 0u);
-    *stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
+        self.kinds = CAMBER_KIND_POLYGON | camber_features_kinds(features, false);
+    *stats = self.label_stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
     self.values = camber_alloc(features->context, features->schema->property_count, sizeof *self.values);
     const camber_status status = self.values ? read_root(&self) : CAMBER_ERROR_MEMORY;
+    if (stats->bounds[0] > stats->bounds[2]) /* labels are all that it has */
+        memcpy(stats->bounds, self.label_stats.bounds, sizeof stats->bounds);
     camber_free(features->context, self.points);
     camber_free(features->context, self.values);
     return status;

@@ -287,6 +287,21 @@ static bool is_own(const camber_tile_address *address, const double *point) {
     return !(beyond & ~address->open_sides);
 }
 
+/* Leaves only the tile's own points in the geometry. */
+static void keep_own_points(camber_mvt *mvt) {
+    camber_mvt_geometry *geometry = &mvt->geometry;
+    size_t kept = 0;
+    for (size_t i = 0; i < geometry->point_count; i++) {
+        double *point = geometry->points + 2 * i;
+        if (!is_own(&mvt->address, point))
+            continue;
+        memmove(geometry->points + 2 * kept, point, 2 * sizeof *point);
+        geometry->ends[kept] = kept + 1;
+        kept++;
+    }
+    geometry->point_count = geometry->line_count = kept;
+}
+
 static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
     const camber_mvt_geometry *geometry = &mvt->geometry;
     camber_status status = CAMBER_OK;
@@ -304,26 +319,34 @@ static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
     return status;
 }
 
-static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
-                                     const char **damage) {
+/* Finds the class of a feature, and what the stitcher knows of it. */
+static camber_status find_class(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
+                                camber_tile_feature *stitched, const char **damage) {
     const camber_schema *schema = mvt->desc.features->schema;
-    camber_tile_feature stitched = {.column = mvt->address.column,
-                                    .row = mvt->address.row,
-                                    .outline = kind == CAMBER_GEOMETRY_POLYGON,
-                                    .area = kind == CAMBER_GEOMETRY_AREA,
-                                    .progress = {0, 1},
-                                    .open_sides = mvt->address.open_sides};
+    *stitched = (camber_tile_feature){.column = mvt->address.column,
+                                      .row = mvt->address.row,
+                                      .outline = kind == CAMBER_GEOMETRY_POLYGON,
+                                      .area = camber_geometry_is_area(kind),
+                                      .progress = {0, 1},
+                                      .open_sides = mvt->address.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind, .unsorted = mvt->unsorted};
     camber_value promoted = {0};
-    camber_status status = read_tags(mvt, feature, &promoted, &stitched, damage);
+    camber_status status = read_tags(mvt, feature, &promoted, stitched, damage);
     if (schema->wants_id && promoted_name(mvt))
         wanted.id = promoted;
     else if (schema->wants_id && feature->has_id)
         wanted.id = number_value((double)feature->id);
     if (status == CAMBER_OK && schema->wants_all_properties)
         status = read_all_properties(mvt, feature, &wanted.all);
-    if (status == CAMBER_OK)
-        status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched.class_index);
+    return status == CAMBER_OK
+               ? camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched->class_index)
+               : status;
+}
+
+static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
+                                     const char **damage) {
+    camber_tile_feature stitched;
+    const camber_status status = find_class(mvt, feature, kind, &stitched, damage);
     if (status != CAMBER_OK || !camber_features_draw_class(mvt->desc.features, stitched.class_index))
         return status;
     if (kind == CAMBER_GEOMETRY_POINT)
@@ -335,7 +358,7 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
 static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind) {
     const camber_mvt_commands commands = {.words = feature->geometry,
                                           .count = feature->n_geometry,
-                                          .kind = kind,
+                                          .kind = camber_geometry_shape(kind),
                                           .column = mvt->address.column,
                                           .row = mvt->address.row,
                                           .extent = mvt->layer->extent,
@@ -345,9 +368,8 @@ static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature,
 
 /* Makes areas of a feature's rings. Where the first of them winds the other way, as some makers of tiles have it, so do
  * all: then holes are those that go clockwise. */
-static void take_rings(camber_mvt *mvt) {
+static void take_rings(camber_mvt *mvt, camber_features_stats *stats) {
     camber_mvt_geometry *geometry = &mvt->geometry;
-    camber_features_stats *stats = &mvt->desc.features->stats;
     camber_rings rings = {.stats = stats};
     size_t first = 0, points = 0, lines = 0;
     double sign = 0.0;
@@ -368,13 +390,48 @@ static void take_rings(camber_mvt *mvt) {
     geometry->point_count = points;
 }
 
+/* Reads a feature to be drawn. *kept: it has points. */
+static camber_status read_kind(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind, bool *kept,
+                               const char **damage) {
+    const camber_status status = read_geometry(mvt, feature, kind);
+    *damage = *damage ? *damage : mvt->geometry.damage;
+    *kept = *kept || mvt->geometry.line_count;
+    if (status == CAMBER_OK && kind == CAMBER_GEOMETRY_AREA)
+        take_rings(mvt, &mvt->desc.features->stats);
+    return status == CAMBER_OK && mvt->geometry.line_count ? add_to_stitcher(mvt, feature, kind, damage) : status;
+}
+
+/* Reads a feature for symbol layers, if one takes it. A point is a line of one point to the stitcher. */
+static camber_status read_label(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind, bool *kept,
+                                const char **damage) {
+    camber_features_stats ignored = {0};
+    camber_tile_feature stitched;
+    camber_status status = find_class(mvt, feature, kind, &stitched, damage);
+    const bool taken = status == CAMBER_OK && camber_features_draw_class(mvt->desc.features, stitched.class_index);
+    *kept = *kept || (status == CAMBER_OK && !taken);
+    if (!taken)
+        return status;
+    status = read_geometry(mvt, feature, kind);
+    *damage = *damage ? *damage : mvt->geometry.damage;
+    *kept = *kept || mvt->geometry.line_count;
+    if (status != CAMBER_OK || !mvt->geometry.line_count)
+        return status;
+    if (kind == CAMBER_GEOMETRY_LABEL_AREA)
+        take_rings(mvt, &ignored);
+    if (kind == CAMBER_GEOMETRY_LABEL_POINT)
+        keep_own_points(mvt);
+    stitched.has_progress = false;
+    const camber_tile_lines lines = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.line_count};
+    return camber_tile_stitcher_add(mvt->desc.labels, &stitched, &lines);
+}
+
 static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const tile_feature *feature = camber__tile__feature__unpack(&mvt->pool.allocator, bytes.len, bytes.data);
     if (!feature)
         return judge_failure(mvt, "a feature that does not parse");
     mvt->stats.features++;
-    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
-    const unsigned of_type[] = {0, CAMBER_KIND_POINT, CAMBER_KIND_LINE, polygons};
+    const unsigned polygons = CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS;
+    const unsigned of_type[] = {0, CAMBER_KINDS_OF_POINTS, CAMBER_KIND_LINE | CAMBER_KIND_LABEL_LINE, polygons};
     const unsigned kinds = mvt->kinds & of_type[(unsigned)feature->type <= 3 ? feature->type : 0];
     mvt->stats.skipped_features += !kinds;
     camber_status status = CAMBER_OK;
@@ -383,13 +440,9 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
         if (!(kinds >> kind & 1))
             continue;
-        status = read_geometry(mvt, feature, (camber_geometry_kind)kind);
-        damage = damage ? damage : mvt->geometry.damage;
-        kept = kept || mvt->geometry.line_count;
-        if (status == CAMBER_OK && kind == CAMBER_GEOMETRY_AREA)
-            take_rings(mvt);
-        if (status == CAMBER_OK && mvt->geometry.line_count)
-            status = add_to_stitcher(mvt, feature, (camber_geometry_kind)kind, &damage);
+        status = camber_geometry_is_label((camber_geometry_kind)kind)
+                     ? read_label(mvt, feature, (camber_geometry_kind)kind, &kept, &damage)
+                     : read_kind(mvt, feature, (camber_geometry_kind)kind, &kept, &damage);
     }
     mvt->stats.kept_features += kept;
     if (damage)
@@ -402,14 +455,17 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
 /* Finds out what of the layer is wanted. */
 static unsigned wanted_kinds(const camber_mvt *mvt) {
     const camber_mvt_desc *desc = &mvt->desc;
+    const unsigned labels = desc->labels ? camber_features_label_kinds(desc->features) : 0u;
     for (size_t i = 0; i < desc->layer_count; i++) {
         if (strcmp(desc->layers[i], mvt->name) != 0)
             continue;
         if (desc->layer_kinds)
             return desc->layer_kinds[i];
         if (mvt->unsorted)
-            return camber_schema_kinds(desc->features->schema, true);
-        return CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
+            return camber_features_kinds(desc->features, true);
+        if (camber_schema_only_labels_layer(desc->features->schema, mvt->name))
+            return labels;
+        return labels | CAMBER_KIND_LINE | (desc->wants_polygons ? CAMBER_KIND_POLYGON : 0u) |
                (desc->wants_areas ? CAMBER_KIND_AREA : 0u) | (desc->wants_points ? CAMBER_KIND_POINT : 0u);
     }
     return 0;
@@ -460,6 +516,8 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
         return CAMBER_OK;
     }
     mvt->desc.stitcher->grid = fmax(mvt->desc.stitcher->grid, CAMBER_TILE_UNITS / layer->extent);
+    if (mvt->desc.labels)
+        mvt->desc.labels->grid = mvt->desc.stitcher->grid;
     camber_status status = camber_features_find_layer(mvt->desc.features, mvt->name, &mvt->layer_index);
     if (status == CAMBER_OK && !find_keys(mvt))
         status = judge_failure(mvt, "a layer's keys");

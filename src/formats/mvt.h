@@ -17,6 +17,7 @@ typedef struct camber_tile_address {
 typedef struct camber_mvt_desc {
     camber_features *features;
     camber_tile_stitcher *stitcher;
+    camber_tile_stitcher *labels; /* for what symbol layers label. NULL: none of it is read */
     const char *const
         *layers; /* the names of the wanted layers. NULL: none; the layers that the tiles hold are only listed */
     size_t layer_count;

@@ -64,16 +64,21 @@ camber_status camber_features_read_tiles(camber_features *features, const camber
     camber_mvt_desc desc = reading->mvt;
     camber_budget_read_again(context);
     camber_status status = camber_tile_stitcher_create(context, reading->zoom, &desc.stitcher);
+    if (status == CAMBER_OK && camber_features_label_kinds(features))
+        status = camber_tile_stitcher_create(context, reading->zoom, &desc.labels);
     if (status == CAMBER_OK)
         status = camber_mvt_create(context, &desc, &self.mvt);
     if (status == CAMBER_OK)
         status = read_addresses(&self);
     if (status == CAMBER_OK)
         status = camber_tile_stitcher_finish(desc.stitcher, features);
+    if (status == CAMBER_OK && desc.labels)
+        status = camber_tile_stitcher_finish_labels(desc.labels, features);
     if (status == CAMBER_OK)
         *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found, self.lost};
     camber_bytes_free(&self.bytes);
     camber_mvt_destroy(self.mvt);
+    camber_tile_stitcher_destroy(desc.labels);
     camber_tile_stitcher_destroy(desc.stitcher);
     return status;
 }
@@ -239,10 +244,18 @@ static bool has_schema(const input *self) {
     return !self->features->schema->wants_plain || camber_tile_schema_of_layers(self->set->layers);
 }
 
+/* The layers that the style reads: with labels, those that symbol layers name, too. */
+static size_t count_named(const input *self) {
+    const camber_schema *schema = self->features->schema;
+    const bool labels = camber_features_label_kinds(self->features);
+    return schema->drawn_source_layer_count + (labels ? schema->label_source_layer_count : 0);
+}
+
 /* Lists the layers of the set that the style's layers name. */
 static void list_named(input *self) {
     const camber_schema *schema = self->features->schema;
-    for (size_t i = 0; i < schema->drawn_source_layer_count; i++) {
+    const size_t count = count_named(self);
+    for (size_t i = 0; i < count; i++) {
         const char *name = schema->source_layers[i];
         size_t k = 0;
         while (k < self->layer_count && strcmp(self->layers[k], name) != 0)
@@ -253,7 +266,7 @@ static void list_named(input *self) {
 }
 
 static camber_status choose_layers(input *self) {
-    const size_t named_count = self->features->schema->drawn_source_layer_count;
+    const size_t named_count = count_named(self);
     if (!(self->layers = camber_alloc(self->context, named_count + 1, sizeof *self->layers)))
         return CAMBER_ERROR_MEMORY;
     if (!self->desc->layer && named_count) {
@@ -306,9 +319,7 @@ static camber_status check_result(const input *self, const camber_mvt_stats *sta
 }
 
 static void add_stats(camber_features *features, const camber_mvt_stats *stats) {
-    features->stats.features = features->feature_count;
-    features->stats.polylines = features->polyline_count;
-    features->stats.points = features->point_count;
+    camber_features_count(features);
     features->stats.skipped_features += stats->skipped_features;
     features->stats.damaged_features += stats->damaged_features;
 }
@@ -321,8 +332,7 @@ static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
-                   camber_features_left_out(camber_schema_kinds(self->features->schema, false)),
-                   stats->skipped_features);
+                   camber_features_left_out(camber_features_kinds(self->features, false)), stats->skipped_features);
 }
 
 static bool knows(const char *path) {

@@ -22,7 +22,8 @@ static void find_properties(camber_columns *columns, OGRFeatureDefnH schema) {
     for (size_t i = 0; i < wanted->property_count; i++) {
         camber_column *one = &columns->items[i];
         *one = (camber_column){.field = -1};
-        one->field = find_field(schema, wanted->properties[i]);
+        if (camber_features_reads_property(columns->features, i))
+            one->field = find_field(schema, wanted->properties[i]);
         if (one->field < 0)
             continue;
         OGRFieldDefnH definition = OGR_FD_GetFieldDefn(schema, one->field);

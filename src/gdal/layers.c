@@ -7,7 +7,8 @@
 /* How many features are examined to learn what a layer of no declared type holds. */
 enum { PEEKED_FEATURES = 32 };
 
-static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
+/* kinds: those that are read, CAMBER_KIND_*. */
+static bool holds_read(OGRwkbGeometryType type, unsigned kinds) {
     switch (wkbFlatten(type)) {
     case wkbUnknown:
     case wkbLineString:
@@ -24,9 +25,9 @@ static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
     case wkbSurface:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbTriangle: return camber_schema_kinds(schema, true) & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA);
+    case wkbTriangle: return kinds & (CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS);
     case wkbPoint:
-    case wkbMultiPoint: return camber_schema_kinds(schema, true) & CAMBER_KIND_POINT;
+    case wkbMultiPoint: return kinds & CAMBER_KINDS_OF_POINTS;
     default: return false;
     }
 }
@@ -96,7 +97,9 @@ static camber_status fail_layer(const camber_dataset *dataset) {
                        dataset->desc->path, count ? names : "(none)");
 }
 
-camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema *schema, int **layers, size_t *count) {
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_features *features, int **layers,
+                                    size_t *count) {
+    const unsigned kinds = camber_features_kinds(features, true), osm_kinds = camber_features_kinds(features, false);
     GDALDatasetH handle = dataset->handle;
     const int total = GDALDatasetGetLayerCount(handle);
     int *chosen = camber_alloc(dataset->context, (size_t)(total > 0 ? total : 1) + 2, sizeof *chosen);
@@ -113,15 +116,16 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema
         one = find_roads(handle);
     else
         for (int i = 0; i < total; i++)
-            if (holds_drawn(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), schema))
+            if (holds_read(OGR_L_GetGeomType(GDALDatasetGetLayer(handle, i)), kinds))
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;
     /* Closed ways are among the lines; what relations make of ways is in a layer of its own, and so are nodes. */
-    if (dataset->osm && !dataset->desc->layer && schema->wants_areas &&
+    if (dataset->osm && !dataset->desc->layer && osm_kinds & CAMBER_KINDS_OF_AREAS &&
         (one = find_layer(handle, "multipolygons")) >= 0)
         chosen[found++] = one;
-    if (dataset->osm && !dataset->desc->layer && schema->wants_points && (one = find_layer(handle, "points")) >= 0)
+    if (dataset->osm && !dataset->desc->layer && osm_kinds & CAMBER_KINDS_OF_POINTS &&
+        (one = find_layer(handle, "points")) >= 0)
         chosen[found++] = one;
     if (found == 0) {
         camber_free(dataset->context, chosen);

@@ -265,12 +265,12 @@ static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry,
     case wkbTriangle:
         if (kind == CAMBER_GEOMETRY_POLYGON || kind == CAMBER_GEOMETRY_AREA)
             return collect_rings(lines, geometry, kind);
-        lines->left_out |= !(lines->kinds & (CAMBER_KIND_POLYGON | CAMBER_KIND_AREA));
+        lines->left_out |= !(lines->kinds & (CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS));
         return CAMBER_OK;
     case wkbPoint:
         if (kind == CAMBER_GEOMETRY_POINT)
             return add_line(lines, geometry, false, -1);
-        lines->left_out |= !(lines->kinds & CAMBER_KIND_POINT);
+        lines->left_out |= !(lines->kinds & CAMBER_KINDS_OF_POINTS);
         return CAMBER_OK;
     case wkbMultiPoint:
     case wkbMultiLineString:

@@ -35,6 +35,7 @@ typedef struct reader {
     camber_dataset dataset;
     camber_feature_lines lines;
     camber_tile_stitcher *stitcher; /* NULL: no vector tiles */
+    camber_tile_stitcher *labels;   /* the same for labels, which must not change how the others are joined */
 
     /* The layer being read. */
     OGRLayerH layer;
@@ -65,7 +66,7 @@ static camber_status begin_layer(reader *self, int index) {
         status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
-    self->lines.kinds = camber_schema_kinds(self->features->schema, self->columns.unsorted);
+    self->lines.kinds = camber_features_kinds(self->features, self->columns.unsorted);
     /* A filter may read any field, so none is ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
@@ -78,9 +79,9 @@ static camber_status begin_layer(reader *self, int index) {
 
 static camber_status begin_other(reader *self, OGRLayerH layer) {
     osm_layer *other = &self->others[self->other_count++];
-    *other = (osm_layer){.handle = layer, .kinds = CAMBER_KIND_AREA};
+    *other = (osm_layer){.handle = layer, .kinds = CAMBER_KINDS_OF_AREAS};
     if (strcmp(OGR_L_GetName(layer), "points") == 0)
-        other->kinds = CAMBER_KIND_POINT;
+        other->kinds = CAMBER_KINDS_OF_POINTS;
     if (self->desc->where)
         OGR_L_SetAttributeFilter(layer, self->desc->where); /* the lines tell whether it fits */
     camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(layer), &other->index);
@@ -139,23 +140,47 @@ static osm_layer *find_other(reader *self, OGRFeatureH feature) {
     return NULL;
 }
 
-static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
+/* Finds the class of a feature. *kept: the feature belongs to the set. */
+static camber_status find_class(reader *self, OGRFeatureH feature, camber_geometry_kind kind, uint32_t *index,
+                                bool *kept) {
     osm_layer *other = find_other(self, feature);
-    uint32_t index;
-    camber_status status = camber_columns_class(other ? &other->columns : &self->columns, feature,
-                                                other ? other->index : self->layer_index, kind, &index);
-    if (status != CAMBER_OK || !camber_features_draw_class(self->features, index))
-        return status;
-    if (self->stitcher) {
-        camber_tile_feature tile = {
-            .class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON, .area = kind == CAMBER_GEOMETRY_AREA};
-        find_tile(self, feature, &tile);
-        tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
-        const camber_tile_lines lines = {self->lines.world.points, self->lines.world.ends,
-                                         self->lines.world.line_count};
-        return camber_tile_stitcher_add(self->stitcher, &tile, &lines);
+    const camber_status status = camber_columns_class(other ? &other->columns : &self->columns, feature,
+                                                      other ? other->index : self->layer_index, kind, index);
+    *kept = status == CAMBER_OK && camber_features_draw_class(self->features, *index);
+    return status;
+}
+
+/* Drops the points of a label that lie outside of their tile: the next one has them. */
+static void keep_own_points(camber_world_lines *world, const camber_tile_feature *tile, int zoom) {
+    size_t kept = 0;
+    for (size_t i = 0; i < world->point_count; i++) {
+        const double *point = world->points + 2 * i;
+        if (floor(ldexp(point[0], zoom)) != tile->column || floor(ldexp(point[1], zoom)) != tile->row)
+            continue;
+        memmove(world->points + 2 * kept, point, 2 * sizeof *point);
+        world->ends[kept] = kept + 1;
+        kept++;
     }
-    status = camber_features_add_feature(self->features, index);
+    world->point_count = world->line_count = kept;
+}
+
+static camber_status add_to_stitcher(reader *self, OGRFeatureH feature, camber_geometry_kind kind, uint32_t index) {
+    camber_world_lines *world = &self->lines.world;
+    camber_tile_feature tile = {
+        .class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON, .area = camber_geometry_is_area(kind)};
+    find_tile(self, feature, &tile);
+    tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
+    if (kind == CAMBER_GEOMETRY_LABEL_POINT)
+        keep_own_points(world, &tile, self->dataset.zoom);
+    const camber_tile_lines lines = {world->points, world->ends, world->line_count};
+    return camber_tile_stitcher_add(camber_geometry_is_label(kind) ? self->labels : self->stitcher, &tile, &lines);
+}
+
+/* Adds what was collected. */
+static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind, uint32_t index) {
+    if (self->stitcher)
+        return add_to_stitcher(self, feature, kind, index);
+    camber_status status = camber_features_add_feature(self->features, index);
     size_t first = 0;
     for (size_t i = 0; i < self->lines.world.line_count && status == CAMBER_OK; i++) {
         status = camber_features_add_polyline(self->features, self->lines.world.points + 2 * first,
@@ -180,6 +205,50 @@ static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometr
     return status;
 }
 
+static camber_status read_kind(reader *self, OGRFeatureH feature, camber_geometry_kind kind, bool way) {
+    uint32_t index = 0;
+    bool kept = true;
+    camber_status status = collect(self, OGR_F_GetGeometryRef(feature), kind, way);
+    if (status == CAMBER_OK && self->lines.world.line_count)
+        status = find_class(self, feature, kind, &index, &kept);
+    return status == CAMBER_OK && self->lines.world.line_count && kept ? add_to_features(self, feature, kind, index)
+                                                                       : status;
+}
+
+/* Whether a geometry may be a label's of a kind: a collection may be of each. way: it is the ring of an area. */
+static bool may_have(OGRGeometryH geometry, camber_geometry_kind kind, bool way) {
+    const int dimension = way ? 2 : OGR_G_GetDimension(geometry);
+    if (!way && wkbFlatten(OGR_G_GetGeometryType(geometry)) == wkbGeometryCollection)
+        return true;
+    return dimension == (kind == CAMBER_GEOMETRY_LABEL_POINT ? 0 : kind == CAMBER_GEOMETRY_LABEL_LINE ? 1 : 2);
+}
+
+/* Reads a feature for symbol layers, if one takes it. Whatever is odd about it was counted when it was read to be
+ * drawn. */
+static camber_status read_label(reader *self, OGRFeatureH feature, camber_geometry_kind kind, bool way) {
+    camber_feature_lines *lines = &self->lines;
+    const camber_feature_lines before = *lines;
+    camber_features_stats ignored = {0};
+    uint32_t index;
+    bool kept;
+    if (!may_have(OGR_F_GetGeometryRef(feature), kind, way))
+        return CAMBER_OK;
+    camber_status status = find_class(self, feature, kind, &index, &kept);
+    if (status != CAMBER_OK || !kept)
+        return status;
+    lines->rings.stats = &ignored;
+    status = collect(self, OGR_F_GetGeometryRef(feature), camber_geometry_shape(kind), way);
+    lines->rings.stats = before.rings.stats;
+    lines->left_out = before.left_out;
+    lines->damaged = before.damaged;
+    lines->raw_points = before.raw_points;
+    lines->strange_points = before.strange_points;
+    lines->invalid_points = before.invalid_points;
+    lines->world.clamped_points = before.world.clamped_points;
+    lines->world.antimeridian_splits = before.world.antimeridian_splits;
+    return status == CAMBER_OK && lines->world.line_count ? add_to_features(self, feature, kind, index) : status;
+}
+
 /* failed: OGR reported a failure with this feature. */
 static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
     camber_feature_lines *lines = &self->lines;
@@ -188,15 +257,15 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
     lines->damaged = failed;
     const osm_layer *other = find_other(self, feature);
     const bool area = geometry && !other && camber_columns_is_area(&self->columns, feature, geometry);
-    const unsigned areas = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA;
+    const unsigned areas = CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS;
     const unsigned kinds = lines->kinds & (other ? other->kinds : area ? areas : ~0u);
     camber_status status = CAMBER_OK;
     for (int kind = 0; geometry && kind < CAMBER_GEOMETRY_KINDS && status == CAMBER_OK; kind++) {
         if (!(kinds >> kind & 1))
             continue;
-        status = collect(self, geometry, (camber_geometry_kind)kind, area);
-        if (status == CAMBER_OK && lines->world.line_count)
-            status = add_to_features(self, feature, (camber_geometry_kind)kind);
+        status = camber_geometry_is_label((camber_geometry_kind)kind)
+                     ? read_label(self, feature, (camber_geometry_kind)kind, area)
+                     : read_kind(self, feature, (camber_geometry_kind)kind, area);
     }
     self->stats.skipped_features += lines->left_out || (area && !(lines->kinds & areas));
     self->stats.damaged_features += lines->damaged;
@@ -317,7 +386,7 @@ static camber_status read_by_box(reader *self) {
                                         .dataset = self->dataset.handle,
                                         .layer = self->layer,
                                         .has_srs = OGR_L_GetSpatialRef(self->layer) != NULL,
-                                        .merges = !self->desc->keep_apart,
+                                        .merges = !self->desc->keep_apart || self->features->wants_labels,
                                         .user = self,
                                         .next = next_of_box,
                                         .add = add_of_box};
@@ -433,7 +502,7 @@ static camber_status check_result(reader *self, size_t features_before) {
     if (self->features->feature_count == features_before && self->stats.skipped_features)
         return camber_fail(
             self->context, CAMBER_ERROR_INPUT,
-            self->lines.kinds & CAMBER_KIND_AREA
+            self->lines.kinds & CAMBER_KINDS_OF_AREAS
                 ? "%s: no lines, no areas: %zu features have other geometry (points, nothing); name "
                   "another --layer"
                 : "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
@@ -448,9 +517,11 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     const size_t features_before = self->features->feature_count;
     int *layers = NULL;
     size_t count = 0;
-    camber_status status = camber_dataset_layers(&self->dataset, schema, &layers, &count);
+    camber_status status = camber_dataset_layers(&self->dataset, self->features, &layers, &count);
     if (status == CAMBER_OK && self->dataset.zoom >= 0)
         status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->stitcher);
+    if (status == CAMBER_OK && self->dataset.zoom >= 0)
+        status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->labels);
     if (status != CAMBER_OK)
         goto done;
     self->lines = (camber_feature_lines){.context = context,
@@ -463,6 +534,8 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
         status = read_layers(self, layers, self->dataset.osm ? 1 : count, unsorted);
     if (status == CAMBER_OK && self->stitcher)
         status = camber_tile_stitcher_finish(self->stitcher, self->features);
+    if (status == CAMBER_OK && self->labels)
+        status = camber_tile_stitcher_finish_labels(self->labels, self->features);
     if (status == CAMBER_OK)
         status = check_result(self, features_before);
     if (status == CAMBER_OK && self->desc->where && self->passed == 0 && !self->boxed)
@@ -476,6 +549,7 @@ done:
 
 static void close_reader(reader *self) {
     camber_feature_lines_free(&self->lines);
+    camber_tile_stitcher_destroy(self->labels);
     camber_tile_stitcher_destroy(self->stitcher);
     for (size_t i = 0; i < self->other_count; i++)
         camber_columns_free(&self->others[i].columns, self->context);
@@ -485,9 +559,7 @@ static void close_reader(reader *self) {
 
 static void add_stats(camber_features *features, const reader *self) {
     camber_features_stats *sum = &features->stats;
-    sum->features = features->feature_count;
-    sum->polylines = features->polyline_count;
-    sum->points = features->point_count;
+    camber_features_count(features);
     sum->skipped_features += self->stats.skipped_features;
     sum->damaged_features += self->stats.damaged_features;
     sum->invalid_points += self->stats.invalid_points;

@@ -81,7 +81,8 @@ void camber_dataset_close(camber_dataset *dataset);
  * none. */
 const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Indices of the layers to read; freed with camber_free. */
-camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema *schema, int **layers, size_t *count);
+camber_status camber_dataset_layers(camber_dataset *dataset, const camber_features *features, int **layers,
+                                    size_t *count);
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
 

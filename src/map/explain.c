@@ -32,16 +32,20 @@ static void say_count(sentence *s, size_t count, const char *noun, bool *any) {
     *any = *any || count;
 }
 
-/* "2 lines, 1 area (0.3 MB) were read". An area whose outline is drawn, too, is one area. */
+static size_t most(size_t a, size_t b) {
+    return a > b ? a : b;
+}
+
+/* "2 lines, 1 area (0.3 MB) were read". An area whose outline is drawn, too, or which is labelled, is one area. */
 static void say_read(sentence *s, const camber_features *features) {
     size_t kinds[CAMBER_GEOMETRY_KINDS] = {0};
     bool any = false;
     for (size_t i = 0; i < features->feature_count; i++)
         kinds[features->classes[features->feature_class[i]].geometry]++;
     const size_t outlines = kinds[CAMBER_GEOMETRY_POLYGON], areas = kinds[CAMBER_GEOMETRY_AREA];
-    say_count(s, kinds[CAMBER_GEOMETRY_LINE], "line", &any);
-    say_count(s, areas > outlines ? areas : outlines, "area", &any);
-    say_count(s, kinds[CAMBER_GEOMETRY_POINT], "point", &any);
+    say_count(s, most(kinds[CAMBER_GEOMETRY_LINE], kinds[CAMBER_GEOMETRY_LABEL_LINE]), "line", &any);
+    say_count(s, most(most(areas, outlines), kinds[CAMBER_GEOMETRY_LABEL_AREA]), "area", &any);
+    say_count(s, most(kinds[CAMBER_GEOMETRY_POINT], kinds[CAMBER_GEOMETRY_LABEL_POINT]), "point", &any);
     say(s, "%s", any ? "" : "no feature");
     const double bytes = (double)features->stats.input_bytes;
     if (bytes >= 1e6)
@@ -69,10 +73,23 @@ static void say_unread(sentence *s, const camber_features *features) {
         say(s, "; check that this is the file you mean");
 }
 
-static bool any_at(const camber_features *features, double zoom) {
-    for (size_t c = 0; c < features->class_count && c < MOST_CLASSES; c++)
-        if (camber_plan_draws(features, features->classes + c, zoom, zoom))
+static bool is_labelled(const camber_features *features, const camber_feature_class *class, double zoom) {
+    for (size_t i = 0; i < features->style->layer_count; i++)
+        if (camber_plan_labels(features, features->style->layers + i, zoom, class))
             return true;
+    return false;
+}
+
+/* Whether anything is drawn at the zoom, or labelled. */
+static bool any_at(const camber_features *features, double zoom) {
+    size_t asked[2] = {0};
+    for (size_t c = 0; c < features->class_count; c++) {
+        const camber_feature_class *class = features->classes + c;
+        const bool label = camber_geometry_is_label(class->geometry);
+        if (asked[label]++ < MOST_CLASSES &&
+            (label ? is_labelled(features, class, zoom) : camber_plan_draws(features, class, zoom, zoom)))
+            return true;
+    }
     return false;
 }
 

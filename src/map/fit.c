@@ -39,14 +39,18 @@ static void add_polyline(const camber_features *features, size_t polyline, const
     camber_box_add(&bounds->moved, box.x1 + du, box.y1 + dv);
 }
 
-/* The bounds of what the plan draws, or of all features where plan is NULL. */
+/* The bounds of all features, with labels or without. */
+static two_bounds bounds_of_all(const camber_features *features, const camber_view *view, bool labels) {
+    two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
+    for (size_t p = 0; p < features->polyline_count; p++)
+        if (labels || !camber_geometry_is_label(camber_features_kind(features, p)))
+            add_polyline(features, p, view, &bounds);
+    return bounds;
+}
+
+/* The bounds of what the plan draws. */
 static two_bounds bounds_of(const camber_features *features, const camber_view *view, const camber_plan *plan) {
     two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
-    if (!plan) {
-        for (size_t p = 0; p < features->polyline_count; p++)
-            add_polyline(features, p, view, &bounds);
-        return bounds;
-    }
     for (size_t s = 0; s < plan->set_count; s++)
         for (size_t i = plan->all.first_entries[s]; i < plan->all.first_entries[s + 1]; i++)
             add_polyline(features, plan->all.entries[i].polyline, view, &bounds);
@@ -73,7 +77,9 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
         return status;
     two_bounds bounds = bounds_of(features, view, plan);
     if (is_empty(bounds.plain))
-        bounds = bounds_of(features, view, NULL);
+        bounds = bounds_of_all(features, view, false);
+    if (is_empty(bounds.plain))
+        bounds = bounds_of_all(features, view, true);
     if (!is_empty(bounds.plain))
         frame_bounds(view, &bounds);
     camber_plan_destroy(plan);

@@ -57,14 +57,21 @@ static camber_plan_part part_of(const camber_style_layer *layer) {
                                                 : CAMBER_PLAN_LINE;
 }
 
+bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
+                        const camber_feature_class *class) {
+    const camber_feature_view feature = camber_plan_view_of(features, class);
+    return layer->kind == CAMBER_LAYER_SYMBOL && class->labelled && comes_to(features, layer, class) &&
+           camber_style_layer_matches(layer, zoom, &feature);
+}
+
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class) {
     const camber_feature_view feature = camber_plan_view_of(features, class);
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
     const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
                       (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
-    return layer->kind != CAMBER_LAYER_BACKGROUND && fits && comes_to(features, layer, class) &&
-           camber_style_layer_matches(layer, zoom, &feature);
+    return layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && fits &&
+           comes_to(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
@@ -182,7 +189,7 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         return CAMBER_ERROR_MEMORY;
     for (size_t i = find_first(style, zoom); i < style->layer_count && !plan->patterns.failed; i++) {
         const camber_style_layer *layer = style->layers + i;
-        if (!is_active(layer, zoom))
+        if (!is_active(layer, zoom) || layer->kind == CAMBER_LAYER_SYMBOL)
             continue;
         if (layer->kind == CAMBER_LAYER_BACKGROUND) {
             camber_plan_patterns_add_background(&plan->patterns, layer, view, plan->layer_count, &plan->background);
@@ -218,6 +225,8 @@ typedef struct row_table {
 typedef struct plan_classes {
     uint32_t *rows;
     double *keys;
+    uint32_t *drawn; /* the classes that are none of labels, which have neither rows nor keys */
+    size_t drawn_count;
 } plan_classes;
 
 typedef struct class_rows {
@@ -591,6 +600,16 @@ static camber_status match_dot(const camber_view *view, camber_plan *plan, cambe
     return rows->by_class.rows[at] == CAMBER_NO_ROW ? CAMBER_ERROR_MEMORY : CAMBER_OK;
 }
 
+/* Lists the classes that may be drawn. Those of labels may be many more. */
+static camber_status list_drawn(const camber_features *features, plan_classes *classes) {
+    if (!(classes->drawn = camber_alloc(features->context, features->class_count, sizeof *classes->drawn)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t c = 0; c < features->class_count; c++)
+        if (!camber_geometry_is_label(features->classes[c].geometry))
+            classes->drawn[classes->drawn_count++] = (uint32_t)c;
+    return CAMBER_OK;
+}
+
 /* Finds the rows of every class in one set. */
 static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
                                camber_plan_set *set, class_rows *rows) {
@@ -602,9 +621,9 @@ static camber_status match_set(const camber_features *features, const camber_vie
     memset(table->slots, 0, table->slot_count * sizeof *table->slots);
     const size_t last = plan->dot_count - 1, first_dot = camber_plan_is_circles(plan, set) ? 0 : last;
     camber_status status = CAMBER_OK;
-    for (size_t c = 0; c < features->class_count && status == CAMBER_OK; c++) {
-        const camber_feature_class *class = features->classes + c;
-        const size_t at = ((size_t)(set - plan->sets) * features->class_count + c) * plan->dot_count;
+    for (size_t c = 0; c < rows->by_class.drawn_count && status == CAMBER_OK; c++) {
+        const camber_feature_class *class = features->classes + rows->by_class.drawn[c];
+        const size_t at = ((size_t)(set - plan->sets) * rows->by_class.drawn_count + c) * plan->dot_count;
         for (size_t dot = 0; dot <= last; dot++)
             rows->by_class.rows[at + dot] = CAMBER_NO_ROW;
         if (!draws_class(features, first, view, class))
@@ -661,7 +680,7 @@ static void end_set(camber_plan *plan, camber_plan_set *set) {
 
 /* Numbers the pairs of sets and classes, by set. */
 static camber_status number_pairs(const camber_features *features, camber_plan *plan, const plan_classes *by_class) {
-    const size_t column_count = features->class_count * plan->dot_count; /* of classes and their dots */
+    const size_t column_count = by_class->drawn_count * plan->dot_count; /* of classes and their dots */
     size_t total = 0;
     for (size_t i = 0; i < plan->set_count * column_count; i++)
         total += by_class->rows[i] != CAMBER_NO_ROW;
@@ -692,18 +711,22 @@ static camber_status number_pairs(const camber_features *features, camber_plan *
     return CAMBER_OK;
 }
 
-static camber_status group_by_class(const camber_features *features, camber_plan *plan, const uint32_t *rows) {
-    const size_t class_count = features->class_count, dots = plan->dot_count;
+static camber_status group_by_class(const camber_features *features, camber_plan *plan, const plan_classes *classes) {
+    const size_t class_count = features->class_count, drawn_count = classes->drawn_count, dots = plan->dot_count;
+    const uint32_t *rows = classes->rows;
     camber_class_sets *by_class = &plan->by_class;
     by_class->first = camber_alloc(plan->context, class_count + 1, sizeof *by_class->first);
     if (!by_class->first)
         return CAMBER_ERROR_MEMORY;
     size_t total = 0;
-    for (size_t c = 0; c < class_count; c++) {
+    for (size_t c = 0, d = 0; c < class_count; c++) {
         by_class->first[c] = total;
+        if (d == drawn_count || classes->drawn[d] != c)
+            continue;
         for (size_t s = 0; s < plan->set_count; s++)
             for (size_t dot = 0; dot < dots; dot++)
-                total += rows[(s * class_count + c) * dots + dot] != CAMBER_NO_ROW;
+                total += rows[(s * drawn_count + d) * dots + dot] != CAMBER_NO_ROW;
+        d++;
     }
     by_class->first[class_count] = total;
     by_class->pairs = camber_alloc(plan->context, total, sizeof *by_class->pairs);
@@ -712,9 +735,9 @@ static camber_status group_by_class(const camber_features *features, camber_plan
     /* By set: each class takes its pairs in turn, as they are numbered. */
     uint32_t pair = 0;
     for (size_t s = 0; s < plan->set_count; s++)
-        for (size_t c = 0; c < class_count * dots; c++)
-            if (rows[s * class_count * dots + c] != CAMBER_NO_ROW)
-                by_class->pairs[by_class->first[c / dots]++] = (camber_set_pair){(uint32_t)s, pair++};
+        for (size_t c = 0; c < drawn_count * dots; c++)
+            if (rows[s * drawn_count * dots + c] != CAMBER_NO_ROW)
+                by_class->pairs[by_class->first[classes->drawn[c / dots]]++] = (camber_set_pair){(uint32_t)s, pair++};
     for (size_t c = class_count; c > 0; c--)
         by_class->first[c] = by_class->first[c - 1];
     by_class->first[0] = 0;
@@ -813,7 +836,8 @@ static camber_status list_all(const camber_features *features, camber_plan *plan
     const camber_status status = camber_plan_list(features, plan, NULL, features->polyline_count, &plan->all);
     for (size_t p = 0; p < features->polyline_count; p++) {
         const uint32_t class = features->feature_class[features->polyline_feature[p]];
-        if (by_class->first[class] == by_class->first[class + 1])
+        if (by_class->first[class] == by_class->first[class + 1] &&
+            !camber_geometry_is_label(features->classes[class].geometry))
             plan->undrawn += features->feature_counts[p];
     }
     return status;
@@ -829,17 +853,23 @@ camber_status camber_plan_evaluate(const camber_features *features, const camber
     if (status != CAMBER_OK)
         return status;
 
-    if (plan->set_count > MOST_MATCHES / plan->dot_count / (features->class_count + 1))
+    class_rows rows = {.table = {.slot_count = 16}};
+    status = list_drawn(features, &rows.by_class);
+    if (status != CAMBER_OK)
+        return status;
+    const size_t drawn_count = rows.by_class.drawn_count;
+    if (plan->set_count > MOST_MATCHES / plan->dot_count / (drawn_count + 1)) {
+        camber_free(context, rows.by_class.drawn);
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "style: %zu layers that differ over %zu kinds of features; use fewer layers, or properties",
-                           plan->set_count, features->class_count);
-    class_rows rows = {.table = {.slot_count = 16}};
+                           plan->set_count, drawn_count);
+    }
     row_table *table = &rows.table;
-    while (table->slot_count / 2 < features->class_count * plan->dot_count)
+    while (table->slot_count / 2 < drawn_count * plan->dot_count)
         table->slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
     /* More rows than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
-    const size_t count = (features->class_count + 1) * plan->dot_count;
+    const size_t count = (drawn_count + 1) * plan->dot_count;
     if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
         !(table->areas = camber_alloc(context, plan->layer_count, sizeof *table->areas)) ||
         !(table->slots = camber_alloc(context, table->slot_count, sizeof *table->slots)) ||
@@ -856,10 +886,11 @@ camber_status camber_plan_evaluate(const camber_features *features, const camber
     if (status == CAMBER_OK)
         status = number_pairs(features, plan, &rows.by_class);
     if (status == CAMBER_OK)
-        status = group_by_class(features, plan, rows.by_class.rows);
+        status = group_by_class(features, plan, &rows.by_class);
 done:
     camber_free(context, rows.by_class.keys);
     camber_free(context, rows.by_class.rows);
+    camber_free(context, rows.by_class.drawn);
     camber_free(context, table->slots);
     camber_free(context, table->areas);
     camber_free(context, table->tuple);

@@ -121,7 +121,10 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
 /* Whether a layer takes features of the class at a zoom, which it may yet draw without width or colour. */
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class);
-/* Whether anything of a class is drawn at one of the zooms (drawn.c). */
+/* Whether a symbol layer takes them, which is no part of a plan. */
+bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
+                        const camber_feature_class *class);
+/* Whether anything of a class is drawn at one of the zooms (drawn.c); labels are not. */
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom);
 /* The box of all that is drawn at one of the zooms, in world coordinates; beyond x = 1 where it is smaller across the

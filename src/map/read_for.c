@@ -15,6 +15,8 @@
 static const double WIDEST_PX = 16384.0, LARGEST_REACH_PX = 65536.0;
 /* For what the camera does near a picture's edges, px. */
 static const double SLACK_PX = 64.0;
+/* How far outside of a picture the middle of a label may be that reaches into it; CSS px. */
+static const double LABEL_PX = 256.0;
 
 static double bound(const camber_style_layer *layer, camber_property_id property, double zoom) {
     return camber_style_layer_bound(layer, property, zoom);
@@ -48,7 +50,8 @@ static double reach_of_style(const camber_style *style, const camber_view *view,
         const camber_style_layer *layer = style->layers + i;
         const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
         const bool counts = layer->kind == CAMBER_LAYER_CIRCLE || !circles_only;
-        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->visible && !out && counts)
+        if (layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && layer->visible && !out &&
+            counts)
             reach = fmax(reach, reach_of(layer, view));
     }
     return reach;
@@ -88,7 +91,9 @@ camber_status camber_features_read_for(camber_features *features, const camber_s
         region.y0 = fmin(region.y0, corners[2 * i + 1]);
         region.y1 = fmax(region.y1, corners[2 * i + 1]);
     }
-    const double margin = camber_view_margin(features->style, &view, scene->simplify_px);
+    double margin = camber_view_margin(features->style, &view, scene->simplify_px);
+    if (camber_features_label_kinds(features))
+        margin = fmax(margin, LABEL_PX * view.ratio / view.scale_px);
     region = (camber_region){region.x0 - margin, region.y0 - margin, region.x1 + margin, region.y1 + margin};
     /* A picture about as wide as the world needs all of it. */
     features->region = region;

@@ -207,7 +207,7 @@ static bool has_patterns(const camber_plan *plan) {
  * not there were warned of already. */
 static camber_status tell_undrawn(const camber_scene *scene) {
     const camber_features *features = scene->zoom->features;
-    const size_t undrawn = scene->zoom->plan.undrawn, all = features->feature_count;
+    const size_t undrawn = scene->zoom->plan.undrawn, all = camber_features_count_drawn(features);
     const double zoom = scene->view.zoom;
     char why[1024];
     bool draws;

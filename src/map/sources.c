@@ -37,10 +37,15 @@ struct camber_sources {
     size_t count;
 };
 
-/* The kinds of features that a layer draws: CAMBER_KIND_*. A fill draws outlines where they have a colour. */
-static unsigned kinds_of(const camber_style_layer *layer) {
+/* The kinds of features that a layer takes: CAMBER_KIND_*. A fill draws outlines where they have a colour. labels: the
+ * kinds of labels that are read. */
+static unsigned kinds_of(const camber_style_layer *layer, unsigned labels) {
     switch (layer->kind) {
     case CAMBER_LAYER_BACKGROUND: return 0;
+    case CAMBER_LAYER_SYMBOL:
+        return labels & ((camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LABEL_LINE : 0u) |
+                         (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_LABEL_AREA : 0u) |
+                         (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_LABEL_POINT : 0u));
     case CAMBER_LAYER_LINE:
         return (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
                (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
@@ -53,27 +58,22 @@ static unsigned kinds_of(const camber_style_layer *layer) {
     return CAMBER_KIND_AREA | (layer->properties[CAMBER_FILL_OUTLINE_COLOR] ? CAMBER_KIND_POLYGON : 0u);
 }
 
-static bool is_drawn_from(const camber_style_layer *layer, uint32_t index) {
-    return kinds_of(layer) && layer->visible && layer->source_index == index;
+static bool is_drawn_from(const camber_style_layer *layer, uint32_t index, unsigned labels) {
+    return kinds_of(layer, labels) && layer->visible && layer->source_index == index;
 }
 
-/* The kinds of features that the style draws of a source. source_layer NULL: of all of it. */
-static unsigned kinds_from(const camber_style *style, uint32_t index, const char *source_layer) {
+/* The kinds of features that the style takes of a source. source_layer NULL: of all of it. */
+static unsigned kinds_from(const camber_features *features, uint32_t index, const char *source_layer) {
+    const camber_style *style = features->style;
+    const unsigned labels = camber_features_label_kinds(features);
     unsigned kinds = 0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = &style->layers[i];
-        if (is_drawn_from(layer, index) &&
+        if (is_drawn_from(layer, index, labels) &&
             (!source_layer || (layer->source_layer && strcmp(layer->source_layer, source_layer) == 0)))
-            kinds |= kinds_of(layer);
+            kinds |= kinds_of(layer, labels);
     }
     return kinds;
-}
-
-static bool is_wanted(const camber_style *style, uint32_t index) {
-    for (size_t i = 0; i < style->layer_count; i++)
-        if (is_drawn_from(&style->layers[i], index))
-            return true;
-    return false;
 }
 
 static camber_status load_json(camber_context *context, const char *what, const char *path, json_t **root) {
@@ -124,7 +124,7 @@ static void warn_of_losses(const camber_sources *sources, const char *what, size
                    "%s: %zu damaged features (the first: %s); their readable parts are kept", what, damaged, damage);
     if (skipped)
         camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", what,
-                   camber_features_left_out(camber_schema_kinds(sources->features->schema, false)), skipped);
+                   camber_features_left_out(camber_features_kinds(sources->features, false)), skipped);
 }
 
 static camber_status fail_damaged(const camber_sources *sources, const char *what, const char *damage) {
@@ -163,7 +163,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
                                       .generates_ids = json_is_true(json_object_get(one->style->json, "generateId")),
                                       .matches = is_selected,
                                       .user = one->style,
-                                      .kinds = kinds_from(sources->features->style, one->index, NULL)};
+                                      .kinds = kinds_from(sources->features, one->index, NULL)};
     if (status == CAMBER_OK)
         status = camber_geojson_read(sources->features, &desc, &stats);
     json_decref(loaded);
@@ -284,9 +284,7 @@ static camber_status merge_and_weigh(camber_features *features, size_t first_pol
     const bool merges = !style->schema.directed && !style->accumulates && !features->progress;
     const camber_status status =
         camber_features_merge_and_weigh(features, first_polyline, merges, CAMBER_MERGE_STRAIGHT);
-    features->stats.features = features->feature_count;
-    features->stats.polylines = features->polyline_count;
-    features->stats.points = features->point_count;
+    camber_features_count(features);
     return status;
 }
 
@@ -333,7 +331,7 @@ camber_status camber_sources_open(camber_features *features, const camber_source
         status = CAMBER_ERROR_MEMORY;
     const double start_ms = camber_now_ms();
     for (uint32_t i = 0; status == CAMBER_OK && i < style->source_count; i++) {
-        if (!is_wanted(style, i))
+        if (!kinds_from(features, i, NULL))
             continue;
         source *one = &made->items[made->count++];
         *one = (source){.style = &style->sources[i], .index = i, .bounds = {1, 1, 0, 0}};
@@ -368,12 +366,14 @@ bool camber_sources_bounds(const camber_sources *sources, double bounds[4]) {
 
 /* ---- Vector tiles: reading ---- */
 
-static size_t list_layers(const camber_style *style, uint32_t index, const char **names) {
+static size_t list_layers(const camber_features *features, uint32_t index, const char **names) {
+    const camber_style *style = features->style;
+    const unsigned labels = camber_features_label_kinds(features);
     size_t count = 0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = &style->layers[i];
         size_t k = 0;
-        if (!is_drawn_from(layer, index) || !layer->source_layer)
+        if (!is_drawn_from(layer, index, labels) || !layer->source_layer)
             continue;
         while (k < count && strcmp(names[k], layer->source_layer) != 0)
             k++;
@@ -431,12 +431,12 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
         reading.addresses = addresses;
         reading.mvt = (camber_mvt_desc){.features = sources->features,
                                         .layers = names,
-                                        .layer_count = list_layers(style, one->index, names),
+                                        .layer_count = list_layers(sources->features, one->index, names),
                                         .layer_kinds = kinds,
                                         .wants_progress = style->schema.directed,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
         for (size_t i = 0; i < reading.mvt.layer_count; i++)
-            kinds[i] = kinds_from(style, one->index, names[i]);
+            kinds[i] = kinds_from(sources->features, one->index, names[i]);
         status = read_addresses(sources, one, &reading);
     }
     camber_free(sources->context, addresses);

@@ -37,6 +37,7 @@ typedef struct reader {
     size_t coast_key;       /* the style's property "natural"; SIZE_MAX: the sea is not wanted */
     const char *coastline;  /* its value on a coast, interned */
     uint32_t layer;
+    unsigned kinds;                           /* CAMBER_KIND_*: those that are read */
     uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
     size_t met;                               /* of the relations' ways, so many of those met were added */
     size_t skipped, clamped, splits;
@@ -131,31 +132,30 @@ static bool is_coast(const reader *self, const camber_osm_way *way) {
 
 /* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
 static void make_way(const reader *self, const camber_osm_way *way, size_t node, made_run *run) {
-    const camber_schema *schema = self->features->schema;
     camber_world_lines *lines = &run->lines;
     const size_t lines_before = lines->line_count;
     const bool area = way->tags & CAMBER_OSM_WAY_AREA, bare = way->tags & CAMBER_OSM_WAY_BARE;
-    const bool has_lines = !bare && (!area || schema->wants_polygons);
+    const bool has_lines = !bare && (!area || self->kinds & CAMBER_KIND_POLYGON);
     made_way made = {.tags = way->tags, .first_place = node, .is_coast = is_coast(self, way)};
     if (has_lines) {
         add_nodes(way, node, run);
         camber_world_lines_end(lines);
     }
     made.line_count = (uint32_t)(lines->line_count - lines_before);
-    made.has_ring = area && schema->wants_areas && make_ring(way, node, run, !has_lines);
+    made.has_ring = area && self->kinds & CAMBER_KINDS_OF_AREAS && make_ring(way, node, run, !has_lines);
     if (made.is_coast || way->tags & CAMBER_OSM_WAY_MEMBER)
         made.place_count = way->node_count;
     ((made_way *)(void *)run->ways.bytes)[run->way_count++] = made;
 }
 
 static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {
-    const camber_osm_ways *ways = &((const reader *)user)->ways;
-    const camber_schema *schema = ways->features->schema;
+    const reader *self = user;
+    const camber_osm_ways *ways = &self->ways;
     const camber_osm_run *from = &ways->runs[part];
     made_run *run = slot;
     size_t points = camber_world_lines_most_points(from->node_count),
            ends = camber_world_lines_most_ends(from->node_count);
-    if (schema->wants_areas) { /* a ring adds its points, and four at most */
+    if (self->kinds & CAMBER_KINDS_OF_AREAS) { /* a ring adds its points, and four at most */
         points += from->node_count + 4 * from->way_count;
         ends += from->way_count;
     }
@@ -173,7 +173,7 @@ static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     size_t node = 0;
     for (const camber_osm_way *way = ways->ways + from->first_way, *end = way + from->way_count; way < end; way++) {
         if (way->node_count || way->tags & CAMBER_OSM_WAY_MEMBER)
-            make_way(user, way, node, run);
+            make_way(self, way, node, run);
         node += way->node_count;
     }
     return true;
@@ -194,13 +194,25 @@ static camber_status find_class(reader *self, uint32_t set, camber_geometry_kind
     return CAMBER_OK;
 }
 
-/* Adds the next lines of a run as one feature. */
-static camber_status add_lines(reader *self, uint32_t class_index, const camber_world_lines *lines, size_t *line,
-                               uint32_t count) {
-    camber_status status = camber_features_add_feature(self->features, class_index);
-    for (uint32_t i = 0; i < count && status == CAMBER_OK; i++, ++*line) {
-        const size_t first = *line ? lines->ends[*line - 1] : 0;
-        status = camber_features_add_polyline(self->features, lines->points + 2 * first, lines->ends[*line] - first);
+/* Lines of a run, or a point: those of one feature. */
+typedef struct line_span {
+    const camber_world_lines *lines;
+    size_t first, count;
+} line_span;
+
+/* Adds lines as one feature of the kind, if it is read; of a label's kind, if a symbol layer takes it. */
+static camber_status add_lines(reader *self, uint32_t set, camber_geometry_kind kind, const line_span *span) {
+    const camber_world_lines *lines = span->lines;
+    uint32_t index;
+    if (span->count == 0 || !(self->kinds >> kind & 1))
+        return CAMBER_OK;
+    camber_status status = find_class(self, set, kind, &index);
+    if (status != CAMBER_OK || !camber_features_draw_class(self->features, index))
+        return status;
+    status = camber_features_add_feature(self->features, index);
+    for (size_t i = span->first; i < span->first + span->count && status == CAMBER_OK; i++) {
+        const size_t first = i ? lines->ends[i - 1] : 0;
+        status = camber_features_add_polyline(self->features, lines->points + 2 * first, lines->ends[i] - first);
     }
     return status;
 }
@@ -208,19 +220,18 @@ static camber_status add_lines(reader *self, uint32_t class_index, const camber_
 /* filled: its ring is drawn; else a relation is in its place. */
 static camber_status add_way(reader *self, const made_way *way, bool filled, const camber_world_lines *lines,
                              size_t *line) {
-    const camber_geometry_kind kind = way->tags & CAMBER_OSM_WAY_AREA ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
+    const bool area = way->tags & CAMBER_OSM_WAY_AREA;
     const uint32_t set = way->tags / CAMBER_OSM_WAY_BITS;
-    uint32_t index;
-    camber_status status = CAMBER_OK;
-    if (way->line_count)
-        status = find_class(self, set, kind, &index);
-    if (way->line_count && status == CAMBER_OK)
-        status = add_lines(self, index, lines, line, way->line_count);
-    if (way->has_ring && filled && status == CAMBER_OK)
-        status = find_class(self, set, CAMBER_GEOMETRY_AREA, &index);
-    if (way->has_ring && filled && status == CAMBER_OK)
-        return add_lines(self, index, lines, line, 1);
-    *line += way->has_ring;
+    const line_span own = {lines, *line, way->line_count};
+    const line_span ring = {lines, *line + way->line_count, way->has_ring && filled};
+    camber_status status = add_lines(self, set, area ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE, &own);
+    if (status == CAMBER_OK && !area)
+        status = add_lines(self, set, CAMBER_GEOMETRY_LABEL_LINE, &own);
+    if (status == CAMBER_OK)
+        status = add_lines(self, set, CAMBER_GEOMETRY_AREA, &ring);
+    if (status == CAMBER_OK)
+        status = add_lines(self, set, CAMBER_GEOMETRY_LABEL_AREA, &ring);
+    *line += (size_t)way->line_count + way->has_ring;
     return status;
 }
 
@@ -258,7 +269,6 @@ static camber_status make_points(reader *self) {
     camber_osm_ways *ways = &self->ways;
     camber_world_lines world = {.context = self->context};
     camber_status status = CAMBER_OK;
-    uint32_t index = 0;
     if (ways->point_count)
         status = camber_features_find_layer(self->features, POINT_LAYER, &self->layer);
     if (status == CAMBER_OK && !camber_world_lines_reserve(&world, 1))
@@ -268,10 +278,10 @@ static camber_status make_points(reader *self) {
         camber_world_lines_begin(&world);
         camber_world_lines_add_degrees(&world, point->longitude, point->latitude);
         camber_world_lines_end(&world);
-        size_t line = 0;
-        status = find_class(self, point->set, CAMBER_GEOMETRY_POINT, &index);
+        const line_span span = {&world, 0, 1};
+        status = add_lines(self, point->set, CAMBER_GEOMETRY_POINT, &span);
         if (status == CAMBER_OK)
-            status = add_lines(self, index, &world, &line, 1);
+            status = add_lines(self, point->set, CAMBER_GEOMETRY_LABEL_POINT, &span);
     }
     self->clamped += world.clamped_points;
     camber_world_lines_free(&world);
@@ -329,6 +339,19 @@ static camber_status add_rings(reader *self, made_area *area) {
     return status;
 }
 
+/* Adds them once more for symbol layers, if one takes the area. Nothing of it is counted twice. */
+static camber_status add_label(reader *self, uint32_t set, made_area *area) {
+    const camber_features_stats stats = self->features->stats;
+    const size_t splits = self->splits, clamped = area->lines.clamped_points;
+    camber_status status = find_class(self, set, CAMBER_GEOMETRY_LABEL_AREA, &area->class_index);
+    if (status == CAMBER_OK && camber_features_draw_class(self->features, area->class_index))
+        status = add_rings(self, area);
+    self->features->stats = stats;
+    self->splits = splits;
+    area->lines.clamped_points = clamped;
+    return status;
+}
+
 static camber_status add_relation(reader *self, size_t relation, made_area *area) {
     const camber_osm_relations *relations = &self->ways.relations;
     const uint32_t set = relations->items[relation].set;
@@ -342,12 +365,13 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
                            self->desc->path, MOST_USES);
     camber_status status = camber_osm_relations_assemble(&self->ways.relations, relation, &area->assembly);
     self->features->stats.open_relations += status == CAMBER_OK && area->assembly.open;
-    if (status == CAMBER_OK && area->assembly.ring_count)
+    const bool drawn = self->kinds & CAMBER_KIND_AREA, any = area->assembly.ring_count > 0;
+    if (status == CAMBER_OK && drawn && any)
         status = find_class(self, set - 1, CAMBER_GEOMETRY_AREA, &area->class_index);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && drawn)
         status = add_rings(self, area);
-    self->features->stats.dropped_relations += status == CAMBER_OK && !area->added;
-    return status;
+    self->features->stats.dropped_relations += status == CAMBER_OK && drawn && !area->added;
+    return status == CAMBER_OK && any && self->kinds & CAMBER_KIND_LABEL_AREA ? add_label(self, set - 1, area) : status;
 }
 
 /* The class of the sea: water, as ponds are. */
@@ -391,8 +415,9 @@ static camber_status make_areas(reader *self) {
     camber_free(self->context, ways->packed);
     ways->packed = NULL;
     ways->packed_count = ways->packed_capacity = 0;
-    if (ways->set_count)
-        memset(self->classes[CAMBER_GEOMETRY_AREA], 0, ways->set_count * sizeof **self->classes);
+    for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS && ways->set_count; kind++)
+        if (CAMBER_KINDS_OF_AREAS >> kind & 1)
+            memset(self->classes[kind], 0, ways->set_count * sizeof **self->classes);
     camber_features *features = self->features;
     camber_status status = camber_features_find_layer(features, RELATION_LAYER, &self->layer);
     for (size_t i = 0; i < ways->relations.count && status == CAMBER_OK; i++)
@@ -424,7 +449,7 @@ static camber_status make_lines(reader *self) {
                                        .free_slot = free_run,
                                        .from = PACKED_SHARE,
                                        .to = 1.0};
-    const bool drops_areas = !features->schema->wants_polygons && !features->schema->wants_areas;
+    const bool drops_areas = !(self->kinds & (CAMBER_KIND_POLYGON | CAMBER_KINDS_OF_AREAS));
     const camber_osm_pack_desc pack = {self->desc->path, self->threads, drops_areas, NODES_SHARE, PACKED_SHARE};
     camber_status status = camber_osm_pack(ways, &pack, &self->skipped);
     if (status == CAMBER_OK)
@@ -448,7 +473,7 @@ static camber_status make_lines(reader *self) {
 /* Reads relations if they are wanted, ways, and the places of their nodes. *declined: the file is not in order, or not
  * for this reader. */
 static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_order, bool *declined) {
-    const bool areas = self->features->schema->wants_areas && !self->desc->layer;
+    const bool areas = self->kinds & CAMBER_KINDS_OF_AREAS && !self->desc->layer;
     camber_osm_ends ends;
     camber_status status = CAMBER_OK;
     if (!any_order)
@@ -484,7 +509,7 @@ static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_or
         status = camber_osm_nodes_read(&self->ways.nodes, &nodes, declined);
     camber_osm_ways_desc points = {
         .file = file, .end_blob = nodes.blob_count, .threads = self->threads, .from = NODES_SHARE, .to = NODES_SHARE};
-    if (self->features->schema->wants_points && !self->desc->layer && status == CAMBER_OK && !*declined)
+    if (self->kinds & CAMBER_KINDS_OF_POINTS && !self->desc->layer && status == CAMBER_OK && !*declined)
         status = camber_osm_points_read(&self->ways, &points, declined);
     self->nodes = self->ways.nodes.node_count;
     self->missing = self->nodes - self->ways.nodes.found_count;
@@ -581,16 +606,14 @@ static camber_status read_lines(reader *self, bool *declined) {
 
 static void add_stats(const reader *self) {
     camber_features *features = self->features;
-    features->stats.features = features->feature_count;
-    features->stats.polylines = features->polyline_count;
-    features->stats.points = features->point_count;
+    camber_features_count(features);
     features->stats.skipped_features += self->skipped;
     features->stats.missing_nodes += self->missing;
     features->stats.clamped_points += self->clamped;
     features->stats.antimeridian_splits += self->splits;
     if (self->skipped)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
-                   camber_features_left_out(camber_schema_kinds(features->schema, false)), self->skipped);
+                   camber_features_left_out(self->kinds), self->skipped);
     if (self->missing)
         camber_log(self->context, CAMBER_LOG_INFO, "%s: ways refer to %zu nodes that are not in it", self->desc->path,
                    self->missing);
@@ -605,6 +628,7 @@ static camber_status read_pbf(camber_features *features, const camber_source_des
     reader self = {.context = features->context,
                    .features = features,
                    .desc = desc,
+                   .kinds = camber_features_kinds(features, false),
                    .threads = (unsigned)camber_threads_count(desc->threads)};
     self.coast.context = features->context;
     *declined = false;

@@ -71,7 +71,7 @@ camber_status camber_osm_ways_init(camber_osm_ways *ways, camber_features *featu
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < schema->property_count; i++) {
         const char *name = schema->properties[i];
-        if (!camber_osm_is_key(name, strlen(name)))
+        if (!camber_osm_is_key(name, strlen(name)) || !camber_features_reads_property(features, i))
             continue;
         *declined = *declined || is_column(name);
         find_key(ways, name)->property = (uint32_t)i;
@@ -481,7 +481,8 @@ static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slo
     camber_wire group;
     /* The blob before the first way may have the last nodes, and the one before the first relation relations. */
     const bool any_order = all->desc->any_order;
-    const bool relations = any_order || !all->ways->features->schema->wants_areas || blob + 1 >= all->desc->end_blob;
+    const unsigned kinds = camber_features_kinds(all->ways->features, false);
+    const bool relations = any_order || !(kinds & CAMBER_KINDS_OF_AREAS) || blob + 1 >= all->desc->end_blob;
     begin_block(all, pass, &self);
     if (has_no_ways(&all->desc->file->blobs[blob], any_order || part == 0, relations))
         return true;

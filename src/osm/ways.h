@@ -51,7 +51,7 @@ typedef struct camber_osm_ways {
     size_t key_count;
     bool has_places;                /* ways have places of nodes */
     const camber_osm_where *where;  /* NULL: all ways pass */
-    camber_osm_relations relations; /* none unless the style wants areas */
+    camber_osm_relations relations; /* none unless areas are read */
 
     camber_osm_way *ways;
     size_t way_count, way_capacity;
@@ -66,7 +66,7 @@ typedef struct camber_osm_ways {
     uint32_t *packed; /* places, once they are known (packed.h), beginning anew with each run */
     size_t packed_count, packed_capacity;
 
-    camber_osm_point *points; /* none unless the style wants points */
+    camber_osm_point *points; /* none unless points are read */
     size_t point_count, point_capacity;
 
     /* Sets of tags that differ in what the style reads. */

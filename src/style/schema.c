@@ -13,6 +13,7 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind) {
     case CAMBER_LAYER_LINE:
     case CAMBER_LAYER_CIRCLE: return CAMBER_KIND_LINE | CAMBER_KIND_POLYGON | CAMBER_KIND_POINT;
     case CAMBER_LAYER_FILL: return CAMBER_KIND_POLYGON | CAMBER_KIND_AREA | CAMBER_KIND_POINT;
+    case CAMBER_LAYER_SYMBOL: return CAMBER_KINDS_OF_LABELS;
     }
     return 0;
 }
@@ -20,6 +21,7 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind) {
 /* Finds what else than lines is drawn of the features. */
 static void find_wants(const camber_style *style, camber_schema *schema) {
     schema->wants_polygons = schema->wants_areas = schema->wants_points = false;
+    schema->wants_label_lines = schema->wants_label_areas = schema->wants_label_points = false;
     schema->wants_plain = schema->wants_plain_areas = schema->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
@@ -40,14 +42,20 @@ static void find_wants(const camber_style *style, camber_schema *schema) {
 }
 
 static void list_source_layers(const camber_style *style, camber_schema *schema) {
+    enum { DRAWN, LABELLED, HIDDEN, RANKS };
+    size_t ends[RANKS] = {0};
     schema->source_layer_count = 0;
-    for (int visible = 1; visible >= 0; visible--) {
-        for (size_t i = 0; i < style->layer_count; i++)
-            if (style->layers[i].source_layer && style->layers[i].visible == (visible == 1))
-                schema->source_layers[schema->source_layer_count++] = style->layers[i].source_layer;
-        if (visible)
-            schema->drawn_source_layer_count = schema->source_layer_count;
+    for (int rank = 0; rank < RANKS; rank++) {
+        for (size_t i = 0; i < style->layer_count; i++) {
+            const camber_style_layer *layer = style->layers + i;
+            const int own = !layer->visible ? HIDDEN : layer->kind == CAMBER_LAYER_SYMBOL ? LABELLED : DRAWN;
+            if (layer->source_layer && own == rank)
+                schema->source_layers[schema->source_layer_count++] = layer->source_layer;
+        }
+        ends[rank] = schema->source_layer_count;
     }
+    schema->drawn_source_layer_count = ends[DRAWN];
+    schema->label_source_layer_count = ends[LABELLED] - ends[DRAWN];
 }
 
 /* Whether a layer that is not plain draws the feature. Lines draw points only in layers that are plain. */

@@ -145,6 +145,7 @@ static camber_status take_class(camber_features *features, const json_t *json, c
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = take_value(features, json_array_get(json, BEFORE + i), values + i);
     features->source = (uint32_t)json_integer_value(json_array_get(json, 0));
+    features->wants_labels = features->wants_labels || camber_geometry_is_label(class.geometry);
     if (status == CAMBER_OK)
         status = camber_features_find_class_of(features, &class, values, &index);
     return status == CAMBER_OK && index != number ? CAMBER_ERROR_INPUT : status;
@@ -350,7 +351,7 @@ static bool take_block(loading *l, size_t first, size_t end) {
     const uint64_t begin = l->offsets[first];
     for (size_t p = first; p < end;) {
         const size_t before = f->polyline_count, feature = l->polyline_feature[p];
-        const bool area = f->classes[f->feature_class[feature]].geometry == CAMBER_GEOMETRY_AREA;
+        const bool area = camber_geometry_is_area(f->classes[f->feature_class[feature]].geometry);
         do {
             if (!take_polyline(l, p++, begin))
                 return false;
@@ -451,9 +452,7 @@ camber_status camber_features_load(camber_features *features, const camber_regio
     camber_free(context, l.polyline_feature);
     if (status == CAMBER_OK) {
         camber_features_shrink(features);
-        features->stats.features = features->feature_count;
-        features->stats.polylines = features->polyline_count;
-        features->stats.points = features->point_count;
+        camber_features_count(features);
     }
     return status;
 }

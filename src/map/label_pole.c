@@ -1,0 +1,136 @@
+/* Finds the point of a polygon that is farthest from its edges: its pole of inaccessibility, for labels of areas.
+ *
+ * Input: rings. Output: the point, within a precision. Main idea (polylabel, by Vladimir Agafonkin): squares cover the
+ * polygon. The one that may hold the farthest point is cut into four, until none may hold a point that is farther by
+ * more than the precision. */
+#include "map/label_anchors.h"
+
+#include <math.h>
+
+/* A side of the polygon's box has no more squares at first than this; and the squares that are looked at in all. */
+enum { MOST_SQUARES_A_SIDE = 64, MOST_LOOKS = 4096 };
+
+typedef struct square {
+    double x, y, half;
+    double distance; /* of its middle from the edges; negative: it is outside */
+    double most;     /* of any of its points */
+} square;
+
+typedef struct pole_search {
+    camber_context *context;
+    const double *points;
+    const size_t *offsets;
+    size_t ring_count;
+    square *heap; /* the one with the most comes first */
+    size_t count, capacity;
+    size_t looks;
+} pole_search;
+
+static double square_distance(const double *a, const double *b, double x, double y) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], length = dx * dx + dy * dy;
+    double t = length > 0.0 ? ((x - a[0]) * dx + (y - a[1]) * dy) / length : 0.0;
+    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    const double px = a[0] + t * dx - x, py = a[1] + t * dy - y;
+    return px * px + py * py;
+}
+
+static double distance_of(const pole_search *s, double x, double y) {
+    bool inside = false;
+    double least = INFINITY;
+    for (size_t r = 0; r < s->ring_count; r++) {
+        for (size_t i = s->offsets[r]; i + 1 < s->offsets[r + 1]; i++) {
+            const double *a = s->points + 2 * i, *b = a + 2;
+            if ((a[1] > y) != (b[1] > y) && x < (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]) + a[0])
+                inside = !inside;
+            least = fmin(least, square_distance(a, b, x, y));
+        }
+    }
+    return inside ? sqrt(least) : -sqrt(least);
+}
+
+static square look(pole_search *s, double x, double y, double half) {
+    square made = {.x = x, .y = y, .half = half, .distance = distance_of(s, x, y)};
+    made.most = made.distance + half * 1.4142135623730951;
+    s->looks++;
+    return made;
+}
+
+static bool push(pole_search *s, square pushed) {
+    if (!camber_grow(s->context, &s->heap, &s->capacity, s->count + 1, sizeof *s->heap))
+        return false;
+    size_t at = s->count++;
+    for (; at > 0 && s->heap[(at - 1) / 2].most < pushed.most; at = (at - 1) / 2)
+        s->heap[at] = s->heap[(at - 1) / 2];
+    s->heap[at] = pushed;
+    return true;
+}
+
+static square pop(pole_search *s) {
+    const square top = s->heap[0], last = s->heap[--s->count];
+    size_t at = 0;
+    for (size_t next = 1; next < s->count; next = 2 * at + 1) {
+        if (next + 1 < s->count && s->heap[next + 1].most > s->heap[next].most)
+            next++;
+        if (!(s->heap[next].most > last.most))
+            break;
+        s->heap[at] = s->heap[next];
+        at = next;
+    }
+    if (s->count)
+        s->heap[at] = last;
+    return top;
+}
+
+/* The centroid of the outer ring. */
+static square first_guess(pole_search *s) {
+    double area = 0.0, x = 0.0, y = 0.0;
+    const double *origin = s->points + 2 * s->offsets[0];
+    for (size_t i = s->offsets[0]; i + 1 < s->offsets[1]; i++) {
+        const double ax = s->points[2 * i] - origin[0], ay = s->points[2 * i + 1] - origin[1];
+        const double bx = s->points[2 * i + 2] - origin[0], by = s->points[2 * i + 3] - origin[1];
+        const double cross = ax * by - bx * ay;
+        x += (ax + bx) * cross;
+        y += (ay + by) * cross;
+        area += 3.0 * cross;
+    }
+    return area == 0.0 ? look(s, origin[0], origin[1], 0.0) : look(s, origin[0] + x / area, origin[1] + y / area, 0.0);
+}
+
+static camber_box box_of(const pole_search *s) {
+    camber_box box = CAMBER_BOX_EMPTY;
+    for (size_t i = s->offsets[0]; i < s->offsets[1]; i++)
+        camber_box_add(&box, s->points[2 * i], s->points[2 * i + 1]);
+    return box;
+}
+
+static bool cover(pole_search *s, const camber_box *box, double side) {
+    for (double x = box->x0; x < box->x1; x += side)
+        for (double y = box->y0; y < box->y1; y += side)
+            if (!push(s, look(s, x + 0.5 * side, y + 0.5 * side, 0.5 * side)))
+                return false;
+    return true;
+}
+
+camber_status camber_pole_find(camber_context *context, const double *points, const size_t *offsets, size_t ring_count,
+                               double precision, double pole[2]) {
+    pole_search s = {.context = context, .points = points, .offsets = offsets, .ring_count = ring_count};
+    const camber_box box = box_of(&s);
+    const double width = box.x1 - box.x0, height = box.y1 - box.y0;
+    const double side = fmax(fmin(width, height), fmax(width, height) / MOST_SQUARES_A_SIDE);
+    square best = first_guess(&s);
+    bool made = !(side > 0.0) || !isfinite(side) || cover(&s, &box, side);
+    while (made && s.count && s.looks < MOST_LOOKS) {
+        const square top = pop(&s);
+        if (top.distance > best.distance)
+            best = top;
+        if (!(top.most - best.distance > precision))
+            break;
+        const double half = 0.5 * top.half;
+        for (int i = 0; i < 4 && made; i++)
+            made = push(&s, look(&s, top.x + (i & 1 ? half : -half), top.y + (i & 2 ? half : -half), half));
+    }
+    camber_free(context, s.heap);
+    pole[0] = best.x;
+    pole[1] = best.y;
+    return made ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}

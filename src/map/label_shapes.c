@@ -65,6 +65,23 @@ static void add_point(rings *r, const camber_label_item *item, const tilt *t, fl
         unproject(t, p);
 }
 
+/* Adds the rings of an outline. Those of one row are one area. */
+static camber_status add_outline(rings *r, const camber_outline *outline, const camber_label_item *item,
+                                 const tilt *t) {
+    for (size_t i = 0; i < outline->ring_count; i++) {
+        const uint32_t first = outline->offsets[i], end = outline->offsets[i + 1];
+        if (end - first < 3)
+            continue;
+        if (!begin_ring(r, item->look, (size_t)(end - first) + 1))
+            return CAMBER_ERROR_MEMORY;
+        for (uint32_t k = first; k <= end; k++) {
+            const float *point = outline->points + (size_t)2 * (k < end ? k : first);
+            add_point(r, item, t, point[0], point[1]);
+        }
+    }
+    return CAMBER_OK;
+}
+
 static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item, const tilt *t) {
     const double size_px = fmax(hypot((double)item->xx, (double)item->yx), hypot((double)item->xy, (double)item->yy));
     camber_outline outline;
@@ -72,25 +89,18 @@ static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label
         return CAMBER_OK;
     const camber_status status =
         camber_fonts_get_outline(fonts, item->glyph, (float)(TOLERANCE_PX / size_px), &outline);
-    for (size_t i = 0; i < outline.ring_count && status == CAMBER_OK; i++) {
-        const uint32_t first = outline.offsets[i], end = outline.offsets[i + 1];
-        if (end - first < 3)
-            continue;
-        if (!begin_ring(r, item->look, (size_t)(end - first) + 1))
-            return CAMBER_ERROR_MEMORY;
-        for (uint32_t k = first; k <= end; k++) {
-            const float *point = outline.points + 2 * (k < end ? k : first);
-            add_point(r, item, t, point[0], point[1]);
-        }
-    }
-    return status;
+    return status == CAMBER_OK ? add_outline(r, &outline, item, t) : status;
 }
 
-static camber_status add_icon(rings *r, const camber_label_item *item, const tilt *t, uint32_t row) {
+/* ---- Icons ---- */
+
+/* Adds the quadrangle of an icon's image, which has a border around the item's frame. */
+static camber_status add_frame(rings *r, const camber_icon_form *form, const camber_label_item *item, const tilt *t,
+                               uint32_t row) {
     static const float corners[][2] = {{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}, {0.0f, 0.0f}};
+    const float edge_x = 1.0f / (float)form->width, edge_y = 1.0f / (float)form->height;
     if (!begin_ring(r, row, 5))
         return CAMBER_ERROR_MEMORY;
-    const float edge_x = 1.0f / (float)item->icon->width, edge_y = 1.0f / (float)item->icon->height;
     for (size_t i = 0; i < 5; i++) {
         const float u = corners[i][0], v = corners[i][1];
         add_point(r, item, t, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
@@ -98,36 +108,10 @@ static camber_status add_icon(rings *r, const camber_label_item *item, const til
     return CAMBER_OK;
 }
 
-/* ---- Icons ---- */
-
-static camber_status add_border(camber_context *context, const camber_sprite_image *icon, camber_image *image) {
-    const uint32_t width = icon->width + 2, height = icon->height + 2;
-    uint8_t *rgba = camber_alloc_zero(context, (size_t)width * height, 4);
-    if (!rgba)
-        return CAMBER_ERROR_MEMORY;
-    const size_t stride = icon->image.stride_bytes ? icon->image.stride_bytes : (size_t)4 * icon->width;
-    for (size_t y = 0; y < icon->height; y++)
-        memcpy(rgba + 4 * ((y + 1) * width + 1), icon->image.rgba + y * stride, (size_t)4 * icon->width);
-    *image = (camber_image){.rgba = rgba, .width = width, .height = height};
-    return CAMBER_OK;
-}
-
-/* Finds the icon's image with a border; an index, since images move while they grow. */
-static camber_status find_image(camber_label_shapes *s, const camber_sprite_image *icon, size_t *index) {
-    for (*index = 0; *index < s->image_count; ++*index)
-        if (s->images[*index].icon == icon)
-            return CAMBER_OK;
-    if (!camber_grow(s->context, &s->images, &s->image_capacity, s->image_count + 1, sizeof *s->images))
-        return CAMBER_ERROR_MEMORY;
-    const camber_status status = add_border(s->context, icon, &s->images[*index].image);
-    s->images[*index].icon = icon;
-    s->image_count += status == CAMBER_OK;
-    return status;
-}
-
-/* Lays the image into the icon's quadrangle. */
-static void place_image(const camber_label_item *item, const camber_label_look *look, camber_fill *fill) {
-    const float edge_x = 1.0f / (float)item->icon->width, edge_y = 1.0f / (float)item->icon->height;
+/* Lays the image, whose pointer is set later, into the frame. */
+static void place_image(const camber_icon_form *form, const camber_label_item *item, const camber_label_look *look,
+                        camber_fill *fill) {
+    const float edge_x = 1.0f / (float)form->width, edge_y = 1.0f / (float)form->height;
     fill->color = look->color;
     fill->width_px = hypotf(item->xx, item->yx) * (1.0f + 2.0f * edge_x);
     fill->height_px = hypotf(item->xy, item->yy) * (1.0f + 2.0f * edge_y);
@@ -149,7 +133,7 @@ static void make_look(const camber_label_look *look, camber_label_shapes *s, siz
 }
 
 static bool allocate(const camber_labels *labels, camber_label_shapes *s) {
-    camber_context *context = s->context = labels->context;
+    camber_context *context = s->context = s->forms.context = labels->context;
     size_t icons = 0;
     for (size_t i = 0; i < labels->layer_count; i++)
         icons += labels->layers[i].icon_count;
@@ -170,12 +154,29 @@ typedef struct shape_maker {
     camber_label_shapes *shapes;
     tilt tilt;
     rings texts, icons;
-    size_t *image_of; /* by icon */
+    size_t *form_of; /* by icon */
 } shape_maker;
 
 /* NULL: the item is drawn in the plane as it is. */
 static const tilt *tilt_for(const shape_maker *m, const camber_label_item *item) {
     return m->tilt.pitched && !m->labels->looks[item->look].flat ? &m->tilt : NULL;
+}
+
+static camber_status add_icon(shape_maker *m, const camber_label_item *item, camber_label_range *range) {
+    camber_label_shapes *s = m->shapes;
+    const tilt *t = tilt_for(m, item);
+    size_t *form = m->form_of + s->icon_count;
+    camber_status status = camber_icon_forms_find(&s->forms, item, form);
+    if (status != CAMBER_OK)
+        return status;
+    if (item->icon->sdf) {
+        range->has_halo |= s->halos[item->look].width_px > 0.0f;
+        return add_outline(&m->texts, &s->forms.forms[*form].outline, item, t);
+    }
+    camber_fill *fill = s->fills + s->look_count + s->icon_count;
+    place_image(s->forms.forms + *form, item, m->labels->looks + item->look, fill);
+    s->paints[s->look_count + s->icon_count].fill = fill;
+    return add_frame(&m->icons, s->forms.forms + *form, item, t, (uint32_t)s->icon_count++);
 }
 
 static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) {
@@ -184,15 +185,8 @@ static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) 
     camber_status status = CAMBER_OK;
     *range = (camber_label_range){
         .layer = layer->layer, .first_icon = m->icons.ring_count, .first_ring = m->texts.ring_count};
-    for (size_t i = 0; i < layer->icon_count && status == CAMBER_OK; i++) {
-        const camber_label_item *item = m->labels->items + layer->first_icon + i;
-        camber_fill *fill = s->fills + s->look_count + s->icon_count;
-        status = find_image(s, item->icon, m->image_of + s->icon_count);
-        if (status == CAMBER_OK)
-            status = add_icon(&m->icons, item, tilt_for(m, item), (uint32_t)s->icon_count);
-        place_image(item, m->labels->looks + item->look, fill);
-        s->paints[s->look_count + s->icon_count++].fill = fill;
-    }
+    for (size_t i = 0; i < layer->icon_count && status == CAMBER_OK; i++)
+        status = add_icon(m, m->labels->items + layer->first_icon + i, range);
     for (size_t i = 0; i < layer->glyph_count && status == CAMBER_OK; i++) {
         const camber_label_item *item = m->labels->items + layer->first_glyph + i;
         range->has_halo |= s->halos[item->look].width_px > 0.0f;
@@ -224,7 +218,7 @@ static camber_status make_layers(shape_maker *m) {
     for (size_t i = 0; i < m->labels->layer_count && status == CAMBER_OK; i++)
         status = add_layer(m, m->labels->layers + i);
     for (size_t i = 0; i < s->icon_count && status == CAMBER_OK; i++)
-        s->fills[s->look_count + i].image = &s->images[m->image_of[i]].image;
+        s->fills[s->look_count + i].image = &s->forms.forms[m->form_of[i]].image;
     if (status == CAMBER_OK)
         status = finish(&m->texts, &s->texts);
     if (status == CAMBER_OK)
@@ -245,12 +239,12 @@ camber_status camber_label_shapes_make(const camber_labels *labels, const camber
         return CAMBER_OK;
     camber_status status = CAMBER_ERROR_MEMORY;
     if (allocate(labels, shapes) &&
-        (m.image_of = camber_alloc_zero(labels->context, labels->item_count, sizeof *m.image_of))) {
+        (m.form_of = camber_alloc_zero(labels->context, labels->item_count + 1, sizeof *m.form_of))) {
         for (size_t i = 0; i < labels->look_count; i++)
             make_look(labels->looks + i, shapes, i);
         status = make_layers(&m);
     }
-    camber_free(labels->context, m.image_of);
+    camber_free(labels->context, m.form_of);
     free_rings(&m.texts);
     free_rings(&m.icons);
     return status;
@@ -259,10 +253,8 @@ camber_status camber_label_shapes_make(const camber_labels *labels, const camber
 void camber_label_shapes_free(camber_label_shapes *s) {
     camber_polylines_destroy(s->texts);
     camber_polylines_destroy(s->icons);
-    for (size_t i = 0; i < s->image_count; i++)
-        camber_free(s->context, (void *)s->images[i].image.rgba);
+    camber_icon_forms_free(&s->forms);
     if (s->context) {
-        camber_free(s->context, s->images);
         camber_free(s->context, s->strokes);
         camber_free(s->context, s->halos);
         camber_free(s->context, s->fills);

@@ -2,21 +2,15 @@
 #ifndef CAMBER_MAP_LABEL_SHAPES_H
 #define CAMBER_MAP_LABEL_SHAPES_H
 
-#include "map/labels.h"
+#include "map/label_icons.h"
 
 /* The labels of a layer of the style: ranges of polylines. */
 typedef struct camber_label_range {
     size_t layer; /* of the style */
     size_t first_icon, icon_count;
-    size_t first_ring, ring_count; /* of its texts */
+    size_t first_ring, ring_count; /* of its texts, and of icons that are distances */
     bool has_halo;
 } camber_label_range;
-
-/* An icon's image as it is drawn, with a transparent border of one px, so that its edges do not show its other side. */
-typedef struct camber_icon_image {
-    const camber_sprite_image *icon;
-    camber_image image;
-} camber_icon_image;
 
 typedef struct camber_label_shapes {
     camber_context *context;
@@ -25,8 +19,7 @@ typedef struct camber_label_shapes {
     camber_fill *fills;              /* by look, then by icon */
     camber_paint *halos, *paints;    /* by look; paints of icons follow those of looks */
     size_t look_count, icon_count;
-    camber_icon_image *images;
-    size_t image_count, image_capacity;
+    camber_icon_forms forms;
     camber_label_range *ranges; /* range_count of them, in drawing order */
     size_t range_count;
 } camber_label_shapes;

@@ -10,7 +10,7 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled, all those of a feature together (rings.h) */
     CAMBER_GEOMETRY_POINT,   /* lines of one point each */
-    /* What symbol layers label: the same geometry once more, in classes of its own, since names would split those of
+    /* Symbol layers label these: the same geometry once more, in classes of its own, since names would split those of
      * lines and areas. Nothing else is drawn of it. */
     CAMBER_GEOMETRY_LABEL_LINE,
     CAMBER_GEOMETRY_LABEL_AREA, /* rings as those of AREA */
@@ -92,12 +92,12 @@ typedef struct camber_schema {
                             layer that has a colour for them, or their corners by a circle layer */
     bool wants_areas;    /* a fill layer is drawn: polygons are read as rings too */
     bool wants_points;   /* a circle layer is drawn whose filter does not leave points out */
-    /* A symbol layer is drawn whose filter does not leave these out. */
+    /* A symbol layer is drawn whose filter does not leave lines, polygons or points out. */
     bool wants_label_lines, wants_label_areas, wants_label_points;
     /* A layer that is plain is drawn, of areas or of points among others: of data without a schema these are read. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
-    /* Whether a layer that is not plain draws such features of this source layer at any zoom; of a label's kind,
-     * whether a symbol layer takes them. NULL: none does. */
+    /* Whether a layer that is not plain draws such features of this source layer at any zoom; of label kinds, whether a
+     * symbol layer may have a text or an icon for them. NULL: none does. */
     bool (*takes)(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature);
 } camber_schema;

@@ -103,7 +103,7 @@ bool camber_push_stop(camber_compiler *c, double stop) {
     return true;
 }
 
-bool camber_push_label(camber_compiler *c, const camber_label *label) {
+bool camber_push_label(camber_compiler *c, const camber_match_label *label) {
     camber_expression *e = c->expression;
     if (!grow(c, &e->labels, &e->label_capacity, e->label_count, sizeof *e->labels))
         return false;
@@ -112,7 +112,7 @@ bool camber_push_label(camber_compiler *c, const camber_label *label) {
 }
 
 static int compare_labels(const void *left, const void *right) {
-    const camber_label *a = left, *b = right;
+    const camber_match_label *a = left, *b = right;
     if (a->string)
         return strcmp(a->string, b->string);
     return a->number < b->number ? -1 : a->number > b->number;
@@ -122,10 +122,10 @@ bool camber_sort_labels(camber_compiler *c, size_t first, bool unique) {
     const size_t count = c->expression->label_count - first;
     if (count < 2)
         return true;
-    camber_label *labels = &c->expression->labels[first];
+    camber_match_label *labels = &c->expression->labels[first];
     qsort(labels, count, sizeof *labels, compare_labels);
     for (size_t i = 1; i < count && unique; i++) {
-        const camber_label *one = &labels[i - 1], *other = &labels[i];
+        const camber_match_label *one = &labels[i - 1], *other = &labels[i];
         if (compare_labels(one, other) != 0)
             continue;
         camber_compiler_enter_index(c, one->position > other->position ? one->position : other->position);
@@ -353,6 +353,26 @@ static bool fold(camber_compiler *c, uint32_t *node) {
 
 /* ---- Types ---- */
 
+camber_evaluate_fn *camber_conversion_to(camber_type type) {
+    switch (type) {
+    case CAMBER_TYPE_COLOR: return camber_evaluate_to_color;
+    case CAMBER_TYPE_IMAGE: return camber_evaluate_to_image;
+    case CAMBER_TYPE_FORMATTED: return camber_evaluate_to_formatted;
+    case CAMBER_TYPE_PADDING: return camber_evaluate_to_padding;
+    case CAMBER_TYPE_ANCHORS: return camber_evaluate_to_anchors;
+    default: return camber_evaluate_assert;
+    }
+}
+
+/* Whether values of a known type become another type where that is expected. */
+static bool is_converted(camber_type expected, camber_type actual) {
+    switch (expected) {
+    case CAMBER_TYPE_PADDING: return actual == CAMBER_TYPE_NUMBER || actual == CAMBER_TYPE_ARRAY;
+    case CAMBER_TYPE_ANCHORS: return actual == CAMBER_TYPE_ARRAY;
+    default: return actual == CAMBER_TYPE_STRING;
+    }
+}
+
 bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotation annotation, uint32_t *node) {
     const camber_typing actual = camber_node_at(c, *node)->type;
     const bool unknown = actual.type == CAMBER_TYPE_VALUE, omit = annotation == CAMBER_ANNOTATE_OMIT;
@@ -373,13 +393,12 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
                         fold(c, node));
     case CAMBER_TYPE_COLOR:
     case CAMBER_TYPE_IMAGE:
-        if (!unknown && actual.type != CAMBER_TYPE_STRING)
+    case CAMBER_TYPE_FORMATTED:
+    case CAMBER_TYPE_PADDING:
+    case CAMBER_TYPE_ANCHORS:
+        if (!unknown && !is_converted(expected.type, actual.type))
             break;
-        return omit ||
-               (camber_wrap_node(
-                    c, expected.type == CAMBER_TYPE_COLOR ? camber_evaluate_to_color : camber_evaluate_to_string,
-                    expected, node) &&
-                fold(c, node));
+        return omit || (camber_wrap_node(c, camber_conversion_to(expected.type), expected, node) && fold(c, node));
     case CAMBER_TYPE_VALUE:
     case CAMBER_TYPE_NULL:
     case CAMBER_TYPE_COLLATOR:

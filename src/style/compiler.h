@@ -31,10 +31,10 @@ typedef struct camber_path_step {
 /* A property's type in the specification. */
 typedef struct camber_property {
     const char *name;
-    camber_type type;          /* bool, number, string, color, array or image */
+    camber_type type;          /* bool, number, string, color, array, image, formatted, padding or anchors */
     camber_type item;          /* type of an array's items */
     uint32_t length;           /* length of an array. 0: any */
-    const char *const *values; /* an enum: what a string may be, NULL at the end. NULL: anything */
+    const char *const *values; /* an enum: what a string, or an array's item, may be, NULL at the end. NULL: anything */
     const char *fallback;      /* the default as JSON, "1" or "\"butt\"". NULL: none */
     bool interpolated;         /* curves on zoom are allowed, and what older functions are without a type */
     bool data_driven;          /* may read the feature */
@@ -134,6 +134,9 @@ bool camber_compile_loose_operand(camber_compiler *c, const json_t *array, size_
 /* Wraps node so that it has the expected type, or fails; constants stay constants. */
 bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotation annotation, uint32_t *node);
 
+/* The function that makes a value of the type of any other one, or fails. */
+camber_evaluate_fn *camber_conversion_to(camber_type type);
+
 bool camber_push_operand(camber_compiler *c, uint32_t node);
 /* Makes a node of the operands past the first_operand-th, and pops them. */
 bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node);
@@ -146,7 +149,7 @@ bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, cons
 /* Makes a node without operands that reads the feature, the zoom or line-progress. */
 bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber_type type, uint32_t *node);
 bool camber_push_stop(camber_compiler *c, double stop);
-bool camber_push_label(camber_compiler *c, const camber_label *label);
+bool camber_push_label(camber_compiler *c, const camber_match_label *label);
 /* Sorts the labels from the first-th on; fails where one occurs twice and each must be one. */
 bool camber_sort_labels(camber_compiler *c, size_t first, bool unique);
 camber_node *camber_node_at(camber_compiler *c, uint32_t node);
@@ -158,6 +161,8 @@ const camber_binding *camber_find_binding(const camber_compiler *c, const char *
 
 /* Compiles the expression [operator, operand, ...]. */
 bool camber_compile_operator(camber_compiler *c, json_t *array, camber_typing expected, uint32_t *node);
+/* Whether there is an operator of this name. */
+bool camber_operator_exists(const char *name);
 /* function.c: {"stops": ..., "property": ..., "base": ..., "type": ..., "default": ..., "colorSpace": ...}. */
 bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node);
 /* Compiles a string in which {name} stands for the property of that name. */

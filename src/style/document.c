@@ -209,7 +209,8 @@ static bool read_document(camber_document *d) {
         return false;
     camber_document_warn_unknown(d, d->root, known, "style");
     warn_of_places(d);
-    return camber_document_read_string(d, d->root, "name", &c->style->name) && read_camera(d) && read_state(d) &&
+    return camber_document_read_string(d, d->root, "name", &c->style->name) &&
+           camber_document_read_string(d, d->root, "glyphs", &c->style->glyphs) && read_camera(d) && read_state(d) &&
            read_sprites(d, json_object_get(d->root, "sprite")) &&
            read_sources(d, json_object_get(d->root, "sources")) &&
            camber_document_read_layers(d, json_object_get(d->root, "layers"));
@@ -287,6 +288,7 @@ void camber_style_destroy(camber_style *style) {
         camber_free(context, style->schema.properties[i]);
     json_decref(style->state);
     camber_free(context, style->name);
+    camber_free(context, style->glyphs);
     camber_free(context, style->schema.properties);
     camber_free(context, style->schema.property_readers);
     camber_free(context, style->schema.source_layers);

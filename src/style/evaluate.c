@@ -4,6 +4,7 @@
  * and an output for each input. `camber style eval` prints it.
  */
 #include "style/compiler.h"
+#include "style/section.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,9 +33,17 @@ static camber_type type_of(const json_t *name) {
     static const struct {
         const char *name;
         camber_type type;
-    } types[] = {{"boolean", CAMBER_TYPE_BOOL},  {"number", CAMBER_TYPE_NUMBER},      {"string", CAMBER_TYPE_STRING},
-                 {"enum", CAMBER_TYPE_STRING},   {"color", CAMBER_TYPE_COLOR},        {"array", CAMBER_TYPE_ARRAY},
-                 {"object", CAMBER_TYPE_OBJECT}, {"resolvedImage", CAMBER_TYPE_IMAGE}};
+    } types[] = {{"boolean", CAMBER_TYPE_BOOL},
+                 {"number", CAMBER_TYPE_NUMBER},
+                 {"string", CAMBER_TYPE_STRING},
+                 {"enum", CAMBER_TYPE_STRING},
+                 {"color", CAMBER_TYPE_COLOR},
+                 {"array", CAMBER_TYPE_ARRAY},
+                 {"object", CAMBER_TYPE_OBJECT},
+                 {"resolvedImage", CAMBER_TYPE_IMAGE},
+                 {"formatted", CAMBER_TYPE_FORMATTED},
+                 {"padding", CAMBER_TYPE_PADDING},
+                 {"variableAnchorOffsetCollection", CAMBER_TYPE_ANCHORS}};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (json_is_string(name) && strcmp(json_string_value(name), types[i].name) == 0)
             return types[i].type;
@@ -144,7 +153,13 @@ static json_t *component(double number) {
     return json_real(strtod(text, NULL));
 }
 
-static json_t *to_json(const camber_value *value);
+/* Whether an image exists. user: the array of their names. */
+static uint32_t find_image(void *user, const char *name) {
+    return has_text(user, name);
+}
+
+/* images: those that exist. NULL: not told, and none is said to be there. */
+static json_t *to_json(const camber_style_images *images, const camber_value *value);
 
 /* Writes a colour as the specification's tests do: multiplied by alpha, and as an object where a colour was not
  * expected. */
@@ -161,11 +176,47 @@ static json_t *color_to_json(camber_color color, bool expected) {
     return made;
 }
 
-static json_t *object_to_json(const camber_value *value) {
+static json_t *object_to_json(const camber_style_images *images, const camber_value *value) {
     json_t *object = json_object();
     for (uint32_t place = 0; place < value->count; place++)
-        json_object_set_new(object, value->members[place].key, to_json(&value->members[place].value));
+        json_object_set_new(object, value->members[place].key, to_json(images, &value->members[place].value));
     return object;
+}
+
+static json_t *string_to_json(const char *text) {
+    json_t *string = json_string(text);
+    return string ? string : json_string_nocheck("not UTF-8");
+}
+
+static json_t *image_to_json(const camber_style_images *images, const char *name) {
+    const bool available = images && images->find(images->user, name) != 0;
+    return json_pack("{s:o, s:b}", "name", string_to_json(name), "available", available);
+}
+
+/* The names of fonts, with commas between. */
+static json_t *fonts_to_json(const camber_value *fonts) {
+    char text[1024] = "";
+    size_t used = 0;
+    if (fonts->type != CAMBER_VALUE_ARRAY)
+        return json_null();
+    for (uint32_t i = 0; i < fonts->count && used < sizeof text; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i ? "," : "",
+                                 fonts->items[i].type == CAMBER_VALUE_STRING ? fonts->items[i].string : "");
+    return string_to_json(text);
+}
+
+static json_t *formatted_to_json(const camber_style_images *images, const camber_value *value) {
+    json_t *sections = json_array();
+    for (uint32_t i = 0; i < value->count; i++) {
+        const camber_text_section *section = value->sections + i;
+        json_array_append_new(sections,
+                              json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "text", string_to_json(section->text),
+                                        "image", section->image ? image_to_json(images, section->image) : json_null(),
+                                        "scale", to_json(images, &section->scale), "fontStack",
+                                        fonts_to_json(&section->fonts), "textColor", to_json(images, &section->color),
+                                        "verticalAlign", to_json(images, &section->align)));
+    }
+    return json_pack("{s:o}", "sections", sections);
 }
 
 /* Writes whole numbers without a point, as ECMAScript does. */
@@ -175,23 +226,22 @@ static json_t *number_to_json(double number) {
     return fabs(number) < 9e15 && !(number > floor(number)) ? json_integer((json_int_t)number) : json_real(number);
 }
 
-static json_t *to_json(const camber_value *value) {
+static json_t *to_json(const camber_style_images *images, const camber_value *value) {
     switch (value->type) {
     case CAMBER_VALUE_NULL: break;
     case CAMBER_VALUE_BOOL: return json_boolean(value->boolean);
     case CAMBER_VALUE_NUMBER: return number_to_json(value->number);
-    case CAMBER_VALUE_STRING: {
-        json_t *string = json_string(value->string);
-        return string ? string : json_string_nocheck("not UTF-8");
-    }
+    case CAMBER_VALUE_STRING:
+        return value->boolean ? image_to_json(images, value->string) : string_to_json(value->string);
+    case CAMBER_VALUE_FORMATTED: return formatted_to_json(images, value);
     case CAMBER_VALUE_COLOR: return color_to_json(value->color, false);
     case CAMBER_VALUE_ARRAY: {
         json_t *array = json_array();
         for (uint32_t i = 0; i < value->count; i++)
-            json_array_append_new(array, to_json(&value->items[i]));
+            json_array_append_new(array, to_json(images, &value->items[i]));
         return array;
     }
-    case CAMBER_VALUE_OBJECT: return object_to_json(value);
+    case CAMBER_VALUE_OBJECT: return object_to_json(images, value);
     }
     return json_null();
 }
@@ -216,6 +266,17 @@ static bool read_feature(evaluator *e, const json_t *json, camber_value *values,
     return true;
 }
 
+/* Writes a result. Types that have no form in JSON are written as the specification's tests do. */
+static json_t *result_to_json(const evaluator *e, const camber_style_images *images, const camber_value *value) {
+    switch (e->expression->nodes[e->expression->root].type.type) {
+    case CAMBER_TYPE_COLOR:
+        return value->type == CAMBER_VALUE_COLOR ? color_to_json(value->color, true) : to_json(images, value);
+    case CAMBER_TYPE_PADDING:
+    case CAMBER_TYPE_ANCHORS: return json_pack("{s:o}", "values", to_json(images, value));
+    default: return to_json(images, value);
+    }
+}
+
 static bool run_input(evaluator *e, const json_t *input, camber_value *values) {
     const json_t *globals = json_array_get(input, 0);
     camber_feature_view feature;
@@ -224,12 +285,13 @@ static bool run_input(evaluator *e, const json_t *input, camber_value *values) {
     if (!read_feature(e, json_array_get(input, 1), values, &all, &feature))
         return false;
     camber_evaluation_begin(&evaluation, json_number_value(json_object_get(globals, "zoom")), &feature);
+    json_t *available = json_object_get(globals, "availableImages");
+    const camber_style_images images = {.find = find_image, .user = available};
+    evaluation.images = available ? &images : NULL;
     evaluation.line_progress = json_number_value(json_object_get(globals, "lineProgress"));
     const bool done = camber_expression_evaluate(e->expression, &evaluation, &value);
-    const bool color = e->expression->nodes[e->expression->root].type.type == CAMBER_TYPE_COLOR;
-    json_t *output = !done                                       ? json_pack("{s:s}", "error", evaluation.cause)
-                     : color && value.type == CAMBER_VALUE_COLOR ? color_to_json(value.color, true)
-                                                                 : to_json(&value);
+    json_t *output =
+        done ? result_to_json(e, evaluation.images, &value) : json_pack("{s:s}", "error", evaluation.cause);
     const bool held = json_array_append_new(e->outputs, output) == 0;
     camber_evaluation_end(&evaluation);
     camber_arena_free(&e->arena);

@@ -44,7 +44,8 @@ camber_evaluate_fn camber_evaluate_constant, camber_evaluate_state, camber_evalu
 camber_evaluate_fn camber_evaluate_get, camber_evaluate_has;
 camber_evaluate_fn camber_evaluate_id, camber_evaluate_has_id, camber_evaluate_geometry_type, camber_evaluate_zoom,
     camber_evaluate_line_progress;
-camber_evaluate_fn camber_evaluate_assert, camber_evaluate_typeof, camber_evaluate_to_string, camber_evaluate_to_color;
+camber_evaluate_fn camber_evaluate_assert, camber_evaluate_typeof, camber_evaluate_to_string, camber_evaluate_to_color,
+    camber_evaluate_to_image, camber_evaluate_to_formatted, camber_evaluate_to_padding, camber_evaluate_to_anchors;
 camber_evaluate_fn camber_evaluate_collator, camber_evaluate_comparison, camber_evaluate_not, camber_evaluate_all,
     camber_evaluate_any, camber_evaluate_case, camber_evaluate_match, camber_evaluate_coalesce;
 /* Whether the input is one of the node's labels. */

@@ -46,12 +46,12 @@ struct camber_node {
     camber_value value; /* a constant's value, the style's state, or an interpolation's base */
 };
 
-typedef struct camber_label {
+typedef struct camber_match_label {
     const char *string; /* NULL: a number */
     double number;
     uint32_t output;   /* operand of the match */
     uint32_t position; /* in the document: its branch or stop */
-} camber_label;
+} camber_match_label;
 
 struct camber_expression {
     camber_context *context;
@@ -60,7 +60,7 @@ struct camber_expression {
     camber_node *nodes;
     uint32_t *links;
     double *stops;
-    camber_label *labels;
+    camber_match_label *labels;
     camber_arena arena; /* memory of constants that are not scalars */
     size_t node_count, node_capacity;
     size_t link_count, link_capacity;

@@ -122,7 +122,7 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
     for (size_t i = 2; i < json_array_size(array); i++) {
         const json_t *json = json_array_get(array, i);
         if (labels ? !camber_push_label(
-                         c, &(camber_label){.string = json_string_value(json), .number = json_number_value(json)})
+                         c, &(camber_match_label){.string = json_string_value(json), .number = json_number_value(json)})
                    : !compile_value(c, array, i, &value) || !camber_push_operand(c, value))
             return false;
     }

@@ -144,7 +144,8 @@ static bool compile_tokens(function *f, const char *text, uint32_t *node) {
 static bool compile_value(function *f, const json_t *json, uint32_t *node) {
     camber_compiler *c = f->c;
     const bool tokens = f->property->tokens && !f->key && json_is_string(json) && strchr(json_string_value(json), '{');
-    if (json_is_array(json) && json_is_string(json_array_get(json, 0)) && f->property->item != CAMBER_TYPE_STRING)
+    const bool names = f->property->item == CAMBER_TYPE_STRING || f->property->type == CAMBER_TYPE_ANCHORS;
+    if (json_is_array(json) && json_is_string(json_array_get(json, 0)) && !names)
         return camber_compiler_fail(c, "a function's value must be a constant, found %s; use an expression instead",
                                     camber_json_name(json));
     if (!(tokens ? compile_tokens(f, json_string_value(json), node) : camber_make_json_constant(c, json, node)))
@@ -328,7 +329,7 @@ static bool is_twin(const function *f, size_t index) {
 }
 
 /* Pushes a stop's condition where inputs are booleans, else its label. */
-static bool push_category(function *f, const json_t *input, camber_label label, camber_type *type) {
+static bool push_category(function *f, const json_t *input, camber_match_label label, camber_type *type) {
     camber_compiler *c = f->c;
     uint32_t node = 0;
     if (*type != CAMBER_TYPE_BOOL)
@@ -360,7 +361,8 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
         camber_compiler_enter_index(c, i);
         if (!read_stop(f, i, &input, &zoom))
             return false;
-        const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .position = (uint32_t)i};
+        const camber_match_label label = {.output = (uint32_t)(c->operand_count - first_operand),
+                                          .position = (uint32_t)i};
         if (i > stops.first && is_twin(f, i))
             warn_of_twin(f, input);
         const bool counts = c->strict ? i == stops.first || !is_twin(f, i) : i + 1 == stops.last || !is_twin(f, i + 1);
@@ -395,7 +397,7 @@ static bool compile_identity(function *f, uint32_t *node) {
         return false;
     if (f->property->values) {
         for (size_t i = 0; f->property->values[i]; i++)
-            if (!camber_push_label(c, &(camber_label){.string = f->property->values[i], .output = 1}))
+            if (!camber_push_label(c, &(camber_match_label){.string = f->property->values[i], .output = 1}))
                 return false;
         const camber_node prototype = {.evaluate = camber_evaluate_match,
                                        .type = string_type,
@@ -405,11 +407,8 @@ static bool compile_identity(function *f, uint32_t *node) {
                camber_annotate(c, string_type, CAMBER_ANNOTATE_ASSERT, node) && camber_push_operand(c, *node) &&
                push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
     }
-    const camber_node prototype = {.evaluate = type == CAMBER_TYPE_COLOR   ? camber_evaluate_to_color
-                                               : type == CAMBER_TYPE_IMAGE ? camber_evaluate_to_string
-                                               : type == CAMBER_TYPE_VALUE ? camber_evaluate_coalesce
-                                                                           : camber_evaluate_assert,
-                                   .type = f->type};
+    const camber_node prototype = {
+        .evaluate = type == CAMBER_TYPE_VALUE ? camber_evaluate_coalesce : camber_conversion_to(type), .type = f->type};
     return push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
 }
 

@@ -142,8 +142,9 @@ static void warn_overlap(camber_document *d, const char *key, camber_layer_kind 
     camber_compiler_enter_key(&d->compiler, "metadata");
     camber_compiler_enter_key(&d->compiler, key);
     camber_compiler_warn(&d->compiler, "is of line layers; %s: leave it out",
-                         kind == CAMBER_LAYER_FILL ? "areas of one colour are filled together"
-                                                   : "circles are drawn one over another");
+                         kind == CAMBER_LAYER_FILL     ? "areas of one colour are filled together"
+                         : kind == CAMBER_LAYER_SYMBOL ? "labels have \"text-overlap\" and \"icon-overlap\""
+                                                       : "circles are drawn one over another");
     d->compiler.path_length = depth;
 }
 
@@ -158,9 +159,10 @@ static bool read_overlap(camber_document *d, const json_t *json, camber_style_la
         return true;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (json_is_string(overlap) && strcmp(json_string_value(overlap), names[i]) == 0) {
-            if (layer->kind == CAMBER_LAYER_CIRCLE || (layer->kind == CAMBER_LAYER_FILL && i != CAMBER_OVERLAP_FLATTEN))
+            const bool other = layer->kind == CAMBER_LAYER_CIRCLE || layer->kind == CAMBER_LAYER_SYMBOL;
+            if (other || (layer->kind == CAMBER_LAYER_FILL && i != CAMBER_OVERLAP_FLATTEN))
                 warn_overlap(d, key, layer->kind);
-            if (layer->kind == CAMBER_LAYER_CIRCLE)
+            if (other)
                 return true;
             layer->overlap = (camber_overlap)i;
             d->compiler.style->accumulates |= layer->overlap == CAMBER_OVERLAP_ACCUMULATE;
@@ -286,7 +288,8 @@ bool camber_layer_kind_find(const char *type, camber_layer_kind *kind) {
     static const char *const types[] = {[CAMBER_LAYER_BACKGROUND] = "background",
                                         [CAMBER_LAYER_LINE] = "line",
                                         [CAMBER_LAYER_FILL] = "fill",
-                                        [CAMBER_LAYER_CIRCLE] = "circle"};
+                                        [CAMBER_LAYER_CIRCLE] = "circle",
+                                        [CAMBER_LAYER_SYMBOL] = "symbol"};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i], type) == 0) {
             *kind = (camber_layer_kind)i;
@@ -297,8 +300,7 @@ bool camber_layer_kind_find(const char *type, camber_layer_kind *kind) {
 
 /* Whether the specification has this type of layer, which is not drawn; others are misspelled. */
 static bool is_known_type(const char *type) {
-    static const char *const types[] = {"symbol",       "heatmap", "fill-extrusion", "raster", "hillshade",
-                                        "color-relief", "sky"};
+    static const char *const types[] = {"heatmap", "fill-extrusion", "raster", "hillshade", "color-relief", "sky"};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i], type) == 0)
             return true;

@@ -24,14 +24,18 @@ static bool fail_count(camber_compiler *c, const camber_operator *row, size_t co
 
 /* NULL: there is none of this name. */
 static const camber_operator *find_operator(const char *name) {
-    static const camber_operator_table *const tables[] = {&camber_input_operators,    &camber_type_operators,
-                                                          &camber_decision_operators, &camber_sequence_operators,
-                                                          &camber_curve_operators,    &camber_maths_operators};
+    static const camber_operator_table *const tables[] = {
+        &camber_input_operators, &camber_type_operators,  &camber_decision_operators, &camber_sequence_operators,
+        &camber_curve_operators, &camber_maths_operators, &camber_format_operators,   &camber_number_operators};
     for (size_t t = 0; t < sizeof tables / sizeof *tables; t++)
         for (size_t i = 0; i < tables[t]->count; i++)
             if (tables[t]->rows[i].name[0] == name[0] && strcmp(tables[t]->rows[i].name, name) == 0)
                 return &tables[t]->rows[i];
     return NULL;
+}
+
+bool camber_operator_exists(const char *name) {
+    return find_operator(name) != NULL;
 }
 
 bool camber_compile_operator(camber_compiler *c, json_t *array, camber_typing expected, uint32_t *node) {

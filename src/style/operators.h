@@ -6,6 +6,8 @@
  *     operators_sequences.c  strings and arrays
  *     operators_curves.c     step, interpolate
  *     operators_maths.c      arithmetic and functions of a number
+ *     operators_formats.c    formatted texts, images in them, and what symbol layers have of types
+ *     operators_numbers.c    numbers as texts for people
  *
  * A new operator is a row there, and the functions that it names. Only files of src/style that compile include this.
  */
@@ -37,7 +39,8 @@ typedef struct camber_operator_table {
 } camber_operator_table;
 
 extern const camber_operator_table camber_input_operators, camber_type_operators, camber_decision_operators,
-    camber_sequence_operators, camber_curve_operators, camber_maths_operators;
+    camber_sequence_operators, camber_curve_operators, camber_maths_operators, camber_format_operators,
+    camber_number_operators;
 
 /* Short words for the rows. */
 #define VALUE CAMBER_TYPE_VALUE
@@ -68,7 +71,7 @@ static inline camber_output_type camber_expect_outputs(camber_typing expected) {
 bool camber_compile_output(camber_compiler *c, const json_t *array, size_t index, camber_output_type *type);
 /* operators_decisions.c: pushes a label with the string or number that json is. All labels are of one type, which is
  * unknown at first. */
-bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label label, camber_type *type);
+bool camber_compile_label(camber_compiler *c, const json_t *json, camber_match_label label, camber_type *type);
 /* operators_curves.c: whether values of the type can be mixed. */
 bool camber_is_interpolated(camber_typing type);
 

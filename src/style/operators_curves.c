@@ -98,7 +98,8 @@ static bool read_interpolation(camber_compiler *c, const json_t *json, camber_no
 }
 
 bool camber_is_interpolated(camber_typing type) {
-    return type.type == CAMBER_TYPE_NUMBER || type.type == CAMBER_TYPE_COLOR ||
+    return type.type == CAMBER_TYPE_NUMBER || type.type == CAMBER_TYPE_COLOR || type.type == CAMBER_TYPE_PADDING ||
+           type.type == CAMBER_TYPE_ANCHORS ||
            (type.depth == 1 && type.item == CAMBER_TYPE_NUMBER && type.lengths[0] != CAMBER_ANY_LENGTH);
 }
 
@@ -193,6 +194,22 @@ static double bezier_at(const double controls[4], double x) {
 }
 
 static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camber_value *high, double t,
+                       camber_value *value);
+
+/* Numbers are mixed, an anchor's name stays, and its offset is an array. */
+static bool mix_items(camber_evaluation *e, const camber_value *low, const camber_value *high, double t,
+                      camber_value *value) {
+    *value = *low;
+    if (low->type == CAMBER_VALUE_NUMBER && high->type == CAMBER_VALUE_NUMBER)
+        *value = camber_value_number(low->number + t * (high->number - low->number));
+    else if (low->type == CAMBER_VALUE_ARRAY && high->type == CAMBER_VALUE_ARRAY)
+        return mix_arrays(e, low, high, t, value);
+    else
+        return camber_values_equal(low, high) || fail(e, "expected arrays of numbers, or of the same anchors");
+    return true;
+}
+
+static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camber_value *high, double t,
                        camber_value *value) {
     const uint32_t count = low->count;
     camber_value *items = camber_arena_alloc(e->arena, count * sizeof *items);
@@ -200,12 +217,9 @@ static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camb
         return camber_evaluate_no_memory(e);
     if (high->count != count)
         return fail(e, "expected two arrays of the same length");
-    for (uint32_t i = 0; i < count; i++) {
-        const camber_value *a = &low->items[i], *b = &high->items[i];
-        if (a->type != CAMBER_VALUE_NUMBER || b->type != CAMBER_VALUE_NUMBER)
-            return fail(e, "expected arrays of numbers");
-        items[i] = camber_value_number(a->number + t * (b->number - a->number));
-    }
+    for (uint32_t i = 0; i < count; i++)
+        if (!mix_items(e, &low->items[i], &high->items[i], t, &items[i]))
+            return false;
     *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .count = count, .items = items};
     return camber_evaluate_work(e, count);
 }

@@ -126,6 +126,7 @@ bool camber_values_equal(const camber_value *a, const camber_value *b) {
     case CAMBER_VALUE_STRING: return strcmp(a->string, b->string) == 0;
     case CAMBER_VALUE_COLOR: return false;
     case CAMBER_VALUE_ARRAY: return a->items == b->items && a->count == b->count;
+    case CAMBER_VALUE_FORMATTED: return a->sections == b->sections;
     case CAMBER_VALUE_OBJECT: break;
     }
     return a->members == b->members && a->count == b->count;
@@ -250,10 +251,11 @@ static bool compile_case(camber_compiler *c, const camber_operator *row, json_t 
            camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = type.type}, first_operand, node);
 }
 
-static bool is_there(const camber_evaluation *e, const camber_node *operand, const camber_value *value) {
-    if (value->type == CAMBER_VALUE_NULL || !e->images || operand->type.type != CAMBER_TYPE_IMAGE)
+/* Strings that name images are marked. */
+static bool is_there(const camber_evaluation *e, const camber_value *value) {
+    if (value->type != CAMBER_VALUE_STRING || !value->boolean || !e->images)
         return value->type != CAMBER_VALUE_NULL;
-    return value->type == CAMBER_VALUE_STRING && e->images->find(e->images->user, value->string) != 0;
+    return e->images->find(e->images->user, value->string) != 0;
 }
 
 /* Where all images are missing, the result is the first of them. */
@@ -263,7 +265,7 @@ bool camber_evaluate_coalesce(camber_evaluation *e, const camber_node *node, cam
     for (uint32_t i = 0; i < node->count; i++) {
         if (!camber_evaluate_operand(e, node, i, value))
             return false;
-        if (is_there(e, &e->expression->nodes[e->expression->links[node->first + i]], value))
+        if (is_there(e, value))
             return true;
         if (first.type == CAMBER_VALUE_NULL)
             first = *value;
@@ -294,7 +296,7 @@ static bool compile_coalesce(camber_compiler *c, const camber_operator *row, jso
 /* 2^53 - 1, the largest integer to which all below it are doubles. */
 #define LARGEST_LABEL 9007199254740991.0
 
-bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label label, camber_type *type) {
+bool camber_compile_label(camber_compiler *c, const json_t *json, camber_match_label label, camber_type *type) {
     char name[CAMBER_TYPING_TEXT_SIZE];
     const camber_type found = json_is_string(json)   ? CAMBER_TYPE_STRING
                               : json_is_number(json) ? CAMBER_TYPE_NUMBER
@@ -318,7 +320,7 @@ bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label l
 
 /* One label or an array of them. */
 static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t index, camber_type *type) {
-    const camber_label label = {.output = index / 2, .position = index};
+    const camber_match_label label = {.output = index / 2, .position = index};
     if (!json_is_array(json))
         return camber_compile_label(c, json, label, type);
     if (json_array_size(json) == 0)
@@ -368,19 +370,19 @@ static bool compile_match(camber_compiler *c, const camber_operator *row, json_t
     return camber_make_node(c, &prototype, first_operand, node);
 }
 
-static int compare_label(const camber_value *value, const camber_label *label) {
+static int compare_label(const camber_value *value, const camber_match_label *label) {
     if (label->string)
         return strcmp(value->string, label->string);
     return value->number < label->number ? -1 : value->number > label->number;
 }
 
 /* The node's label that the value is; NULL: none. */
-static const camber_label *find_label(const camber_expression *expression, const camber_node *node,
-                                      const camber_value *value) {
+static const camber_match_label *find_label(const camber_expression *expression, const camber_node *node,
+                                            const camber_value *value) {
     uint32_t low = 0, high = node->index_count;
     if (high == 0)
         return NULL;
-    const camber_label *labels = &expression->labels[node->index];
+    const camber_match_label *labels = &expression->labels[node->index];
     const bool strings = labels[0].string != NULL;
     if (value->type != (strings ? CAMBER_VALUE_STRING : CAMBER_VALUE_NUMBER) || (!strings && isnan(value->number)))
         return NULL;
@@ -401,7 +403,7 @@ bool camber_evaluate_match(camber_evaluation *e, const camber_node *node, camber
     camber_value input;
     if (!camber_evaluate_operand(e, node, 0, &input))
         return false;
-    const camber_label *label = find_label(e->expression, node, &input);
+    const camber_match_label *label = find_label(e->expression, node, &input);
     return camber_evaluate_operand(e, node, label ? label->output : node->count - 1, value);
 }
 
@@ -409,7 +411,7 @@ bool camber_evaluate_among(camber_evaluation *e, const camber_node *node, camber
     camber_value input;
     if (!camber_evaluate_operand(e, node, 0, &input))
         return false;
-    const camber_label *label = find_label(e->expression, node, &input);
+    const camber_match_label *label = find_label(e->expression, node, &input);
     if (input.type > CAMBER_VALUE_STRING)
         return camber_evaluate_fail(e, "\"in\" looks for a string, a number, a boolean or null");
     *value = camber_value_bool(label != NULL);

@@ -61,7 +61,7 @@ static bool make_among(camber_compiler *c, size_t first_operand, uint32_t *node)
     for (uint32_t i = 0; i < list.count; i++) {
         const camber_value *item = &list.items[i];
         const bool text = item->type == CAMBER_VALUE_STRING;
-        const camber_label label = {.string = text ? item->string : NULL, .number = text ? 0.0 : item->number};
+        const camber_match_label label = {.string = text ? item->string : NULL, .number = text ? 0.0 : item->number};
         if (!camber_push_label(c, &label))
             return false;
     }
@@ -103,12 +103,12 @@ static bool is_needle(const camber_value *value) {
 
 /* Makes the text of a needle as ECMAScript's indexOf does: null is looked for as "null". */
 static bool needle_text(camber_evaluation *e, const camber_value *needle, const char **string) {
-    camber_text text = {.e = e};
+    camber_string text = {.e = e};
     camber_value value;
     *string = needle->type == CAMBER_VALUE_STRING ? needle->string : "null";
     if (needle->type == CAMBER_VALUE_NULL || needle->type == CAMBER_VALUE_STRING)
         return true;
-    if (!camber_text_add_value(&text, needle) || !camber_text_end(&text, &value))
+    if (!camber_string_add_value(&text, needle) || !camber_string_end(&text, &value))
         return false;
     *string = value.string;
     return true;
@@ -353,16 +353,16 @@ static bool compile_split(camber_compiler *c, const camber_operator *row, json_t
 static bool evaluate_join(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value array;
     const char *separator;
-    camber_text text = {.e = e};
+    camber_string text = {.e = e};
     if (!camber_evaluate_operand(e, node, 0, &array) || !camber_evaluate_string(e, node, 1, &separator))
         return false;
     if (array.type != CAMBER_VALUE_ARRAY)
         return fail(e, "\"join\" joins the strings of an array and the value is not one");
     const size_t length = strlen(separator);
     for (uint32_t i = 0; i < array.count; i++)
-        if ((i > 0 && !camber_text_add(&text, separator, length)) || !camber_text_add_value(&text, &array.items[i]))
+        if ((i > 0 && !camber_string_add(&text, separator, length)) || !camber_string_add_value(&text, &array.items[i]))
             return false;
-    return camber_text_end(&text, value);
+    return camber_string_end(&text, value);
 }
 
 static bool compile_join(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
@@ -375,29 +375,19 @@ static bool compile_join(camber_compiler *c, const camber_operator *row, json_t 
 }
 
 bool camber_evaluate_concat(camber_evaluation *e, const camber_node *node, camber_value *value) {
-    camber_text text = {.e = e};
+    camber_string text = {.e = e};
     for (uint32_t i = 0; i < node->count; i++)
-        if (!camber_evaluate_operand(e, node, i, value) || !camber_text_add_value(&text, value))
+        if (!camber_evaluate_operand(e, node, i, value) || !camber_string_add_value(&text, value))
             return false;
-    return camber_text_end(&text, value);
+    return camber_string_end(&text, value);
 }
 
 static bool change_case(camber_evaluation *e, const camber_node *node, camber_unicode_case_fn *change,
                         camber_value *value) {
     const char *string;
-    camber_text text = {.e = e};
-    if (!camber_evaluate_string(e, node, 0, &string))
-        return false;
-    while (*string) {
-        uint32_t code, other[2];
-        char bytes[4];
-        string += camber_unicode_read(string, &code);
-        const size_t count = change(code, other);
-        for (size_t i = 0; i < count; i++)
-            if (!camber_text_add(&text, bytes, camber_unicode_write(other[i], bytes)))
-                return false;
-    }
-    return camber_text_end(&text, value);
+    camber_string text = {.e = e};
+    return camber_evaluate_string(e, node, 0, &string) && camber_string_add_cased(&text, string, change) &&
+           camber_string_end(&text, value);
 }
 
 static bool evaluate_upcase(camber_evaluation *e, const camber_node *node, camber_value *value) {

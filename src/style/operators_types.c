@@ -100,10 +100,12 @@ static bool compile_array(camber_compiler *c, const camber_operator *row, json_t
 bool camber_evaluate_to_string(camber_evaluation *e, const camber_node *node, camber_value *value) {
     if (!camber_evaluate_operand(e, node, 0, value))
         return false;
-    if (value->type == CAMBER_VALUE_STRING)
+    if (value->type == CAMBER_VALUE_STRING) {
+        value->boolean = false;
         return true;
-    camber_text text = {.e = e};
-    return camber_text_add_value(&text, value) && camber_text_end(&text, value);
+    }
+    camber_string text = {.e = e};
+    return camber_string_add_value(&text, value) && camber_string_end(&text, value);
 }
 
 static bool to_bool(const camber_value *value) {
@@ -114,6 +116,7 @@ static bool to_bool(const camber_value *value) {
     case CAMBER_VALUE_STRING: return value->string[0] != 0;
     case CAMBER_VALUE_COLOR:
     case CAMBER_VALUE_ARRAY:
+    case CAMBER_VALUE_FORMATTED:
     case CAMBER_VALUE_OBJECT: break;
     }
     return true;
@@ -178,6 +181,7 @@ static bool to_number(const camber_value *value, double *number) {
     case CAMBER_VALUE_STRING: return string_to_number(value->string, number);
     case CAMBER_VALUE_ARRAY: return value->count == 0;
     case CAMBER_VALUE_COLOR:
+    case CAMBER_VALUE_FORMATTED:
     case CAMBER_VALUE_OBJECT: break;
     }
     return false;
@@ -292,7 +296,6 @@ static const camber_operator rows[] = {
     {"to-rgba", compile_to_rgba, evaluate_to_rgba, COLOR, ARRAY, 1, 1},
     {"rgb", camber_compile_uniform, evaluate_rgba, NUMBER, COLOR, 3, 3},
     {"rgba", camber_compile_uniform, evaluate_rgba, NUMBER, COLOR, 4, 4},
-    {"image", camber_compile_uniform, camber_evaluate_to_string, STRING, CAMBER_TYPE_IMAGE, 1, 1},
 };
 
 const camber_operator_table camber_type_operators = {rows, sizeof rows / sizeof *rows};

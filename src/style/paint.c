@@ -61,12 +61,16 @@ static bool store_choice(const camber_property_row *row, const camber_value *val
     return false;
 }
 
-static bool store_pair(const camber_property_row *row, const camber_value *value, double pair[2]) {
-    double made[2];
-    if (value->type != CAMBER_VALUE_ARRAY || value->count != 2 || !store_number(row, value->items, made) ||
-        !store_number(row, value->items + 1, made + 1))
+enum { NUMBERS_MAX = 4 };
+
+static bool store_numbers(const camber_property_row *row, const camber_value *value, uint32_t count, double *numbers) {
+    double made[NUMBERS_MAX];
+    if (value->type != CAMBER_VALUE_ARRAY || value->count != count || count > NUMBERS_MAX)
         return false;
-    memcpy(pair, made, sizeof made);
+    for (uint32_t i = 0; i < count; i++)
+        if (!store_number(row, value->items + i, made + i))
+            return false;
+    memcpy(numbers, made, count * sizeof *made);
     return true;
 }
 
@@ -99,13 +103,15 @@ static bool store_dashes(const camber_property_row *row, const camber_value *val
     return true;
 }
 
-static bool store_value(const camber_property_row *row, const camber_value *value, void *field) {
+bool camber_property_store(const camber_property_row *row, const camber_value *value, void *field) {
     switch (row->property.type) {
     case CAMBER_TYPE_NUMBER: return store_number(row, value, field);
     case CAMBER_TYPE_BOOL: return store_bool(value, field);
     case CAMBER_TYPE_STRING: return store_choice(row, value, field);
     case CAMBER_TYPE_ARRAY:
-        return row->property.length == 0 ? store_dashes(row, value, field) : store_pair(row, value, field);
+        return row->property.length == 0 ? store_dashes(row, value, field)
+                                         : store_numbers(row, value, row->property.length, field);
+    case CAMBER_TYPE_PADDING: return store_numbers(row, value, 4, field);
     default: break;
     }
     if (value->type == CAMBER_VALUE_COLOR)
@@ -119,7 +125,7 @@ static void store_property(const camber_style_layer *layer, unsigned id, camber_
     const camber_property_row *row = camber_property_rows + id;
     camber_value value;
     if (camber_expression_evaluate(layer->properties[id], evaluation, &value))
-        store_value(row, &value, (char *)paint + row->offset);
+        camber_property_store(row, &value, (char *)paint + row->offset);
 }
 
 camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom) {

@@ -11,6 +11,18 @@
 static const char *const caps[] = {"butt", "round", "square", NULL};
 static const char *const joins[] = {"round", "miter", "bevel", NULL};
 static const char *const anchors[] = {"map", "viewport", NULL};
+/* In the order of the enums of symbol.h and camber_text.h; "auto" is resolved by symbol.c. */
+static const char *const placements[] = {"point", "line", "line-center", NULL};
+static const char *const orders[] = {"auto", "viewport-y", "source", NULL};
+static const char *const overlaps[] = {"never", "always", "cooperative", NULL};
+static const char *const alignments[] = {"map", "viewport", "auto", NULL};
+static const char *const text_alignments[] = {"map", "viewport", "viewport-glyph", "auto", NULL};
+static const char *const fits[] = {"none", "width", "height", "both", NULL};
+static const char *const sides[] = {"center",   "left",      "right",       "top",          "bottom",
+                                    "top-left", "top-right", "bottom-left", "bottom-right", NULL};
+static const char *const justifications[] = {"center", "left", "right", "auto", NULL};
+static const char *const writing_modes[] = {"horizontal", "vertical", NULL};
+static const char *const transforms[] = {"none", "uppercase", "lowercase", NULL};
 
 const camber_layer_paint camber_default_paint = {
     .cap = CAMBER_CAP_BUTT,
@@ -32,6 +44,22 @@ const camber_layer_paint camber_default_paint = {
 
 #define AT(member) .offset = offsetof(camber_layer_paint, member)
 #define NOWHERE .offset = CAMBER_NO_OFFSET
+
+/* Rows of symbol layers: camber_symbol holds them (symbol.c). */
+#define SYMBOL_LAYOUT(NAME, ...)                                                                                       \
+    { .kind = CAMBER_LAYER_SYMBOL, .layout = true, NOWHERE, .property = {.name = NAME, __VA_ARGS__}, }
+#define SYMBOL_PAINT(NAME, ...)                                                                                        \
+    { .kind = CAMBER_LAYER_SYMBOL, NOWHERE, .property = {.name = NAME, __VA_ARGS__}, }
+#define IS_BOOL(FALLBACK) .type = CAMBER_TYPE_BOOL, .fallback = FALLBACK
+#define IS_NUMBER(FALLBACK) .type = CAMBER_TYPE_NUMBER, .fallback = FALLBACK, .interpolated = true
+#define IS_COLOR(FALLBACK) .type = CAMBER_TYPE_COLOR, .fallback = FALLBACK, .interpolated = true
+#define IS_NUMBERS(COUNT, FALLBACK)                                                                                    \
+    .type = CAMBER_TYPE_ARRAY, .item = CAMBER_TYPE_NUMBER, .length = COUNT, .fallback = FALLBACK, .interpolated = true
+#define IS_ONE_OF(NAMES, FALLBACK) .type = CAMBER_TYPE_STRING, .values = NAMES, .fallback = FALLBACK
+#define ARE_SOME_OF(NAMES) .type = CAMBER_TYPE_ARRAY, .item = CAMBER_TYPE_STRING, .values = NAMES
+#define DRIVEN .data_driven = true
+#define FROM_0 .low = 0.0, .high = HUGE_VAL
+#define UP_TO_1 .low = 0.0, .high = 1.0
 
 const camber_property_row camber_property_rows[CAMBER_PROPERTIES] = {
     [CAMBER_LINE_CAP] = {.kind = CAMBER_LAYER_LINE,
@@ -357,6 +385,68 @@ const camber_property_row camber_property_rows[CAMBER_PROPERTIES] = {
                                                    .data_driven = true,
                                                    .low = 0.0,
                                                    .high = 1.0}},
+    [CAMBER_SYMBOL_PLACEMENT] = SYMBOL_LAYOUT("symbol-placement", IS_ONE_OF(placements, "\"point\"")),
+    [CAMBER_SYMBOL_SPACING] = SYMBOL_LAYOUT("symbol-spacing", IS_NUMBER("250"), .low = 1.0, .high = HUGE_VAL),
+    [CAMBER_SYMBOL_AVOID_EDGES] = SYMBOL_LAYOUT("symbol-avoid-edges", IS_BOOL("false")),
+    [CAMBER_SYMBOL_SORT_KEY] = SYMBOL_LAYOUT("symbol-sort-key", .type = CAMBER_TYPE_NUMBER, DRIVEN),
+    [CAMBER_SYMBOL_Z_ORDER] = SYMBOL_LAYOUT("symbol-z-order", IS_ONE_OF(orders, "\"auto\"")),
+    [CAMBER_ICON_ALLOW_OVERLAP] = SYMBOL_LAYOUT("icon-allow-overlap", IS_BOOL("false")),
+    [CAMBER_ICON_OVERLAP] = SYMBOL_LAYOUT("icon-overlap", IS_ONE_OF(overlaps, NULL)),
+    [CAMBER_ICON_IGNORE_PLACEMENT] = SYMBOL_LAYOUT("icon-ignore-placement", IS_BOOL("false")),
+    [CAMBER_ICON_OPTIONAL] = SYMBOL_LAYOUT("icon-optional", IS_BOOL("false")),
+    [CAMBER_ICON_ROTATION_ALIGNMENT] = SYMBOL_LAYOUT("icon-rotation-alignment", IS_ONE_OF(alignments, "\"auto\"")),
+    [CAMBER_ICON_SIZE] = SYMBOL_LAYOUT("icon-size", IS_NUMBER("1"), DRIVEN, FROM_0),
+    [CAMBER_ICON_TEXT_FIT] = SYMBOL_LAYOUT("icon-text-fit", IS_ONE_OF(fits, "\"none\"")),
+    [CAMBER_ICON_TEXT_FIT_PADDING] = SYMBOL_LAYOUT("icon-text-fit-padding", IS_NUMBERS(4, "[0, 0, 0, 0]")),
+    [CAMBER_ICON_IMAGE] = SYMBOL_LAYOUT("icon-image", .type = CAMBER_TYPE_IMAGE, .tokens = true, DRIVEN),
+    [CAMBER_ICON_ROTATE] = SYMBOL_LAYOUT("icon-rotate", IS_NUMBER("0"), DRIVEN),
+    [CAMBER_ICON_PADDING] =
+        SYMBOL_LAYOUT("icon-padding", .type = CAMBER_TYPE_PADDING, .fallback = "[2]", .interpolated = true, DRIVEN),
+    [CAMBER_ICON_KEEP_UPRIGHT] = SYMBOL_LAYOUT("icon-keep-upright", IS_BOOL("false")),
+    [CAMBER_ICON_OFFSET] = SYMBOL_LAYOUT("icon-offset", IS_NUMBERS(2, "[0, 0]"), DRIVEN),
+    [CAMBER_ICON_ANCHOR] = SYMBOL_LAYOUT("icon-anchor", IS_ONE_OF(sides, "\"center\""), DRIVEN),
+    [CAMBER_ICON_PITCH_ALIGNMENT] = SYMBOL_LAYOUT("icon-pitch-alignment", IS_ONE_OF(alignments, "\"auto\"")),
+    [CAMBER_TEXT_PITCH_ALIGNMENT] = SYMBOL_LAYOUT("text-pitch-alignment", IS_ONE_OF(alignments, "\"auto\"")),
+    [CAMBER_TEXT_ROTATION_ALIGNMENT] = SYMBOL_LAYOUT("text-rotation-alignment", IS_ONE_OF(text_alignments, "\"auto\"")),
+    [CAMBER_TEXT_FIELD] =
+        SYMBOL_LAYOUT("text-field", .type = CAMBER_TYPE_FORMATTED, .fallback = "\"\"", .tokens = true, DRIVEN),
+    [CAMBER_TEXT_FONT] = SYMBOL_LAYOUT("text-font", .type = CAMBER_TYPE_ARRAY, .item = CAMBER_TYPE_STRING,
+                                       .fallback = "[\"Open Sans Regular\", \"Arial Unicode MS Regular\"]", DRIVEN),
+    [CAMBER_TEXT_SIZE] = SYMBOL_LAYOUT("text-size", IS_NUMBER("16"), DRIVEN, FROM_0),
+    [CAMBER_TEXT_MAX_WIDTH] = SYMBOL_LAYOUT("text-max-width", IS_NUMBER("10"), DRIVEN, FROM_0),
+    [CAMBER_TEXT_LINE_HEIGHT] = SYMBOL_LAYOUT("text-line-height", IS_NUMBER("1.2")),
+    [CAMBER_TEXT_LETTER_SPACING] = SYMBOL_LAYOUT("text-letter-spacing", IS_NUMBER("0"), DRIVEN),
+    [CAMBER_TEXT_JUSTIFY] = SYMBOL_LAYOUT("text-justify", IS_ONE_OF(justifications, "\"center\""), DRIVEN),
+    [CAMBER_TEXT_RADIAL_OFFSET] = SYMBOL_LAYOUT("text-radial-offset", IS_NUMBER("0"), DRIVEN),
+    [CAMBER_TEXT_VARIABLE_ANCHOR] = SYMBOL_LAYOUT("text-variable-anchor", ARE_SOME_OF(sides)),
+    [CAMBER_TEXT_VARIABLE_ANCHOR_OFFSET] =
+        SYMBOL_LAYOUT("text-variable-anchor-offset", .type = CAMBER_TYPE_ANCHORS, .interpolated = true, DRIVEN),
+    [CAMBER_TEXT_ANCHOR] = SYMBOL_LAYOUT("text-anchor", IS_ONE_OF(sides, "\"center\""), DRIVEN),
+    [CAMBER_TEXT_MAX_ANGLE] = SYMBOL_LAYOUT("text-max-angle", IS_NUMBER("45")),
+    [CAMBER_TEXT_WRITING_MODE] = SYMBOL_LAYOUT("text-writing-mode", ARE_SOME_OF(writing_modes)),
+    [CAMBER_TEXT_ROTATE] = SYMBOL_LAYOUT("text-rotate", IS_NUMBER("0"), DRIVEN),
+    [CAMBER_TEXT_PADDING] = SYMBOL_LAYOUT("text-padding", IS_NUMBER("2"), FROM_0),
+    [CAMBER_TEXT_KEEP_UPRIGHT] = SYMBOL_LAYOUT("text-keep-upright", IS_BOOL("true")),
+    [CAMBER_TEXT_TRANSFORM] = SYMBOL_LAYOUT("text-transform", IS_ONE_OF(transforms, "\"none\""), DRIVEN),
+    [CAMBER_TEXT_OFFSET] = SYMBOL_LAYOUT("text-offset", IS_NUMBERS(2, "[0, 0]"), DRIVEN),
+    [CAMBER_TEXT_ALLOW_OVERLAP] = SYMBOL_LAYOUT("text-allow-overlap", IS_BOOL("false")),
+    [CAMBER_TEXT_OVERLAP] = SYMBOL_LAYOUT("text-overlap", IS_ONE_OF(overlaps, NULL)),
+    [CAMBER_TEXT_IGNORE_PLACEMENT] = SYMBOL_LAYOUT("text-ignore-placement", IS_BOOL("false")),
+    [CAMBER_TEXT_OPTIONAL] = SYMBOL_LAYOUT("text-optional", IS_BOOL("false")),
+    [CAMBER_ICON_OPACITY] = SYMBOL_PAINT("icon-opacity", IS_NUMBER("1"), DRIVEN, UP_TO_1),
+    [CAMBER_ICON_COLOR] = SYMBOL_PAINT("icon-color", IS_COLOR("\"#000000\""), DRIVEN),
+    [CAMBER_ICON_HALO_COLOR] = SYMBOL_PAINT("icon-halo-color", IS_COLOR("\"rgba(0, 0, 0, 0)\""), DRIVEN),
+    [CAMBER_ICON_HALO_WIDTH] = SYMBOL_PAINT("icon-halo-width", IS_NUMBER("0"), DRIVEN, FROM_0),
+    [CAMBER_ICON_HALO_BLUR] = SYMBOL_PAINT("icon-halo-blur", IS_NUMBER("0"), DRIVEN, FROM_0),
+    [CAMBER_ICON_TRANSLATE] = SYMBOL_PAINT("icon-translate", IS_NUMBERS(2, "[0, 0]")),
+    [CAMBER_ICON_TRANSLATE_ANCHOR] = SYMBOL_PAINT("icon-translate-anchor", IS_ONE_OF(anchors, "\"map\"")),
+    [CAMBER_TEXT_OPACITY] = SYMBOL_PAINT("text-opacity", IS_NUMBER("1"), DRIVEN, UP_TO_1),
+    [CAMBER_TEXT_COLOR] = SYMBOL_PAINT("text-color", IS_COLOR("\"#000000\""), DRIVEN),
+    [CAMBER_TEXT_HALO_COLOR] = SYMBOL_PAINT("text-halo-color", IS_COLOR("\"rgba(0, 0, 0, 0)\""), DRIVEN),
+    [CAMBER_TEXT_HALO_WIDTH] = SYMBOL_PAINT("text-halo-width", IS_NUMBER("0"), DRIVEN, FROM_0),
+    [CAMBER_TEXT_HALO_BLUR] = SYMBOL_PAINT("text-halo-blur", IS_NUMBER("0"), DRIVEN, FROM_0),
+    [CAMBER_TEXT_TRANSLATE] = SYMBOL_PAINT("text-translate", IS_NUMBERS(2, "[0, 0]")),
+    [CAMBER_TEXT_TRANSLATE_ANCHOR] = SYMBOL_PAINT("text-translate-anchor", IS_ONE_OF(anchors, "\"map\"")),
 };
 
 const camber_property_row *camber_property_find(camber_layer_kind kind, bool layout, const char *name) {

@@ -22,6 +22,9 @@ extern const camber_layer_paint camber_default_paint;
 
 /* NULL: the specification has no such property. */
 const camber_property_row *camber_property_find(camber_layer_kind kind, bool layout, const char *name);
+/* Stores a value in a field of the property's form: a double or doubles, a bool, a colour, dashes, or an enum in the
+ * order of the property's names. false: the value is of another type, and the field is as before. */
+bool camber_property_store(const camber_property_row *row, const camber_value *value, void *field);
 static inline camber_property_id camber_property_id_of(const camber_property_row *row) {
     return (camber_property_id)(row - camber_property_rows);
 }

@@ -124,9 +124,26 @@ static bool check_outputs(camber_compiler *c, const camber_property *property, c
 
 /* ---- Values ---- */
 
-/* A list that is no expression. */
-static bool is_list(const json_t *json) {
-    return json_is_array(json) && !json_is_string(json_array_get(json, 0));
+/* A list that is no expression: of names, if the first is not that of an operator. */
+static bool is_list(const camber_property *property, const json_t *json) {
+    const char *first = json_string_value(json_array_get(json, 0));
+    const bool names = property->item == CAMBER_TYPE_STRING || property->type == CAMBER_TYPE_ANCHORS;
+    return json_is_array(json) && (!first || (names && !camber_operator_exists(first)));
+}
+
+static bool takes_lists(camber_type type) {
+    return type == CAMBER_TYPE_ARRAY || type == CAMBER_TYPE_PADDING || type == CAMBER_TYPE_ANCHORS;
+}
+
+static bool takes_constant(camber_type type, const json_t *json) {
+    switch (type) {
+    case CAMBER_TYPE_NUMBER:
+    case CAMBER_TYPE_PADDING: return json_is_number(json);
+    case CAMBER_TYPE_BOOL: return json_is_boolean(json);
+    case CAMBER_TYPE_ARRAY:
+    case CAMBER_TYPE_ANCHORS: return false;
+    default: return json_is_string(json);
+    }
 }
 
 static bool compile_list(camber_compiler *c, const json_t *json, const camber_property *property, uint32_t *root) {
@@ -139,7 +156,10 @@ static const char *example_of(const camber_property *property) {
     case CAMBER_TYPE_NUMBER: return "2";
     case CAMBER_TYPE_COLOR: return "\"#a0c4ff\"";
     case CAMBER_TYPE_BOOL: return "true";
-    case CAMBER_TYPE_ARRAY: return "[2, 4]";
+    case CAMBER_TYPE_ARRAY: return property->item == CAMBER_TYPE_STRING ? "[\"left\", \"right\"]" : "[2, 4]";
+    case CAMBER_TYPE_FORMATTED: return "\"{name}\"";
+    case CAMBER_TYPE_PADDING: return "[2, 4]";
+    case CAMBER_TYPE_ANCHORS: return "[\"top\", [0, 1]]";
     default: return "\"round\"";
     }
 }
@@ -147,15 +167,11 @@ static const char *example_of(const camber_property *property) {
 static bool compile_value(camber_compiler *c, json_t *json, const camber_property *property, uint32_t *root) {
     if (json_is_object(json))
         return camber_compile_function(c, json, property, root);
-    if (is_list(json) && property->type == CAMBER_TYPE_ARRAY && !c->strict)
+    if (is_list(property, json) && takes_lists(property->type) && !c->strict)
         return compile_list(c, json, property, root);
     if (json_is_string(json) && property->tokens && !c->strict)
         return camber_compile_tokens(c, json, property, root);
-    const bool fits = json_is_array(json) || (property->type == CAMBER_TYPE_NUMBER  ? json_is_number(json)
-                                              : property->type == CAMBER_TYPE_BOOL  ? json_is_boolean(json)
-                                              : property->type == CAMBER_TYPE_ARRAY ? false
-                                                                                    : json_is_string(json));
-    if (!fits && !c->strict) {
+    if (!json_is_array(json) && !takes_constant(property->type, json) && !c->strict) {
         char name[CAMBER_TYPING_TEXT_SIZE];
         return camber_compiler_fail(c, "expected %s or an expression, found %s; write e.g. %s",
                                     camber_typing_name(camber_property_typing(property), name), camber_json_name(json),
@@ -172,7 +188,7 @@ bool camber_compile_property(camber_compiler *c, json_t *json, const camber_prop
     if (!camber_expression_begin(c, json))
         return false;
     const bool done = compile_value(c, json, property, &root) && check_property(c, property, root) &&
-                      (c->strict || is_list(json) || camber_is_constant(camber_node_at(c, root)) ||
+                      (c->strict || is_list(property, json) || camber_is_constant(camber_node_at(c, root)) ||
                        !json_is_array(json) || check_outputs(c, property, json));
     return camber_expression_end(c, done, root, expression);
 }

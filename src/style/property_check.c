@@ -45,9 +45,14 @@ static bool check_range(camber_compiler *c, const camber_property *property, con
     return camber_compiler_fail(c, "%g is out of range; use %s", value->number, write_range(property, range));
 }
 
+/* Whether a list is of dashes. */
+static bool is_dashes(const camber_property *property) {
+    return property->type == CAMBER_TYPE_ARRAY && property->item == CAMBER_TYPE_NUMBER && property->length == 0;
+}
+
 /* Tells who checks a style what an odd list of dashes means, since SVG has another rule. It is drawn without a word. */
 static void warn_of_odd_list(camber_compiler *c, const camber_property *property, size_t count) {
-    if (property->type != CAMBER_TYPE_ARRAY || property->length > 0 || count % 2 == 0 || !c->checks)
+    if (!is_dashes(property) || count % 2 == 0 || !c->checks)
         return;
     if (count == 1)
         camber_compiler_warn(c, "a list of one length is a solid line; add a gap, or leave the list out");
@@ -56,18 +61,22 @@ static void warn_of_odd_list(camber_compiler *c, const camber_property *property
                                 "if they should be apart");
 }
 
+static bool check_item(camber_compiler *c, const camber_property *property, const camber_value *item) {
+    if (item->type == CAMBER_VALUE_STRING && property->values)
+        return check_name(c, property, item->string);
+    return check_range(c, property, item);
+}
+
 bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value) {
-    if (value->type == CAMBER_VALUE_STRING && property->values)
-        return check_name(c, property, value->string);
-    if (value->type == CAMBER_VALUE_ARRAY && property->length == 0 && value->count > CAMBER_DASH_LENGTHS_MAX)
+    if (value->type == CAMBER_VALUE_ARRAY && is_dashes(property) && value->count > CAMBER_DASH_LENGTHS_MAX)
         camber_compiler_warn(c, "of %u lengths only the first %d are drawn; write fewer", value->count,
                              CAMBER_DASH_LENGTHS_MAX);
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
-        if (!check_range(c, property, &value->items[i]))
+        if (!check_item(c, property, &value->items[i]))
             return false;
     if (value->type == CAMBER_VALUE_ARRAY)
         warn_of_odd_list(c, property, value->count);
-    return check_range(c, property, value);
+    return check_item(c, property, value);
 }
 
 /* Warns of an output: when evaluated, a number out of range is clamped, and an unknown name becomes the default. */
@@ -95,9 +104,11 @@ bool camber_property_check_output(camber_compiler *c, const camber_property *pro
     warn_of_output(c, property, json);
     for (size_t i = 0; i < json_array_size(json); i++) {
         const json_t *item = json_array_get(json, i);
-        const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = json_number_value(item)};
+        const camber_value number = {.type = CAMBER_VALUE_NUMBER, .number = json_number_value(item)};
+        const camber_value name = {.type = CAMBER_VALUE_STRING, .string = json_string_value(item)};
         camber_compiler_enter_index(c, i);
-        if (json_is_number(item) && !check_range(c, property, &value))
+        if ((json_is_number(item) && !check_item(c, property, &number)) ||
+            (json_is_string(item) && !check_item(c, property, &name)))
             return false;
         camber_compiler_leave(c);
     }

@@ -3,7 +3,7 @@
  * Input: a style whose layers are compiled. Output: what the schema says of layers. Its properties, and who reads them,
  * are added while the compiler meets them. */
 #include "features/features.h"
-#include "style/style.h"
+#include "style/symbol.h"
 
 #include <string.h>
 
@@ -18,6 +18,14 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind) {
     return 0;
 }
 
+static void find_label_wants(const camber_style_layer *layer, camber_schema *schema) {
+    if (!layer->properties[CAMBER_TEXT_FIELD] && !layer->properties[CAMBER_ICON_IMAGE])
+        return;
+    schema->wants_label_lines |= camber_style_layer_may_take(layer, "LineString");
+    schema->wants_label_areas |= camber_style_layer_may_take(layer, "Polygon");
+    schema->wants_label_points |= camber_style_layer_may_take(layer, "Point");
+}
+
 /* Finds what else than lines is drawn of the features. */
 static void find_wants(const camber_style *style, camber_schema *schema) {
     schema->wants_polygons = schema->wants_areas = schema->wants_points = false;
@@ -25,6 +33,10 @@ static void find_wants(const camber_style *style, camber_schema *schema) {
     schema->wants_plain = schema->wants_plain_areas = schema->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
+        if (layer->kind == CAMBER_LAYER_SYMBOL) {
+            find_label_wants(layer, schema);
+            continue;
+        }
         const bool polygons = layer->kind != CAMBER_LAYER_BACKGROUND && camber_style_layer_may_take(layer, "Polygon");
         const bool fills = polygons && layer->kind == CAMBER_LAYER_FILL, circles = layer->kind == CAMBER_LAYER_CIRCLE;
         const bool outlines = polygons && (!fills || layer->properties[CAMBER_FILL_OUTLINE_COLOR]);
@@ -58,7 +70,8 @@ static void list_source_layers(const camber_style *style, camber_schema *schema)
     schema->label_source_layer_count = ends[LABELLED] - ends[DRAWN];
 }
 
-/* Whether a layer that is not plain draws the feature. Lines draw points only in layers that are plain. */
+/* Whether a layer that is not plain draws the feature. Lines draw points only in layers that are plain, and symbol
+ * layers only what is read for labels. */
 static bool takes(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature) {
     for (size_t i = 0; i < style->layer_count; i++) {
@@ -66,7 +79,8 @@ static bool takes(const camber_style *style, camber_geometry_kind kind, const ch
         const bool fits = kind == CAMBER_GEOMETRY_POINT ? layer->kind == CAMBER_LAYER_CIRCLE
                                                         : camber_style_layer_kinds(layer->kind) >> kind & 1;
         if (fits && !layer->plain && (!layer->source_layer || strcmp(layer->source_layer, source_layer) == 0) &&
-            camber_style_layer_takes(layer, feature))
+            camber_style_layer_takes(layer, feature) &&
+            (layer->kind != CAMBER_LAYER_SYMBOL || camber_style_layer_may_label(layer, feature)))
             return true;
     }
     return false;

@@ -1,4 +1,4 @@
-/* What a symbol layer says of a feature's label: its text, its icon, where they go, and how they are drawn. */
+/* A symbol layer's answer for a feature: its text, its icon, where they go, and how they are drawn. */
 #ifndef CAMBER_STYLE_SYMBOL_H
 #define CAMBER_STYLE_SYMBOL_H
 
@@ -24,7 +24,7 @@ typedef enum camber_symbol_overlap {
     CAMBER_OVERLAP_COOPERATIVE, /* with others that are cooperative or always */
 } camber_symbol_overlap;
 
-/* What text or an icon turns and tilts with. AUTO has been resolved by the placement. */
+/* Text or an icon turns and tilts with one of these. The specification's "auto" has been resolved by the placement. */
 typedef enum camber_symbol_alignment {
     CAMBER_ALIGN_MAP = 0,
     CAMBER_ALIGN_VIEWPORT,
@@ -38,7 +38,7 @@ typedef enum camber_icon_text_fit {
     CAMBER_FIT_BOTH = 3,
 } camber_icon_text_fit;
 
-/* What text and icons have in common. Lengths are CSS px if the name does not say otherwise. */
+/* Both text and icons have these. Lengths are CSS px if the name does not say otherwise. */
 typedef struct camber_symbol_part {
     camber_symbol_overlap overlap;
     bool ignore_placement; /* others may be placed over it */
@@ -57,8 +57,8 @@ typedef struct camber_symbol_part {
 
 /* A part of a text, or an image in it: one section of "format". */
 typedef struct camber_symbol_section {
-    const char *text;  /* after text-transform. NULL: an image */
-    const char *image; /* its name. NULL: text */
+    const char *text;         /* after text-transform. NULL: an image */
+    const char *image;        /* its name. NULL: text */
     const char *const *fonts; /* font_count names */
     size_t font_count;
     double scale;
@@ -88,7 +88,8 @@ typedef struct camber_symbol {
     camber_symbol_section *sections; /* section_count of them. 0: no text */
     size_t section_count;
     double text_size_px;
-    double max_width_em, line_height_em, letter_spacing_em;
+    double max_width_em; /* 0 along lines, where text does not break */
+    double line_height_em, letter_spacing_em;
     camber_text_justify justify;
     camber_text_anchor text_anchor;
     double text_offset_em[2];
@@ -110,5 +111,9 @@ typedef struct camber_symbol {
  * evaluated has its default. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_layer_look_symbol(const camber_layer_look *look, const camber_feature_view *feature,
                                        const camber_style_images *images, camber_arena *arena, camber_symbol *symbol);
+/* Whether a symbol layer may have a text or an icon for a feature at any zoom. */
+bool camber_style_layer_may_label(const camber_style_layer *layer, const camber_feature_view *feature);
+/* Whether a symbol layer may name images: icons, or images among text. */
+bool camber_style_layer_names_images(const camber_style_layer *layer);
 
 #endif

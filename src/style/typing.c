@@ -60,9 +60,10 @@ camber_typing camber_typing_of_value(const camber_value *value) {
     case CAMBER_VALUE_NULL: return camber_typing_of(CAMBER_TYPE_NULL);
     case CAMBER_VALUE_BOOL: return camber_typing_of(CAMBER_TYPE_BOOL);
     case CAMBER_VALUE_NUMBER: return camber_typing_of(CAMBER_TYPE_NUMBER);
-    case CAMBER_VALUE_STRING: return camber_typing_of(CAMBER_TYPE_STRING);
+    case CAMBER_VALUE_STRING: return camber_typing_of(value->boolean ? CAMBER_TYPE_IMAGE : CAMBER_TYPE_STRING);
     case CAMBER_VALUE_COLOR: return camber_typing_of(CAMBER_TYPE_COLOR);
     case CAMBER_VALUE_ARRAY: return typing_of_items(value, 1);
+    case CAMBER_VALUE_FORMATTED: return camber_typing_of(CAMBER_TYPE_FORMATTED);
     case CAMBER_VALUE_OBJECT: break;
     }
     return camber_typing_of(CAMBER_TYPE_OBJECT);
@@ -99,6 +100,9 @@ static const char *name_of(camber_type type) {
     case CAMBER_TYPE_ARRAY: return "array";
     case CAMBER_TYPE_OBJECT: return "object";
     case CAMBER_TYPE_IMAGE: return "resolvedImage";
+    case CAMBER_TYPE_FORMATTED: return "formatted";
+    case CAMBER_TYPE_PADDING: return "padding";
+    case CAMBER_TYPE_ANCHORS: return "variableAnchorOffsetCollection";
     case CAMBER_TYPE_COLLATOR: return "collator";
     case CAMBER_TYPE_ERROR: break;
     }
@@ -125,10 +129,13 @@ const char *camber_typing_write(camber_typing typing, char text[CAMBER_TYPING_TE
 
 const char *camber_typing_name(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]) {
     static const char *const names[] = {
-        [CAMBER_TYPE_VALUE] = "any value",     [CAMBER_TYPE_NULL] = "null",       [CAMBER_TYPE_BOOL] = "a boolean",
-        [CAMBER_TYPE_NUMBER] = "a number",     [CAMBER_TYPE_STRING] = "a string", [CAMBER_TYPE_COLOR] = "a colour",
-        [CAMBER_TYPE_OBJECT] = "an object",    [CAMBER_TYPE_IMAGE] = "an image",  [CAMBER_TYPE_ARRAY] = "an array",
-        [CAMBER_TYPE_COLLATOR] = "a collator", [CAMBER_TYPE_ERROR] = "an error"};
+        [CAMBER_TYPE_VALUE] = "any value",   [CAMBER_TYPE_NULL] = "null",
+        [CAMBER_TYPE_BOOL] = "a boolean",    [CAMBER_TYPE_NUMBER] = "a number",
+        [CAMBER_TYPE_STRING] = "a string",   [CAMBER_TYPE_COLOR] = "a colour",
+        [CAMBER_TYPE_OBJECT] = "an object",  [CAMBER_TYPE_IMAGE] = "an image",
+        [CAMBER_TYPE_ARRAY] = "an array",    [CAMBER_TYPE_COLLATOR] = "a collator",
+        [CAMBER_TYPE_ERROR] = "an error",    [CAMBER_TYPE_FORMATTED] = "a formatted text",
+        [CAMBER_TYPE_PADDING] = "a padding", [CAMBER_TYPE_ANCHORS] = "anchors with offsets"};
     if (typing.type != CAMBER_TYPE_ARRAY)
         return names[typing.type];
     char whole[CAMBER_TYPING_TEXT_SIZE];

@@ -13,7 +13,10 @@ typedef enum camber_type {
     CAMBER_TYPE_COLOR,
     CAMBER_TYPE_ARRAY,
     CAMBER_TYPE_OBJECT,
-    CAMBER_TYPE_IMAGE,    /* a string that names one */
+    CAMBER_TYPE_IMAGE, /* a string that names one, so marked (value.h) */
+    CAMBER_TYPE_FORMATTED,
+    CAMBER_TYPE_PADDING,  /* four numbers: top, right, bottom, left */
+    CAMBER_TYPE_ANCHORS,  /* an array of an anchor's name, its offset, the next name, ... */
     CAMBER_TYPE_COLLATOR, /* how strings are compared; its value is a number */
     CAMBER_TYPE_ERROR,    /* has no value, so it fits anywhere */
 } camber_type;

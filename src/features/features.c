@@ -173,10 +173,14 @@ static camber_property_readers readers_of(const camber_schema *schema, size_t pr
                                     : (camber_property_readers){UINT_MAX, UINT_MAX};
 }
 
-bool camber_features_reads_property(const camber_features *features, size_t property) {
-    const camber_property_readers readers = readers_of(features->schema, property);
+bool camber_schema_draws_property(const camber_schema *schema, size_t property) {
+    const camber_property_readers readers = readers_of(schema, property);
     const unsigned kinds = readers.kinds | readers.named_kinds;
-    return features->wants_labels || !kinds || kinds & ~(unsigned)CAMBER_KINDS_OF_LABELS;
+    return !kinds || kinds & ~(unsigned)CAMBER_KINDS_OF_LABELS;
+}
+
+bool camber_features_reads_property(const camber_features *features, size_t property) {
+    return features->wants_labels || camber_schema_draws_property(features->schema, property);
 }
 
 static bool reads_the_same(const camber_schema *one, const camber_schema *other) {

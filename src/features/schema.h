@@ -104,6 +104,8 @@ typedef struct camber_schema {
 
 /* Whether the style has a layer of its own for this source layer, so that it knows what the layer holds. */
 bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer);
+/* Whether other layers than symbol layers read a property, or the filter of a source does. */
+bool camber_schema_draws_property(const camber_schema *schema, size_t property);
 /* Whether visible layers name it, but none except symbol layers. */
 bool camber_schema_only_labels_layer(const camber_schema *schema, const char *source_layer);
 

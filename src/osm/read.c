@@ -36,6 +36,7 @@ typedef struct reader {
     camber_osm_coast coast; /* its ways, where the sea is wanted */
     size_t coast_key;       /* the style's property "natural"; SIZE_MAX: the sea is not wanted */
     const char *coastline;  /* its value on a coast, interned */
+    camber_value *values;   /* schema->property_count: a set of tags */
     uint32_t layer;
     unsigned kinds;                           /* CAMBER_KIND_*: those that are read */
     uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
@@ -126,8 +127,7 @@ static bool is_coast(const reader *self, const camber_osm_way *way) {
     const size_t set = way->tags / CAMBER_OSM_WAY_BITS;
     if (self->coast_key == SIZE_MAX || way->tags & CAMBER_OSM_WAY_BARE)
         return false;
-    const camber_value *value = self->ways.values + set * self->features->schema->property_count + self->coast_key;
-    return value->type == CAMBER_VALUE_STRING && value->string == self->coastline;
+    return self->ways.values[set * self->features->schema->property_count + self->coast_key] == self->coastline;
 }
 
 /* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
@@ -184,8 +184,12 @@ static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
 static camber_status find_class(reader *self, uint32_t set, camber_geometry_kind kind, uint32_t *index) {
     uint32_t *known = &self->classes[kind][set];
     if (*known == 0) {
-        const camber_status status = camber_features_find_class(
-            self->features, self->layer, kind, self->ways.values + set * self->features->schema->property_count, index);
+        const size_t count = self->features->schema->property_count;
+        const char *const *tags = self->ways.values + set * count;
+        for (size_t i = 0; i < count; i++)
+            self->values[i] =
+                (camber_value){.type = tags[i] ? CAMBER_VALUE_STRING : CAMBER_VALUE_NULL, .string = tags[i]};
+        const camber_status status = camber_features_find_class(self->features, self->layer, kind, self->values, index);
         if (status != CAMBER_OK)
             return status;
         *known = *index + 1;
@@ -435,6 +439,8 @@ static camber_status make_lines(reader *self) {
     camber_features *features = self->features;
     camber_osm_ways *ways = &self->ways;
     bool declined;
+    if (!(self->values = camber_alloc(self->context, features->schema->property_count, sizeof *self->values)))
+        return CAMBER_ERROR_MEMORY;
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS; kind++)
         if (!(self->classes[kind] = camber_alloc_zero(self->context, ways->set_count, sizeof **self->classes)))
             return CAMBER_ERROR_MEMORY;
@@ -561,7 +567,7 @@ static camber_status want_sea(reader *self, camber_osm_box box) {
     self->coast.box = box;
     self->coast_key = SIZE_MAX;
     for (size_t i = 0; i < schema->property_count && wanted; i++)
-        if (strcmp(schema->properties[i], "natural") == 0)
+        if (strcmp(schema->properties[i], "natural") == 0 && camber_schema_draws_property(schema, i))
             self->coast_key = i;
     return camber_features_intern(self->features, "coastline", &self->coastline);
 }
@@ -601,6 +607,7 @@ static camber_status read_lines(reader *self, bool *declined) {
     camber_osm_file_close(&file);
     for (int kind = 0; kind < CAMBER_GEOMETRY_KINDS; kind++)
         camber_free(self->context, self->classes[kind]);
+    camber_free(self->context, self->values);
     return status;
 }
 

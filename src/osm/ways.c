@@ -723,8 +723,8 @@ static bool read_points(void *user, camber_osm_pass *pass, size_t part, void *sl
 
 /* ---- The blocks' ways become the file's ---- */
 
-static camber_status intern(camber_osm_ways *ways, const block *from, uint32_t string, camber_value *value) {
-    *value = (camber_value){0};
+static camber_status intern(camber_osm_ways *ways, const block *from, uint32_t string, const char **value) {
+    *value = NULL;
     if (string == NO_STRING)
         return CAMBER_OK;
     const camber_wire text = string_at(from, string);
@@ -734,21 +734,20 @@ static camber_status intern(camber_osm_ways *ways, const block *from, uint32_t s
     if (length)
         memcpy(ways->text, text.at, length);
     ways->text[length] = 0;
-    value->type = CAMBER_VALUE_STRING;
-    return camber_features_intern(ways->features, ways->text, &value->string);
+    return camber_features_intern(ways->features, ways->text, value);
 }
 
 /* Interned strings are equal where their pointers are. */
-static size_t hash_values(const camber_value *values, size_t count) {
+static size_t hash_values(const char *const *values, size_t count) {
     uint64_t hash = 0;
     for (size_t i = 0; i < count; i++)
-        hash = camber_mix(hash, values[i].type == CAMBER_VALUE_STRING ? (uintptr_t)values[i].string : values[i].type);
+        hash = camber_mix(hash, (uintptr_t)values[i]);
     return (size_t)(hash ^ hash >> 32);
 }
 
-static bool equal_values(const camber_value *a, const camber_value *b, size_t count) {
+static bool equal_values(const char *const *a, const char *const *b, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (a[i].type != b[i].type || (a[i].type == CAMBER_VALUE_STRING && a[i].string != b[i].string))
+        if (a[i] != b[i])
             return false;
     return true;
 }
@@ -780,7 +779,7 @@ static camber_status add_set(camber_osm_ways *ways, const block *from, const uin
     if (!camber_grow(ways->context, &ways->values, &ways->value_capacity, (ways->set_count + 1) * count,
                      sizeof *ways->values))
         return CAMBER_ERROR_MEMORY;
-    camber_value *values = ways->values + ways->set_count * count;
+    const char **values = ways->values + ways->set_count * count;
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = intern(ways, from, strings[i], &values[i]);

@@ -70,7 +70,7 @@ typedef struct camber_osm_ways {
     size_t point_count, point_capacity;
 
     /* Sets of tags that differ in what the style reads. */
-    camber_value *values; /* set_count * schema->property_count */
+    const char **values; /* set_count * schema->property_count, interned. NULL: it does not have the key */
     size_t set_count, value_capacity;
     uint32_t *slots; /* a hash table: index + 1; 0: free */
     size_t slot_count;

@@ -27,8 +27,10 @@ static const char style_text[] =
 /* A point of a place on earth is one of the unit square; a polyline has points. */
 static void check_features(const camber_features *features) {
     const camber_features_stats stats = camber_features_get_stats(features);
-    REQUIRE(stats.features == features->feature_count && stats.points == features->point_count);
-    REQUIRE(stats.polylines == features->polyline_count);
+    const bool labels = features->wants_labels;
+    REQUIRE(stats.features == camber_features_count_drawn(features));
+    REQUIRE(labels || (stats.points == features->point_count && stats.polylines == features->polyline_count));
+    REQUIRE(stats.points <= features->point_count && stats.polylines <= features->polyline_count);
     size_t counted = 0;
     for (size_t i = 0; i < features->polyline_count; i++) {
         counted += features->feature_counts[i];
@@ -39,7 +41,7 @@ static void check_features(const camber_features *features) {
     /* Areas go on beyond the edges of the world. */
     for (size_t i = 0; i < 2 * features->point_count; i++)
         REQUIRE((features->points[i] >= 0.0 && features->points[i] <= 1.0) ||
-                (features->style->schema.wants_areas && i % 2 == 0 && fabs(features->points[i]) <= 2.0));
+                ((labels || features->style->schema.wants_areas) && i % 2 == 0 && fabs(features->points[i]) <= 2.0));
     fuzz_check_areas(features);
     REQUIRE(counted == features->feature_count);
     for (size_t i = 0; i < features->point_count; i++)
@@ -68,6 +70,8 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         fuzz_done(run, camber_features_create(run->context, style, &features))) {
         style->schema.wants_areas = run->hash >> 5 & 1;
         style->schema.wants_points = run->hash >> 6 & 1;
+        if (run->hash >> 7 & 1)
+            fuzz_want_labels(features, style);
         const camber_source_desc desc = {.path = path, .where = run->hash % 16 == 1 ? "level > 1" : NULL};
         const bool read = fuzz_done(run, camber_features_read(features, &desc));
         REQUIRE(read || features->point_count == 0);

@@ -142,6 +142,8 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         bool declined = false;
         style->schema.wants_areas = run->hash & 1;
         style->schema.wants_points = run->hash >> 1 & 1;
+        if (run->hash >> 3 & 1)
+            fuzz_want_labels(features, style);
         const bool read = fuzz_done(run, camber_osm_reader.read(features, &desc, &declined));
         const camber_features_stats stats = camber_features_get_stats(features);
         REQUIRE((read && !declined) || stats.points == 0);

@@ -1,6 +1,7 @@
 #include "fuzz_scene.h"
 
 #include "features/rings.h"
+#include "style/style.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,11 +10,24 @@ void fuzz_check_areas(const camber_features *features) {
     for (size_t i = 0; i < features->polyline_count; i++) {
         const size_t first = features->offsets[i], count = features->offsets[i + 1] - first;
         const double *ring = features->points + 2 * first;
-        if (camber_features_kind(features, i) != CAMBER_GEOMETRY_AREA)
+        if (!camber_geometry_is_area(camber_features_kind(features, i)))
             continue;
         REQUIRE(count >= 4 && memcmp(ring, ring + 2 * (count - 1), 2 * sizeof *ring) == 0);
         REQUIRE(!camber_ring_is_flat(ring, count));
     }
+}
+
+static bool takes_all(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
+                      const camber_feature_view *feature) {
+    REQUIRE(style && source_layer && feature->geometry_type == camber_geometry_type(kind));
+    return true;
+}
+
+void fuzz_want_labels(camber_features *features, camber_style *style) {
+    camber_schema *schema = &style->schema;
+    schema->wants_label_lines = schema->wants_label_areas = schema->wants_label_points = true;
+    schema->takes = takes_all;
+    camber_features_want_labels(features);
 }
 
 static void check_color(camber_color c) {

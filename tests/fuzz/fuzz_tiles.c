@@ -41,6 +41,8 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
                             .unsorted = run->hash >> 17 & 1};
     camber_mvt *mvt = NULL;
     bool done = fuzz_done(run, camber_tile_stitcher_create(run->context, place.zoom, &desc.stitcher)) &&
+                (!features->wants_labels ||
+                 fuzz_done(run, camber_tile_stitcher_create(run->context, place.zoom, &desc.labels))) &&
                 fuzz_done(run, camber_mvt_create(run->context, &desc, &mvt));
     /* Twice, so that pieces of equal features meet. */
     for (uint32_t column = 0; column < 2 && done && column < 1u << place.zoom; column++) {
@@ -49,6 +51,7 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
         done = fuzz_done(run, camber_mvt_read(mvt, &at, bytes, size));
     }
     if (done && fuzz_done(run, camber_tile_stitcher_finish(desc.stitcher, features)) &&
+        (!desc.labels || fuzz_done(run, camber_tile_stitcher_finish_labels(desc.labels, features))) &&
         fuzz_done(run, camber_features_set_importance(features, 0))) {
         const camber_view_desc view = {.width = 100, .height = 100};
         camber_features_pin_borders(features, 0, place.zoom);
@@ -56,6 +59,7 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
         fuzz_scene(run, features, &(camber_scene_desc){.view = view});
     }
     camber_mvt_destroy(mvt);
+    camber_tile_stitcher_destroy(desc.labels);
     camber_tile_stitcher_destroy(desc.stitcher);
 }
 
@@ -65,8 +69,11 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     if (fuzz_done(run, camber_style_parse(run->context, style_text, strlen(style_text), "fuzz", &style))) {
         style->schema.wants_id = run->hash >> 20 & 1;
         style->schema.wants_all_properties = run->hash >> 21 & 1;
-        if (fuzz_done(run, camber_features_create(run->context, style, &features)))
+        if (fuzz_done(run, camber_features_create(run->context, style, &features))) {
+            if (run->hash >> 22 & 1)
+                fuzz_want_labels(features, style);
             read_tile(run, features, bytes, size);
+        }
     }
     camber_features_destroy(features);
     camber_style_destroy(style);

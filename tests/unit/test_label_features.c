@@ -417,7 +417,7 @@ static void test_tiles(void **state) {
     }
 }
 
-/* ---- What is made of a set ---- */
+/* ---- Plans, bounds, other styles ---- */
 
 /* Labels have neither rows nor entries, and nothing that they have is undrawn. */
 static void test_plan(void **state) {

@@ -119,6 +119,8 @@ static camber_features *read_region(file_reading *it, const char *path, const ca
     features->has_region = region != NULL;
     if (region)
         features->region = *region;
+    if (it->style.schema.wants_label_lines)
+        camber_features_want_labels(features);
     expect_ok(it, camber_features_read(features, &desc));
     return features;
 }
@@ -177,6 +179,46 @@ static void test_indexed_files(void **state) {
         print_message("%s: %zu lines in 40 regions, %zu of them empty; %zu in the file\n", file->name, lines, empty,
                       all);
         assert_true(lines > 500 && empty > 2 && empty < 30 && all > 400);
+    }
+}
+
+static bool takes_all(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
+                      const camber_feature_view *feature) {
+    (void)style;
+    (void)kind;
+    (void)source_layer;
+    (void)feature;
+    return true;
+}
+
+/* Labels have other classes than lines, and so others of their lines are merged. */
+static void test_indexed_labels(void **state) {
+    static camber_property_readers readers[] = {{CAMBER_KINDS_OF_LABELS, CAMBER_KINDS_OF_LABELS}};
+    file_reading *it = *state;
+    char source[128], indexed[128], plain[128];
+    it->style.schema.wants_label_lines = it->style.schema.wants_label_areas = it->style.schema.wants_label_points =
+        true;
+    it->style.schema.property_readers = readers;
+    it->style.schema.takes = takes_all;
+    snprintf(source, sizeof source, "%s", in_folder(it, "source.json"));
+    snprintf(plain, sizeof plain, "%s", in_folder(it, "plain.geojson"));
+    snprintf(indexed, sizeof indexed, "%s", in_folder(it, "degrees.fgb"));
+    for (int mosaic = 0; mosaic < 2; mosaic++) {
+        uint64_t seed = 5;
+        if (mosaic)
+            mosaic_write(source, 7.0, 46.0);
+        else
+            network_write(source, 7.0, 46.0, 40, 1500, false);
+        indexed_file_write(&indexed_files[0], source, indexed, plain);
+        for (int k = 0; k < 8; k++) {
+            const double size = k % 2 ? 0.3 : 1.2, west = camber_random_between(&seed, 6.8, 10.0),
+                         south = camber_random_between(&seed, 45.8, 49.0);
+            const camber_region region = region_of(west, south, west + size, south + 0.7 * size);
+            it->style.schema.directed = k % 3 == 0;
+            it->keep_apart = k % 4 == 0;
+            it->style.schema.wants_areas = k % 3 == 1;
+            (void)expect_as_whole(it, indexed, plain, &region, false);
+        }
     }
 }
 
@@ -286,6 +328,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_bounds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_indexed_files, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_indexed_areas, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_indexed_labels, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_indexed_antimeridian, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_filter_and_two_files, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_no_lines, set_up, tear_down),

@@ -131,7 +131,7 @@ camber_status camber_font_index_open(camber_font_index *index, size_t number, ca
                 : camber_face_open(index->context, entry->path, entry->index, &entry->face);
         camber_log_restore(index->context, &kept);
         if (status == CAMBER_ERROR_MEMORY)
-            return status;
+            return camber_fail(index->context, status, "%s: there is no memory to open this font", entry->path);
         entry->is_broken = status != CAMBER_OK;
         if (status)
             camber_log(index->context, CAMBER_LOG_WARNING, "%s: this font cannot be read: other fonts draw its text",

@@ -89,15 +89,19 @@ void camber_fonts_destroy(camber_fonts *fonts) {
     camber_free(context, fonts);
 }
 
-/* Whether a warning has not been given yet. Without memory there is none. */
+/* Whether a warning has not been given yet. Without memory to note that, it is not given. */
 static bool is_news(camber_fonts *fonts, uint64_t key) {
     for (size_t i = 0; i < fonts->told_count; i++)
         if (fonts->told[i] == key)
             return false;
-    if (!camber_grow(fonts->context, &fonts->told, &fonts->told_capacity, fonts->told_count + 1, sizeof *fonts->told))
-        return false;
-    fonts->told[fonts->told_count++] = key;
-    return true;
+    camber_soft_log kept;
+    camber_log_soften(fonts->context, &kept);
+    const bool has_room =
+        camber_grow(fonts->context, &fonts->told, &fonts->told_capacity, fonts->told_count + 1, sizeof *fonts->told);
+    camber_log_restore(fonts->context, &kept);
+    if (has_room)
+        fonts->told[fonts->told_count++] = key;
+    return has_room;
 }
 
 /* ---- Sources ---- */
@@ -143,10 +147,7 @@ static camber_status fill_index(camber_fonts *fonts) {
 }
 
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code) {
-    bool has = false;
-    if (source->face)
-        return camber_face_has(source->face, code);
-    return camber_glyph_ranges_has(source->ranges, code, &has) == CAMBER_OK && has;
+    return source->face ? camber_face_has(source->face, code) : camber_glyph_ranges_has(source->ranges, code);
 }
 
 camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint32_t number, uint32_t *glyph) {
@@ -371,15 +372,15 @@ static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stac
 /* Goes through all fonts. */
 static camber_status find_source_of(camber_fonts *fonts, camber_font_stack *stack, uint32_t code, uint32_t *source) {
     *source = CAMBER_NO_SOURCE;
-    bool has = false;
-    camber_status status = CAMBER_OK;
-    if (stack->ranges_source != CAMBER_NO_SOURCE)
-        status = camber_glyph_ranges_has(fonts->sources[stack->ranges_source].ranges, code, &has);
-    if (status || has) {
-        *source = stack->ranges_source;
-        return status;
+    if (stack->ranges_source != CAMBER_NO_SOURCE) {
+        camber_glyph_ranges *ranges = fonts->sources[stack->ranges_source].ranges;
+        const bool has = camber_glyph_ranges_has(ranges, code);
+        if (has || ranges->status) {
+            *source = stack->ranges_source;
+            return ranges->status;
+        }
     }
-    status = resolve(fonts, stack);
+    camber_status status = resolve(fonts, stack);
     for (size_t i = 0; i < stack->named_count && !status && *source == CAMBER_NO_SOURCE; i++)
         if (camber_glyph_source_has(&fonts->sources[stack->named[i]], code))
             *source = stack->named[i];

@@ -8,8 +8,8 @@
 
 #include <math.h>
 
-/* How far outside of the picture an anchor may be whose label comes into it, CSS px. */
-static const double REACH_PX = 512.0;
+/* How far outside of the picture an anchor may be at most whose label comes into it, CSS px. */
+static const double REACH_PX = 320.0;
 
 /* Lines are simplified as they are drawn, device px. */
 static const double SIMPLIFY_PX = 0.25;
@@ -23,7 +23,8 @@ typedef struct thing {
 
 typedef struct layout_maker {
     camber_label_layout *layout;
-    camber_box seen; /* world coordinates */
+    camber_box corners; /* of what is seen, world coordinates */
+    camber_box seen;    /* with the reach of the labels in hand */
     double least_importance;
     thing *things; /* sorted by class */
     size_t thing_count, thing_capacity;
@@ -45,15 +46,20 @@ static bool is_label(camber_geometry_kind kind) {
            kind == CAMBER_GEOMETRY_LABEL_POINT;
 }
 
-/* The quadrangle that is seen, with the reach of labels. */
-static camber_box find_seen(const camber_label_layout *layout) {
+/* The box of the quadrangle that is seen. */
+static camber_box find_corners(const camber_label_layout *layout) {
     double corners[8];
     camber_view_corners(layout->view, corners);
     camber_box box = CAMBER_BOX_EMPTY;
     for (int i = 0; i < 4; i++)
         camber_box_add(&box, corners[2 * i], corners[2 * i + 1]);
-    const double reach = REACH_PX * layout->view->ratio / layout->view->scale_px;
-    return (camber_box){box.x0 - reach, box.y0 - reach, box.x1 + reach, box.y1 + reach};
+    return box;
+}
+
+/* Widens what is seen by a reach in device px. */
+static void set_reach(layout_maker *m, double reach_px) {
+    const double reach = reach_px / m->layout->view->scale_px;
+    m->seen = (camber_box){m->corners.x0 - reach, m->corners.y0 - reach, m->corners.x1 + reach, m->corners.y1 + reach};
 }
 
 static uint8_t find_worlds(const layout_maker *m, const camber_box *box) {
@@ -128,7 +134,12 @@ static camber_status sort_things(layout_maker *m) {
 
 /* ---- Candidates ---- */
 
-/* Adds the form of the class in hand at a place of the world. line NULL: it stands on none. */
+static bool is_in(const camber_box *box, double x, double y) {
+    return x >= box->x0 && x <= box->x1 && y >= box->y0 && y <= box->y1;
+}
+
+/* Adds the form of the class in hand at a place of the world, if that is near enough to what is seen. on_line: it
+ * stands on this line and segment. NULL: on none. */
 static camber_status add_candidate(layout_maker *m, const thing *t, const double world[2], double shift,
                                    const camber_label_candidate *on_line) {
     camber_label_layout *l = m->layout;
@@ -139,7 +150,7 @@ static camber_status add_candidate(layout_maker *m, const thing *t, const double
     }
     double px[2];
     camber_view_project(l->view, world[0] + shift, world[1], px);
-    if (!isfinite(px[0]) || !isfinite(px[1]))
+    if (!isfinite(px[0]) || !isfinite(px[1]) || !is_in(&m->seen, world[0] + shift, world[1]))
         return CAMBER_OK;
     made.x = px[0];
     made.y = px[1];
@@ -286,6 +297,9 @@ static camber_status anchor_point(layout_maker *m, const thing *t, const double 
 /* Anchors the polygon whose rings are from first up to end. */
 static camber_status anchor_polygon(layout_maker *m, const thing *t, size_t first, size_t end) {
     const camber_features *f = m->layout->features;
+    const camber_box box = box_of(f, first, first + 1);
+    if (box.x0 > box.x1 || !find_worlds(m, &box))
+        return CAMBER_OK;
     const double scale = m->layout->view->scale_px, *origin = f->points + 2 * f->offsets[first];
     if (!make_room(m, f->offsets[end] - f->offsets[first]) ||
         !camber_grow(f->context, &m->ring_offsets, &m->ring_capacity, end - first + 1, sizeof *m->ring_offsets))
@@ -347,6 +361,28 @@ static camber_status anchor_thing(layout_maker *m, const thing *t) {
 
 /* ---- Layers ---- */
 
+static double farthest(const camber_box *box) {
+    return fmax(fmax(fabs(box->x0), fabs(box->x1)), fmax(fabs(box->y0), fabs(box->y1)));
+}
+
+/* How far from its anchor a label of the form reaches that pushes others aside, px. */
+static double reach_of(const camber_label_layout *l, uint32_t form_index) {
+    const camber_label_form *form = l->forms + form_index;
+    const camber_label_rule *rule = l->rules + form->rule;
+    const camber_label_candidate c = {.form = form_index};
+    double reach = 0.0;
+    for (size_t i = 0; i < rule->anchor_count && form->text; i++) {
+        const camber_box box = camber_label_text_box(l, &c, false, i);
+        reach = fmax(reach, farthest(&box) + fabs(rule->text_translate_px[0]) + fabs(rule->text_translate_px[1]));
+    }
+    if (form->icon) {
+        const camber_box box = camber_label_icon_box(l, &c, false, 0);
+        reach = fmax(reach, farthest(&box) + fabs(rule->icon_translate_px[0]) + fabs(rule->icon_translate_px[1]));
+    }
+    /* A turned box reaches farther, and what is near the camera is larger. */
+    return (l->lens.pitched ? 3.0 : 1.5) * reach + CAMBER_LABEL_MARGIN_PX * l->view->ratio;
+}
+
 static camber_status lay_out_class(layout_maker *m, uint32_t class_index) {
     const camber_features *f = m->layout->features;
     const camber_feature_class *class = f->classes + class_index;
@@ -358,6 +394,7 @@ static camber_status lay_out_class(layout_maker *m, uint32_t class_index) {
     camber_status status = camber_label_form_make(m->layout, m->look, class, &m->form);
     if (status != CAMBER_OK || m->form == CAMBER_NO_FORM)
         return status;
+    set_reach(m, fmin(reach_of(m->layout, m->form), REACH_PX * m->layout->view->ratio));
     for (size_t i = m->class_things[class_index]; i < m->class_things[class_index + 1] && status == CAMBER_OK; i++)
         status = anchor_thing(m, m->things + i);
     return status;
@@ -387,10 +424,11 @@ static camber_status lay_out_layer(layout_maker *m, size_t index, double zoom) {
 camber_status camber_label_layout_make(camber_label_layout *layout) {
     const double zoom = camber_view_style_zoom(layout->view);
     layout_maker m = {.layout = layout,
-                      .seen = find_seen(layout),
+                      .corners = find_corners(layout),
                       .least_importance = SIMPLIFY_PX / layout->view->scale_px,
                       .anchors.context = layout->context};
     layout->lens = camber_view_lens_of(layout->view);
+    set_reach(&m, REACH_PX * layout->view->ratio);
     camber_status status = find_things(&m);
     if (status == CAMBER_OK && m.thing_count) {
         status = sort_things(&m);

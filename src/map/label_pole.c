@@ -27,11 +27,14 @@ typedef struct pole_search {
 } pole_search;
 
 static double square_distance(const double *a, const double *b, double x, double y) {
-    const double dx = b[0] - a[0], dy = b[1] - a[1], length = dx * dx + dy * dy;
-    double t = length > 0.0 ? ((x - a[0]) * dx + (y - a[1]) * dy) / length : 0.0;
-    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-    const double px = a[0] + t * dx - x, py = a[1] + t * dy - y;
-    return px * px + py * py;
+    const double dx = b[0] - a[0], dy = b[1] - a[1], px = x - a[0], py = y - a[1];
+    const double along = px * dx + py * dy, length = dx * dx + dy * dy;
+    if (along <= 0.0)
+        return px * px + py * py;
+    if (along >= length)
+        return (x - b[0]) * (x - b[0]) + (y - b[1]) * (y - b[1]);
+    const double across = px * dy - py * dx;
+    return across * across / length;
 }
 
 static double distance_of(const pole_search *s, double x, double y) {
@@ -42,7 +45,8 @@ static double distance_of(const pole_search *s, double x, double y) {
             const double *a = s->points + 2 * i, *b = a + 2;
             if ((a[1] > y) != (b[1] > y) && x < (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]) + a[0])
                 inside = !inside;
-            least = fmin(least, square_distance(a, b, x, y));
+            const double distance = square_distance(a, b, x, y);
+            least = distance < least ? distance : least;
         }
     }
     return inside ? sqrt(least) : -sqrt(least);

@@ -53,10 +53,6 @@ static unsigned kinds_of(const camber_style_layer *layer, unsigned labels) {
         return (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_POINT : 0u) |
                (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LINE : 0u) |
                (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_POLYGON : 0u);
-    case CAMBER_LAYER_SYMBOL:
-        return (camber_style_layer_may_take(layer, "Point") ? CAMBER_KIND_LABEL_POINT : 0u) |
-               (camber_style_layer_may_take(layer, "LineString") ? CAMBER_KIND_LABEL_LINE : 0u) |
-               (camber_style_layer_may_take(layer, "Polygon") ? CAMBER_KIND_LABEL_AREA : 0u);
     case CAMBER_LAYER_FILL: break;
     }
     return CAMBER_KIND_AREA | (layer->properties[CAMBER_FILL_OUTLINE_COLOR] ? CAMBER_KIND_POLYGON : 0u);

@@ -1,3 +1,4 @@
+/* Opens fonts: maps their files, and asks HarfBuzz what is in them. */
 #include "text/outline.h"
 
 #include <errno.h>

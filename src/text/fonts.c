@@ -1,3 +1,6 @@
+/* Sets of fonts. A stack of fonts keeps, for each code point that a text has asked for, the source that draws it, so
+ * that a search goes through all fonts once for each character. The answer depends on the stack and the character only,
+ * never on earlier texts: a map looks the same whatever is drawn before it. */
 #include "text/fonts.h"
 
 #include <errno.h>
@@ -301,7 +304,7 @@ camber_status camber_fonts_find_stack(camber_fonts *fonts, const char *const *na
 
 /* ---- The source of a character ---- */
 
-/* Of the fonts in the folders that have a character, gives the one with the nearest style. */
+/* Gives the font of the folders that has a character, and whose style is the nearest. */
 static camber_status find_in_folders(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code,
                                      uint32_t *source) {
     float least = INFINITY;
@@ -349,7 +352,7 @@ static bool is_pictograph(uint32_t code) {
     return (code >= 0x1f000 && code <= 0x1faff) || (code >= 0x2600 && code <= 0x27bf);
 }
 
-/* What draws a character that no font has: the box of the stack's first font. */
+/* A character that no font has is drawn as the box of the stack's first font. */
 static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
     const bool is_left_out = is_pictograph(code);
     const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);

@@ -1,3 +1,6 @@
+/* Reads ranges of glyphs when a text asks for a character in them. Messages stay as protobuf unpacked them; a glyph's
+ * bitmap becomes rings when its outline is wanted. Glyphs outside of their range, metrics beyond
+ * MOST_METRIC_PX and bitmaps of another size than they say are left out. */
 #include "text/glyph_ranges.h"
 
 #include "text/contours.h"

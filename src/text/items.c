@@ -64,7 +64,7 @@ static bool is_same_item(const camber_character *a, const camber_character *b) {
            !a->is_image && !b->is_image && a->is_upright == b->is_upright && !b->begins_item;
 }
 
-/* The language of a text that has none: ideographs beside kana are Japanese, and beside hangul Korean. */
+/* The language of a text that has none: ideographs with kana are Japanese, and with hangul Korean. */
 static const char *guess_language(const camber_shaping *shaping) {
     bool has_ideographs = false;
     for (size_t i = 0; i < shaping->count; i++) {

@@ -15,7 +15,7 @@
 /* In place of an image. */
 #define CAMBER_IMAGE_CODE 0xfffcu
 
-/* From the middle of a line to the top of its ems, as MapLibre has it. */
+/* From the middle of a line to the top of its ems, as in MapLibre. */
 #define CAMBER_LINE_TOP_EM (-17.0f / 24.0f)
 
 typedef struct camber_character {

@@ -1,4 +1,4 @@
-/* Texts: glyphs beside those of hb-shape, levels beside Unicode's test file, lines, anchors, outlines, signed
+/* Texts: glyphs are compared with those of hb-shape, levels with Unicode's test file; lines, anchors, outlines, signed
  * distances, and text, fonts and glyphs that are hostile. */
 #include "core.h"
 
@@ -436,7 +436,7 @@ static void test_missing_font(void **state) {
     host_done(&m.h, m.context);
 }
 
-/* ---- What is hostile ---- */
+/* ---- Hostile input ---- */
 
 static double seconds(void) {
     struct timespec now;

@@ -10,7 +10,10 @@ class Camber < Formula
   depends_on "ninja" => :build
   depends_on "opencl-headers" => :build
   depends_on "pkgconf" => :build
+  depends_on "fontconfig"
+  depends_on "fribidi"
   depends_on "gdal"
+  depends_on "harfbuzz"
   depends_on "isa-l"
   depends_on "jansson"
   depends_on "libdeflate"

@@ -12,7 +12,8 @@ import sys
 
 from cffi import FFI
 
-HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_map.h", "camber_tiles.h")
+HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_map.h",
+           "camber_text.h", "camber_tiles.h")
 
 # Rows whose alphas leave their colours go to an array without Python, and so without its lock.
 HELPERS = """

@@ -76,7 +76,7 @@ typedef enum camber_text_justify {
     CAMBER_JUSTIFY_AUTO, /* towards the anchor's side */
 } camber_text_justify;
 
-/* How a run that is smaller than others of its line stands beside them. */
+/* How a run that is smaller than others of its line stands next to them. */
 typedef enum camber_text_align {
     CAMBER_ALIGN_BOTTOM = 0, /* on their baseline */
     CAMBER_ALIGN_CENTER,

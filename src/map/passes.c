@@ -31,6 +31,7 @@ typedef struct layer_run {
     camber_overlap overlap;
     bool opaque;
     const camber_plan_fill *fill; /* NULL: none; else nothing of the above */
+    const camber_label_range *labels; /* NULL: none; else nothing of the above */
 } layer_run;
 
 static bool draws(const camber_paint *paint) {
@@ -52,17 +53,25 @@ static bool layer_draws(const camber_numbering *n, const camber_plan_layer *laye
     return drawn;
 }
 
+/* Whether a range of labels is below a layer of the plan. Beyond the last one, all are. */
+static bool are_below(const camber_numbering *n, size_t range, size_t layer) {
+    return layer == n->plan->layer_count ||
+           n->labels->ranges[range].layer < (size_t)(n->plan->layers[layer].look.layer - n->style_layers);
+}
+
 /* Opaque layers whose polylines follow each other are drawn by one pass. A translucent layer has a pass of its own,
  * since it is flattened by itself; so has one of areas, since like fills of two layers would become one path. A layer
  * of areas with an opacity takes its outline along. Fills of the picture come between. */
 static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
-    size_t count = 0, fill = 0, counted = plan->layer_count;
+    size_t count = 0, fill = 0, range = 0, counted = plan->layer_count;
     *layer_count = 0;
     for (size_t i = 0; i <= plan->layer_count; i++) {
         bool opaque;
         for (; fill < plan->patterns.fill_count && plan->patterns.fills[fill].before == i; fill++)
             runs[count++] = (layer_run){.fill = plan->patterns.fills + fill};
+        for (; n->labels && range < n->labels->range_count && are_below(n, range, i); range++)
+            runs[count++] = (layer_run){.labels = n->labels->ranges + range};
         if (i == plan->layer_count)
             break;
         if (!layer_draws(n, plan->layers + i, &opaque))
@@ -83,7 +92,7 @@ static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *laye
             last->end_polyline = end;
             last->end_paint = end_of(n, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, overlap, opaque, NULL};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, overlap, opaque, NULL, NULL};
         }
     }
     return count;
@@ -120,10 +129,39 @@ static void put_paints(const camber_numbering *n, const layer_run *run, camber_p
     }
 }
 
+/* Adds the pass of a run of layers or of a fill. Returns the first of the paints that are left. */
+static camber_paint *add_pass(const camber_numbering *n, const layer_run *run, camber_paint *paints,
+                              camber_pass_list *list) {
+    camber_pass *pass = list->passes + list->count++;
+    put_paints(n, run, paints);
+    *pass = (camber_pass){.first_polyline = run->first_polyline,
+                          .polyline_count = run->end_polyline - run->first_polyline,
+                          .paints = paints,
+                          .paint_count = run->end_paint,
+                          .overlap = run->overlap,
+                          .opacity = run->opacity};
+    if (run->fill) {
+        pass->kind = CAMBER_PASS_FILL;
+        pass->fill = run->fill->fill;
+    }
+    return paints + run->end_paint;
+}
+
+static bool allocate_passes(camber_context *context, const layer_run *runs, size_t run_count, size_t paint_count,
+                            camber_pass_list *list) {
+    size_t count = 0;
+    for (size_t i = 0; i < run_count; i++)
+        count += runs[i].labels ? CAMBER_LABEL_PASSES : 1u;
+    return (list->paints = camber_alloc(context, paint_count, sizeof *list->paints)) &&
+           (list->passes = camber_alloc(context, count, sizeof *list->passes)) &&
+           (list->meshes = camber_alloc_zero(context, count, sizeof *list->meshes));
+}
+
 camber_status camber_passes_make(camber_context *context, const camber_numbering *n, size_t *layer_count,
                                  camber_pass_list *list) {
+    const size_t ranges = n->labels ? n->labels->range_count : 0;
     camber_status status = CAMBER_ERROR_MEMORY;
-    layer_run *runs = camber_alloc(context, n->plan->layer_count + n->plan->patterns.fill_count, sizeof *runs);
+    layer_run *runs = camber_alloc(context, n->plan->layer_count + n->plan->patterns.fill_count + ranges, sizeof *runs);
     if (!runs)
         return CAMBER_ERROR_MEMORY;
     const size_t count = find_runs(n, runs, layer_count);
@@ -135,25 +173,16 @@ camber_status camber_passes_make(camber_context *context, const camber_numbering
                              count, runs[count - 1].end_paint);
         goto done;
     }
-    if (!(list->paints = camber_alloc(context, paint_count, sizeof *list->paints)) ||
-        !(list->passes = camber_alloc(context, count, sizeof *list->passes)))
+    if (!allocate_passes(context, runs, count, paint_count, list))
         goto done;
     camber_paint *paints = list->paints;
     for (size_t i = 0; i < count; i++) {
-        put_paints(n, runs + i, paints);
-        list->passes[i] = (camber_pass){.first_polyline = runs[i].first_polyline,
-                                        .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
-                                        .paints = paints,
-                                        .paint_count = runs[i].end_paint,
-                                        .overlap = runs[i].overlap,
-                                        .opacity = runs[i].opacity};
-        if (runs[i].fill) {
-            list->passes[i].kind = CAMBER_PASS_FILL;
-            list->passes[i].fill = runs[i].fill->fill;
-        }
-        paints += runs[i].end_paint;
+        if (runs[i].labels)
+            list->count += camber_label_shapes_passes(n->labels, runs[i].labels, list->passes + list->count,
+                                                      list->meshes + list->count);
+        else
+            paints = add_pass(n, runs + i, paints, list);
     }
-    list->count = count;
     status = CAMBER_OK;
 done:
     camber_free(context, runs);
@@ -162,5 +191,6 @@ done:
 
 void camber_passes_free(camber_context *context, camber_pass_list *list) {
     camber_free(context, list->passes);
+    camber_free(context, list->meshes);
     camber_free(context, list->paints);
 }

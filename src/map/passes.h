@@ -2,14 +2,16 @@
 #ifndef CAMBER_MAP_PASSES_H
 #define CAMBER_MAP_PASSES_H
 
+#include "map/label_shapes.h"
 #include "map/plan.h"
 
 /* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by lines and rows
  * where polylines were. */
 typedef struct camber_pass_list {
     camber_pass *passes;
+    camber_label_mesh *meshes; /* by pass: what its mesh holds */
     size_t count;
-    camber_paint *paints; /* the paints of all passes */
+    camber_paint *paints; /* the paints of all passes, apart from those of labels */
 } camber_pass_list;
 
 /* How a mesh numbers what the sets draw. */
@@ -18,6 +20,8 @@ typedef struct camber_numbering {
     bool by_pair;                  /* else by row */
     const size_t *first_polylines; /* set_count + 1 */
     const bool *used;              /* by pair or row: a polyline has it */
+    const camber_label_shapes *labels; /* drawn where their layers are. NULL: none */
+    const camber_style_layer *style_layers;
 } camber_numbering;
 
 /* Makes the passes, and in *layer_count how many layers of the style draw something. camber_passes_free frees also what

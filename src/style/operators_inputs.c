@@ -317,7 +317,7 @@ static bool compile_var(camber_compiler *c, const camber_operator *row, json_t *
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
-/* ---- Errors, and operators that lines have no use for ---- */
+/* ---- Errors, and operators that are not supported ---- */
 
 /* The message is the style's; the evaluation keeps it. */
 bool camber_evaluate_error(camber_evaluation *e, const camber_node *node, camber_value *value) {
@@ -332,15 +332,7 @@ static bool compile_unsupported(camber_compiler *c, const camber_operator *row, 
     (void)expected;
     (void)node;
     camber_compiler_enter_index(c, 0);
-    return camber_compiler_fail(c, "\"%s\" is not supported for lines; leave it out", row->name);
-}
-
-static bool compile_script(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
-                           uint32_t *node) {
-    (void)expected;
-    const camber_value yes = {.type = CAMBER_VALUE_BOOL, .boolean = true};
-    return camber_compile_element(c, array, 1, camber_typing_of(row->operands), node) &&
-           camber_make_constant(c, &yes, camber_typing_of(CAMBER_TYPE_BOOL), node);
+    return camber_compiler_fail(c, "\"%s\" is not supported; leave it out", row->name);
 }
 
 static const camber_operator rows[] = {
@@ -359,14 +351,11 @@ static const camber_operator rows[] = {
     {"let", compile_let, camber_evaluate_let, VALUE, VALUE, 3, ANY_COUNT},
     {"var", compile_var, camber_evaluate_var, STRING, VALUE, 1, 1},
     {"error", camber_compile_uniform, camber_evaluate_error, STRING, CAMBER_TYPE_ERROR, 1, 1},
-    {"is-supported-script", compile_script, camber_evaluate_constant, STRING, BOOL, 1, 1},
     {"within", compile_unsupported, NULL, VALUE, BOOL, 0, ANY_COUNT},
     {"distance", compile_unsupported, NULL, VALUE, NUMBER, 0, ANY_COUNT},
     {"heatmap-density", compile_unsupported, NULL, VALUE, NUMBER, 0, ANY_COUNT},
     {"elevation", compile_unsupported, NULL, VALUE, NUMBER, 0, ANY_COUNT},
     {"accumulated", compile_unsupported, NULL, VALUE, VALUE, 0, ANY_COUNT},
-    {"format", compile_unsupported, NULL, VALUE, VALUE, 0, ANY_COUNT},
-    {"number-format", compile_unsupported, NULL, VALUE, STRING, 0, ANY_COUNT},
     {"resolved-locale", compile_unsupported, NULL, VALUE, STRING, 0, ANY_COUNT},
 };
 

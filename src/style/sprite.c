@@ -7,6 +7,7 @@
 
 #include "features/features.h"
 #include "style/json.h"
+#include "style/symbol.h"
 #include "style/url.h"
 
 #include <errno.h>
@@ -82,6 +83,87 @@ static bool read_px(const json_t *image, const char *key, double least, uint32_t
     return true;
 }
 
+/* Reads numbers of px that ascend from 0 to side, at most. */
+static bool read_ascending(const json_t *array, size_t count, uint32_t side, float *px) {
+    bool fits = json_array_size(array) == count;
+    for (size_t i = 0; fits && i < count; i++) {
+        const json_t *json = json_array_get(array, i);
+        px[i] = (float)json_number_value(json);
+        fits = json_is_number(json) && px[i] >= (i ? px[i - 1] : 0.0f) && px[i] <= (float)side;
+    }
+    return fits;
+}
+
+/* Reads the parts of a side that may be stretched, each a pair that begins after the one before. */
+static camber_status read_stretches(index_reader *r, const json_t *array, uint32_t side, float (**stretches)[2],
+                                    size_t *count) {
+    const size_t size = json_array_size(array);
+    float before = 0.0f;
+    if (!array)
+        return CAMBER_OK;
+    if (!(*stretches = camber_alloc_zero(r->sprites->context, size ? size : 1, sizeof **stretches)))
+        return CAMBER_ERROR_MEMORY;
+    for (*count = 0; *count < size; before = (*stretches)[(*count)++][1])
+        if (!read_ascending(json_array_get(array, *count), 2, side, (*stretches)[*count]) ||
+            (*stretches)[*count][0] < before)
+            return CAMBER_ERROR_INPUT;
+    return json_is_array(array) ? CAMBER_OK : CAMBER_ERROR_INPUT;
+}
+
+/* Reads the place of a text, left, top, right, bottom; without one it is the whole image. */
+static bool read_content(const json_t *array, camber_sprite_image *image) {
+    const uint32_t sides[2] = {image->width, image->height};
+    image->has_content = array != NULL;
+    for (size_t i = 0; i < 2; i++) {
+        json_t *pair = json_pack("[O?, O?]", json_array_get(array, i), json_array_get(array, i + 2));
+        float px[2] = {0.0f, (float)sides[i]};
+        const bool fits = !array || (json_array_size(array) == 4 && read_ascending(pair, 2, sides[i], px));
+        json_decref(pair);
+        if (!fits)
+            return false;
+        image->content[i] = px[0];
+        image->content[i + 2] = px[1];
+    }
+    return true;
+}
+
+/* Reads how a text is fitted into the image. */
+static camber_status read_fit(index_reader *r, const char *name, const json_t *json, camber_sprite_image *image) {
+    camber_status status =
+        read_stretches(r, json_object_get(json, "stretchX"), image->width, &image->stretch_x, &image->stretch_x_count);
+    if (status == CAMBER_OK)
+        status = read_stretches(r, json_object_get(json, "stretchY"), image->height, &image->stretch_y,
+                                &image->stretch_y_count);
+    if (status == CAMBER_OK && !read_content(json_object_get(json, "content"), image))
+        status = CAMBER_ERROR_INPUT;
+    return status == CAMBER_ERROR_INPUT
+               ? camber_fail(r->sprites->context, status,
+                             "%s: /%.64s: expected stretchX and stretchY as lists of [from, to], and content as [left, "
+                             "top, right, bottom], within the image's %u x %u px; correct them",
+                             r->path, name, image->width, image->height)
+               : status;
+}
+
+static void free_image(camber_context *context, camber_sprite_image *image) {
+    camber_free(context, image->stretch_x);
+    camber_free(context, image->stretch_y);
+    camber_free(context, image->name);
+}
+
+/* Names the image and adds it, which takes all that it has. */
+static camber_status keep_image(index_reader *r, const char *name, camber_sprite_image *image) {
+    camber_sprites *sprites = r->sprites;
+    const bool plain = strcmp(r->id, "default") == 0;
+    const size_t size = (plain ? 0 : strlen(r->id) + 1) + strlen(name) + 1;
+    if (!camber_grow(sprites->context, &sprites->images, &sprites->image_capacity, sprites->image_count + 1,
+                     sizeof *sprites->images) ||
+        !(image->name = camber_alloc(sprites->context, size, 1)))
+        return CAMBER_ERROR_MEMORY;
+    snprintf(image->name, size, "%s%s%s", plain ? "" : r->id, plain ? "" : ":", name);
+    sprites->images[sprites->image_count++] = *image;
+    return CAMBER_OK;
+}
+
 static camber_status add_image(index_reader *r, const char *name, const json_t *json) {
     camber_sprites *sprites = r->sprites;
     camber_context *context = sprites->context;
@@ -103,16 +185,12 @@ static camber_status add_image(index_reader *r, const char *name, const json_t *
                            r->path, name, image.width, image.height, image.x, image.y, sheet->width, sheet->height);
     image.image = (camber_image){sheet->rgba + 4 * ((size_t)sheet->width * image.y + image.x), image.width,
                                  image.height, 4 * (size_t)sheet->width};
-    if (!camber_grow(context, &sprites->images, &sprites->image_capacity, sprites->image_count + 1,
-                     sizeof *sprites->images))
-        return CAMBER_ERROR_MEMORY;
-    const bool plain = strcmp(r->id, "default") == 0;
-    const size_t size = (plain ? 0 : strlen(r->id) + 1) + strlen(name) + 1;
-    if (!(image.name = camber_alloc(context, size, 1)))
-        return CAMBER_ERROR_MEMORY;
-    snprintf(image.name, size, "%s%s%s", plain ? "" : r->id, plain ? "" : ":", name);
-    sprites->images[sprites->image_count++] = image;
-    return CAMBER_OK;
+    camber_status status = read_fit(r, name, json, &image);
+    if (status == CAMBER_OK)
+        status = keep_image(r, name, &image);
+    if (status != CAMBER_OK)
+        free_image(context, &image);
+    return status;
 }
 
 static camber_status load_index(index_reader *r) {
@@ -249,7 +327,7 @@ void camber_sprites_destroy(camber_sprites *sprites) {
     if (!sprites)
         return;
     for (size_t i = 0; i < sprites->image_count; i++)
-        camber_free(sprites->context, sprites->images[i].name);
+        free_image(sprites->context, sprites->images + i);
     for (size_t i = 0; sprites->sheets && i < sprites->sheet_count; i++)
         camber_free(sprites->context, sprites->sheets[i].rgba);
     for (size_t i = 0; i < sprites->missed_count; i++)
@@ -293,11 +371,12 @@ bool camber_sprites_miss(camber_sprites *sprites, const char *name) {
 
 /* ---- The sprites of features ---- */
 
-static bool has_patterns(const camber_style *style) {
+/* Whether a layer that is seen may name an image. */
+static bool has_images(const camber_style *style) {
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         if (layer->visible && (layer->properties[CAMBER_LINE_PATTERN] || layer->properties[CAMBER_FILL_PATTERN] ||
-                               layer->properties[CAMBER_BACKGROUND_PATTERN]))
+                               layer->properties[CAMBER_BACKGROUND_PATTERN] || camber_style_layer_names_images(layer)))
             return true;
     }
     return false;
@@ -308,7 +387,7 @@ camber_status camber_features_read_sprites(camber_features *features, double rat
     if (!(ratio >= 0.0 && isfinite(ratio)))
         return camber_fail(features->context, CAMBER_ERROR_ARGUMENT, "sprites: a ratio of %g; choose one above 0",
                            ratio);
-    if (!has_patterns(features->style))
+    if (!has_images(features->style))
         return CAMBER_OK;
     const camber_status status = camber_sprites_load(features->context, features->style, base_path, ratio, &sprites);
     if (status != CAMBER_OK)

@@ -7,9 +7,9 @@ camber_status camber_bidi_find_levels(camber_context *context, const uint32_t *c
                                       uint8_t *levels) {
     FriBidiParType base = direction < 0 ? FRIBIDI_PAR_ON : direction ? FRIBIDI_PAR_RTL : FRIBIDI_PAR_LTR;
     FriBidiCharType *types = camber_alloc(context, count, sizeof *types);
-    FriBidiBracketType *brackets = camber_alloc(context, count, sizeof *brackets);
-    FriBidiLevel *found = camber_alloc(context, count, sizeof *found);
-    camber_status status = types && brackets && found ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    FriBidiBracketType *brackets = types ? camber_alloc(context, count, sizeof *brackets) : NULL;
+    FriBidiLevel *found = brackets ? camber_alloc(context, count, sizeof *found) : NULL;
+    camber_status status = found ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     if (!status && count) {
         fribidi_get_bidi_types(codes, (FriBidiStrIndex)count, types);
         fribidi_get_bracket_types(codes, (FriBidiStrIndex)count, types, brackets);

@@ -5,7 +5,7 @@
  *     badness  = (width - average)^2 of each line in 1/24 em, plus penalties for breaks at bad places;
  *                of the last line half of it if the line is short, twice if it is long.
  *
- * A newline always breaks. Breaks before it are not looked at from behind it, and of the others only the last ones, as
+ * A newline always breaks. Breaks before it are not looked at from after it, and of the others only the last ones, as
  * many as keep the work linear in a long text. */
 #include "text/scripts.h"
 #include "text/shaping.h"
@@ -63,7 +63,7 @@ static line_break evaluate(const line_break *breaks, size_t first, size_t count,
     for (size_t i = count; i > first; i--) {
         const double width = made.x - breaks[i - 1].x;
         const double badness = breaks[i - 1].badness + get_badness(width, average, is_last);
-        /* Of equal ones, the last counts. */
+        /* The last of equal ones counts. */
         if (is_found ? badness < best : badness <= best) {
             best = badness;
             made.prior = (uint32_t)i;

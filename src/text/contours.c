@@ -56,8 +56,9 @@ static void join_square(grid *g, uint32_t x, uint32_t y) {
     if (count == 1)
         join_sides(g, x, y, out[0], in[0]);
     else if (count == 2) {
-        /* Two corners across from each other are inside. They are one if the middle is. */
-        const bool is_joined = values[0] + values[1] + values[2] + values[3] > 4.0f * EDGE;
+        /* Two corners across from each other are inside. They are one if the middle is, or nearly: else the
+         * thin strokes of small glyphs would fall apart. */
+        const bool is_joined = values[0] + values[1] + values[2] + values[3] > 4.0f * (EDGE - 4.0f);
         for (int i = 0; i < 2; i++) {
             const int after = (in[i] + 1) & 3, before = (in[i] + 3) & 3;
             join_sides(g, x, y, is_joined ? before : after, in[i]);

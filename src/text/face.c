@@ -1,7 +1,9 @@
+/* Opens fonts: maps their files, and asks HarfBuzz what is in them. */
 #include "text/outline.h"
 
 #include <errno.h>
 #include <hb-ot.h>
+#include <math.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -76,8 +78,8 @@ static camber_status make_face(camber_context *context, const char *name, hb_blo
     hb_font_extents_t extents = {0};
     hb_font_get_h_extents(made->font, &extents);
     made->ascender_em = (float)extents.ascender / made->units_per_em;
-    if (!(made->ascender_em > 0.25f && made->ascender_em < 4.0f))
-        made->ascender_em = 1.0f;
+    /* Ascenders centre the letters of most fonts in lines; those of scripts with high marks would push them down. */
+    made->ascender_em = fminf(fmaxf(made->ascender_em, 0.75f), 1.2f);
     hb_font_make_immutable(made->font);
     *face = made;
     made = NULL;

@@ -67,7 +67,7 @@ static camber_status add_file(camber_font_index *index, const char *path) {
     }
     hb_blob_destroy(blob);
     if (status == CAMBER_ERROR_MEMORY)
-        return status;
+        return camber_fail(index->context, status, "%s: there is no memory to open this font", path);
     if (!has_any)
         camber_log(index->context, CAMBER_LOG_WARNING, "%s: this is no font that can be read: left out", path);
     return CAMBER_OK;

@@ -1,8 +1,5 @@
+/* The list of fonts: their names as keys, which one a name means, and opening them when they are needed. */
 #include "text/font_index.h"
-
-#include "base/embedded.h"
-
-#include <stdlib.h>
 
 camber_font_entry *camber_font_index_add(camber_font_index *index, camber_font_origin origin, const char *path) {
     if (!camber_grow(index->context, &index->entries, &index->capacity, index->count + 1, sizeof *index->entries))
@@ -31,54 +28,6 @@ void camber_font_entry_name(camber_font_entry *entry, const char *family, const 
     }
     if (full_name && *full_name)
         add_key(entry->whole_keys, &entry->whole_count, camber_font_name_key(full_name, NULL));
-}
-
-static camber_status add_shipped(camber_font_index *index) {
-    const struct {
-        const char *style;
-        const unsigned char *bytes;
-        unsigned long size_bytes;
-        camber_font_style is;
-    } fonts[] = {
-        {"Regular", camber_font_regular, camber_font_regular_size, {400.0f, 100.0f, false}},
-        {"Bold", camber_font_bold, camber_font_bold_size, {700.0f, 100.0f, false}},
-        {"Italic", camber_font_italic, camber_font_italic_size, {400.0f, 100.0f, true}},
-    };
-    for (size_t i = 0; i < sizeof fonts / sizeof *fonts; i++) {
-        camber_font_entry *entry = camber_font_index_add(index, CAMBER_FONT_SHIPPED, "the Noto Sans that camber ships");
-        if (!entry)
-            return CAMBER_ERROR_MEMORY;
-        entry->bytes = fonts[i].bytes;
-        entry->size_bytes = fonts[i].size_bytes;
-        entry->style = fonts[i].is;
-        camber_font_entry_name(entry, "Noto Sans", fonts[i].style, NULL);
-    }
-    return CAMBER_OK;
-}
-
-static int compare(const void *a, const void *b) {
-    const camber_font_entry *one = a, *other = b;
-    if (one->origin != other->origin)
-        return one->origin < other->origin ? -1 : 1;
-    const int order = one->origin == CAMBER_FONT_SHIPPED ? 0 : strcmp(one->path, other->path);
-    if (order)
-        return order;
-    if (one->bytes || other->bytes)
-        return one->bytes < other->bytes ? -1 : one->bytes > other->bytes;
-    return one->index < other->index ? -1 : one->index > other->index;
-}
-
-camber_status camber_font_index_fill(camber_font_index *index, const char *const *folders, size_t folder_count,
-                                     bool has_system) {
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < folder_count && !status; i++)
-        status = camber_font_index_add_folder(index, folders[i]);
-    if (!status && has_system)
-        status = camber_font_index_add_system(index);
-    /* Which of equal fonts is taken must not depend on the order of files in folders. */
-    if (!status)
-        qsort(index->entries, index->count, sizeof *index->entries, compare);
-    return status ? status : add_shipped(index);
 }
 
 void camber_font_index_free(camber_font_index *index) {
@@ -131,7 +80,7 @@ camber_status camber_font_index_open(camber_font_index *index, size_t number, ca
                 : camber_face_open(index->context, entry->path, entry->index, &entry->face);
         camber_log_restore(index->context, &kept);
         if (status == CAMBER_ERROR_MEMORY)
-            return status;
+            return camber_fail(index->context, status, "%s: there is no memory to open this font", entry->path);
         entry->is_broken = status != CAMBER_OK;
         if (status)
             camber_log(index->context, CAMBER_LOG_WARNING, "%s: this font cannot be read: other fonts draw its text",

@@ -1,3 +1,6 @@
+/* Splits the names of fonts. Words of a style are cut off their ends until a word is none: "Open Sans Semibold Italic"
+ * is the family "Open Sans" with the weight 600, italic. Names are compared by their letters and digits, since fonts
+ * and styles differ in case, spaces and hyphens. */
 #include "text/font_name.h"
 
 #include <ctype.h>

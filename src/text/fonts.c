@@ -1,3 +1,6 @@
+/* Sets of fonts. A stack of fonts keeps, for each code point that a text has asked for, the source that draws it, so
+ * that a search goes through all fonts once for each character. The answer depends on the stack and the character only,
+ * never on earlier texts: a map looks the same whatever is drawn before it. */
 #include "text/fonts.h"
 
 #include <errno.h>
@@ -89,15 +92,19 @@ void camber_fonts_destroy(camber_fonts *fonts) {
     camber_free(context, fonts);
 }
 
-/* Whether a warning has not been given yet. Without memory there is none. */
+/* Whether a warning has not been given yet. Without memory to note that, it is not given. */
 static bool is_news(camber_fonts *fonts, uint64_t key) {
     for (size_t i = 0; i < fonts->told_count; i++)
         if (fonts->told[i] == key)
             return false;
-    if (!camber_grow(fonts->context, &fonts->told, &fonts->told_capacity, fonts->told_count + 1, sizeof *fonts->told))
-        return false;
-    fonts->told[fonts->told_count++] = key;
-    return true;
+    camber_soft_log kept;
+    camber_log_soften(fonts->context, &kept);
+    const bool has_room =
+        camber_grow(fonts->context, &fonts->told, &fonts->told_capacity, fonts->told_count + 1, sizeof *fonts->told);
+    camber_log_restore(fonts->context, &kept);
+    if (has_room)
+        fonts->told[fonts->told_count++] = key;
+    return has_room;
 }
 
 /* ---- Sources ---- */
@@ -143,10 +150,7 @@ static camber_status fill_index(camber_fonts *fonts) {
 }
 
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code) {
-    bool has = false;
-    if (source->face)
-        return camber_face_has(source->face, code);
-    return camber_glyph_ranges_has(source->ranges, code, &has) == CAMBER_OK && has;
+    return source->face ? camber_face_has(source->face, code) : camber_glyph_ranges_has(source->ranges, code);
 }
 
 camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint32_t number, uint32_t *glyph) {
@@ -300,7 +304,7 @@ camber_status camber_fonts_find_stack(camber_fonts *fonts, const char *const *na
 
 /* ---- The source of a character ---- */
 
-/* Of the fonts in the folders that have a character, gives the one with the nearest style. */
+/* Gives the font of the folders that has a character, and whose style is the nearest. */
 static camber_status find_in_folders(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code,
                                      uint32_t *source) {
     float least = INFINITY;
@@ -348,7 +352,7 @@ static bool is_pictograph(uint32_t code) {
     return (code >= 0x1f000 && code <= 0x1faff) || (code >= 0x2600 && code <= 0x27bf);
 }
 
-/* What draws a character that no font has: the box of the stack's first font. */
+/* A character that no font has is drawn as the box of the stack's first font. */
 static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
     const bool is_left_out = is_pictograph(code);
     const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
@@ -371,15 +375,15 @@ static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stac
 /* Goes through all fonts. */
 static camber_status find_source_of(camber_fonts *fonts, camber_font_stack *stack, uint32_t code, uint32_t *source) {
     *source = CAMBER_NO_SOURCE;
-    bool has = false;
-    camber_status status = CAMBER_OK;
-    if (stack->ranges_source != CAMBER_NO_SOURCE)
-        status = camber_glyph_ranges_has(fonts->sources[stack->ranges_source].ranges, code, &has);
-    if (status || has) {
-        *source = stack->ranges_source;
-        return status;
+    if (stack->ranges_source != CAMBER_NO_SOURCE) {
+        camber_glyph_ranges *ranges = fonts->sources[stack->ranges_source].ranges;
+        const bool has = camber_glyph_ranges_has(ranges, code);
+        if (has || ranges->status) {
+            *source = stack->ranges_source;
+            return ranges->status;
+        }
     }
-    status = resolve(fonts, stack);
+    camber_status status = resolve(fonts, stack);
     for (size_t i = 0; i < stack->named_count && !status && *source == CAMBER_NO_SOURCE; i++)
         if (camber_glyph_source_has(&fonts->sources[stack->named[i]], code))
             *source = stack->named[i];

@@ -13,7 +13,7 @@
 
 #include "camber_text.h"
 
-/* What draws glyphs: a face, or ranges. */
+/* A face or ranges, which draw glyphs. */
 typedef struct camber_glyph_source {
     camber_face *face;
     camber_glyph_ranges *ranges;

@@ -1,3 +1,6 @@
+/* Reads ranges of glyphs when a text asks for a character in them. Messages stay as protobuf unpacked them; a glyph's
+ * bitmap becomes rings when its outline is wanted. Glyphs outside of their range, metrics beyond
+ * MOST_METRIC_PX and bitmaps of another size than they say are left out. */
 #include "text/glyph_ranges.h"
 
 #include "text/contours.h"
@@ -38,8 +41,11 @@ camber_status camber_glyph_ranges_open(camber_context *context, camber_glyph_ran
         return CAMBER_ERROR_MEMORY;
     *made = (camber_glyph_ranges){.context = context, .read = read, .user = user};
     made->stack = camber_copy_string(context, stack);
-    bool has_letter = false;
-    camber_status status = made->stack ? camber_glyph_ranges_has(made, 'H', &has_letter) : CAMBER_ERROR_MEMORY;
+    camber_status status = made->stack ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (!status) {
+        camber_glyph_ranges_has(made, 'H');
+        status = made->status;
+    }
     if (status) {
         camber_glyph_ranges_close(made);
         return status;
@@ -125,14 +131,10 @@ static camber_status load(camber_glyph_ranges *ranges, uint32_t first) {
     return CAMBER_OK;
 }
 
-camber_status camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code, bool *has) {
-    if (!camber_number_map_get(&ranges->asked, code >> 8)) {
-        const camber_status status = load(ranges, code & ~255u);
-        if (status)
-            return status;
-    }
-    *has = camber_number_map_get(&ranges->found, code) != 0;
-    return CAMBER_OK;
+bool camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code) {
+    if (!ranges->status && !camber_number_map_get(&ranges->asked, code >> 8))
+        ranges->status = load(ranges, code & ~255u);
+    return camber_number_map_get(&ranges->found, code) != 0;
 }
 
 static const camber_range_glyph *get_glyph(const camber_glyph_ranges *ranges, uint32_t code) {

@@ -29,16 +29,17 @@ typedef struct camber_glyph_ranges {
     camber_number_map found; /* a code point -> its glyph's index in glyphs + 1 */
     camber_range_glyph *glyphs;
     size_t glyph_count, glyph_capacity;
-    float ascender_em; /* from MapLibre's top of a line to the baseline */
-    bool is_told;      /* the log says that a range is broken */
+    float ascender_em;    /* from MapLibre's top of a line to the baseline */
+    bool is_told;         /* the log says that a range is broken */
+    camber_status status; /* CAMBER_ERROR_MEMORY: a range could not be loaded */
 } camber_glyph_ranges;
 
 camber_status camber_glyph_ranges_open(camber_context *context, camber_glyph_range_fn *read, void *user,
                                        const char *stack, camber_glyph_ranges **ranges);
 void camber_glyph_ranges_close(camber_glyph_ranges *ranges);
 
-/* Sets *has to whether there is a glyph for a code point. Returns CAMBER_ERROR_MEMORY. */
-camber_status camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code, bool *has);
+/* Whether there is a glyph for a code point. If there is no memory, ranges->status says so from then on. */
+bool camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code);
 /* The advance of a glyph that there is. */
 float camber_glyph_ranges_advance_em(const camber_glyph_ranges *ranges, uint32_t code);
 /* Draws a glyph: the rings of its bitmap, from its origin on the baseline. */

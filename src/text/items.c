@@ -2,11 +2,14 @@
 #include "text/fonts.h"
 #include "text/scripts.h"
 
+/* HarfBuzz looks for the letter of each mark, and is quadratic in them: longer clusters and items are cut. */
+enum { MOST_OF_CLUSTER = 32, MOST_OF_ITEM = 1 << 13 };
+
 /* The end of a cluster: a character with the marks on it. */
 static size_t find_cluster_end(const camber_shaping *shaping, size_t first) {
     size_t end = first + 1;
-    while (end < shaping->count && shaping->characters[end].is_mark && !shaping->characters[first].is_image &&
-           shaping->characters[end].run == shaping->characters[first].run)
+    while (end < shaping->count && end - first < MOST_OF_CLUSTER && shaping->characters[end].is_mark &&
+           !shaping->characters[first].is_image && shaping->characters[end].run == shaping->characters[first].run)
         end++;
     return end;
 }
@@ -18,19 +21,16 @@ static bool is_invisible(uint32_t code) {
            (code >= 0xe0000 && code <= 0xe0fff);
 }
 
-enum { MOST_MARKS = 16 }; /* that choose a font with their letter */
-
 static camber_status choose_source(camber_fonts *fonts, size_t first, size_t end) {
     camber_shaping *shaping = &fonts->shaping;
     camber_character *characters = shaping->characters;
     const uint32_t stack = shaping->stacks[characters[first].run];
-    const size_t count = end - first < MOST_MARKS ? end - first : MOST_MARKS;
-    uint32_t visible[MOST_MARKS], source = CAMBER_NO_SOURCE;
+    uint32_t visible[MOST_OF_CLUSTER], source = CAMBER_NO_SOURCE;
     size_t visible_count = 0;
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < count; i++)
-        if (!is_invisible(shaping->codes[first + i]))
-            visible[visible_count++] = shaping->codes[first + i];
+    for (size_t i = first; i < end; i++)
+        if (!is_invisible(shaping->codes[i]))
+            visible[visible_count++] = shaping->codes[i];
     if (shaping->codes[first] == '\n') /* draws nothing, and ends an item */
         visible_count = 0;
     else if (visible_count && !characters[first].is_image)
@@ -61,10 +61,10 @@ static void spread_scripts(camber_shaping *shaping) {
 
 static bool is_same_item(const camber_character *a, const camber_character *b) {
     return a->run == b->run && a->source == b->source && a->script == b->script && a->level == b->level &&
-           !a->is_image && !b->is_image && a->is_upright == b->is_upright;
+           !a->is_image && !b->is_image && a->is_upright == b->is_upright && !b->begins_item;
 }
 
-/* The language of a text that has none: ideographs beside kana are Japanese, and beside hangul Korean. */
+/* The language of a text that has none: ideographs with kana are Japanese, and with hangul Korean. */
 static const char *guess_language(const camber_shaping *shaping) {
     bool has_ideographs = false;
     for (size_t i = 0; i < shaping->count; i++) {
@@ -101,12 +101,15 @@ camber_status camber_shaping_itemize(camber_fonts *fonts, const camber_text_desc
     for (size_t first = 0, end; first < shaping->count && !status; first = end) {
         end = find_cluster_end(shaping, first);
         status = choose_source(fonts, first, end);
+        characters[first].begins_item = characters[first].is_mark;
         for (size_t i = first; i < end; i++)
             characters[i].is_upright = desc->vertical && camber_is_upright(shaping->codes[first]);
     }
     spread_scripts(shaping);
     for (size_t first = 0, end; first < shaping->count && !status; first = end) {
-        for (end = first + 1; end < shaping->count && is_same_item(&characters[first], &characters[end]); end++)
+        for (end = first + 1;
+             end < shaping->count && end - first < MOST_OF_ITEM && is_same_item(&characters[first], &characters[end]);
+             end++)
             ;
         if (!camber_grow(fonts->context, &shaping->items, &shaping->item_capacity, shaping->item_count + 1,
                          sizeof *shaping->items))

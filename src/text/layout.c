@@ -87,7 +87,7 @@ static float get_align_share(camber_text_align align) {
     return align == CAMBER_ALIGN_TOP ? 0.0f : align == CAMBER_ALIGN_CENTER ? 0.5f : 1.0f;
 }
 
-/* Where a run's baseline is, or of an image its side that is nearest to the line's top. */
+/* The place of a run's baseline across the line; of an image, that of its upper side. */
 static float get_across(const layout *l, const camber_text_run *run) {
     const float share = get_align_share(run->align);
     if (!run->text) {

@@ -35,7 +35,7 @@ bool camber_is_ideographic(uint32_t code) {
 }
 
 bool camber_is_upright(uint32_t code) {
-    /* Unicode's Vertical_Orientation U, Tu and Tr, as far as maps have them. */
+    /* Unicode's Vertical_Orientation U, Tu and Tr, for the characters that maps use. */
     static const range ranges[] = {
         {0xa7, 0xa7},     {0xa9, 0xa9},     {0xae, 0xae},       {0xb1, 0xb1},       {0xbc, 0xbe},
         {0xd7, 0xd7},     {0xf7, 0xf7},     {0x2ea, 0x2eb},     {0x1100, 0x11ff},   {0x2016, 0x2016},

@@ -31,9 +31,9 @@ static bool join_letters(camber_fonts *fonts, const camber_text_item *item, uint
     const uint32_t *codes = fonts->shaping.codes + item->first;
     const size_t count = item->end - item->first;
     FriBidiArabicProp *properties = camber_alloc(context, count, sizeof *properties);
-    FriBidiLevel *levels = camber_alloc(context, count, sizeof *levels);
-    FriBidiCharType *types = camber_alloc(context, count, sizeof *types);
-    const bool has_memory = properties && levels && types;
+    FriBidiLevel *levels = properties ? camber_alloc(context, count, sizeof *levels) : NULL;
+    FriBidiCharType *types = levels ? camber_alloc(context, count, sizeof *types) : NULL;
+    const bool has_memory = types != NULL;
     for (int attempt = 0; has_memory && attempt < 2; attempt++) {
         memcpy(forms, codes, count * sizeof *forms);
         memset(levels, fonts->shaping.characters[item->first].level & 1, count);

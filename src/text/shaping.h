@@ -15,7 +15,7 @@
 /* In place of an image. */
 #define CAMBER_IMAGE_CODE 0xfffcu
 
-/* From the middle of a line to the top of its ems, as MapLibre has it. */
+/* From the middle of a line to the top of its ems, as in MapLibre. */
 #define CAMBER_LINE_TOP_EM (-17.0f / 24.0f)
 
 typedef struct camber_character {
@@ -24,7 +24,7 @@ typedef struct camber_character {
     hb_script_t script;
     float width_em; /* in lines, without spacing: the advance of its cluster, or 0 if it is not the first there */
     uint8_t level;  /* odd: from right to left */
-    bool is_image, is_mark, is_upright;
+    bool is_image, is_mark, is_upright, begins_item;
 } camber_character;
 
 /* Characters that are shaped together. */

@@ -10,6 +10,19 @@ void camber_text_destroy(camber_text *text) {
     camber_free(context, text);
 }
 
+/* Whether all ranges that the text asked for could be loaded. If not, the next text tries again. */
+static camber_status check_ranges(camber_fonts *fonts) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < fonts->source_count; i++) {
+        camber_glyph_ranges *ranges = fonts->sources[i].ranges;
+        if (ranges && ranges->status) {
+            status = ranges->status;
+            ranges->status = CAMBER_OK;
+        }
+    }
+    return status;
+}
+
 camber_status camber_text_shape(camber_fonts *fonts, const camber_text_desc *desc, camber_text **text) {
     camber_context *context = fonts->context;
     camber_shaping *shaping = &fonts->shaping;
@@ -23,6 +36,8 @@ camber_status camber_text_shape(camber_fonts *fonts, const camber_text_desc *des
     status = status ? status : camber_shaping_shape(fonts, desc);
     status = status ? status : camber_shaping_break(context, shaping, desc);
     status = status ? status : camber_shaping_lay_out(fonts, desc, made);
+    const camber_status of_ranges = check_ranges(fonts);
+    status = status ? status : of_ranges;
     if (status)
         camber_text_destroy(made);
     else

@@ -130,7 +130,7 @@ def split_declarators(text):
 
 
 def declared_name(declarator):
-    pointer = re.search(r"\(\s*(?:\w+\s*)?\*+\s*(?:const\s+)?(\w+)", declarator)
+    pointer = re.search(r"\(\s*(?:\w+\s*)?\*+\s*(?:const\s+)?(\w+)\s*(?:\[\w*\]\s*)*\)\s*[(\[]", declarator)
     if pointer:
         return pointer.group(1)
     words = IDENTIFIER.findall(re.split(r"[(\[]", declarator.strip())[0])
@@ -613,6 +613,9 @@ LIBRARIES = {
     "SQLite3": ("libsqlite3-dev", "pkgconfig(sqlite3)", "sqlite"), "cmocka": None,
     "libprotobuf-c": ("libprotobuf-c-dev", "pkgconfig(libprotobuf-c)", "protobuf-c"),
     "protoc-c": ("protobuf-c-compiler", "protobuf-c-compiler", "protobuf-c"),
+    "harfbuzz": ("libharfbuzz-dev", "pkgconfig(harfbuzz)", "harfbuzz"),
+    "fribidi": ("libfribidi-dev", "pkgconfig(fribidi)", "fribidi"),
+    "fontconfig": ("libfontconfig-dev", "pkgconfig(fontconfig)", "fontconfig"),
     "EGL": ("libegl-dev", "pkgconfig(egl)", "mesa"), "GLES3": ("libgles-dev", "pkgconfig(glesv2)", "mesa"),
     "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
     "libisal": ("libisal-dev", "pkgconfig(libisal)", "isa-l"),

@@ -352,6 +352,129 @@ static void test_functions(void **state) {
     CHECK(samples);
 }
 
+#define FORMATTED_SPEC "{\"type\": \"formatted\"}"
+#define IMAGE_SPEC "{\"type\": \"resolvedImage\"}"
+#define SECTION(text, image, scale, fonts, color, align)                                                               \
+    "{\"text\": " text ", \"image\": " image ", \"scale\": " scale ", \"fontStack\": " fonts ", \"textColor\": " color \
+    ", \"verticalAlign\": " align "}"
+#define TEXT(text) SECTION(text, "null", "null", "null", "null", "null")
+#define SECTIONS(list) "{\"sections\": [" list "]}"
+#define THERE "{\"name\": \"a\", \"available\": true}"
+#define NOT_THERE "{\"name\": \"b\", \"available\": false}"
+
+static void test_formats(void **state) {
+    (void)state;
+    static const char *const images = "{\"availableImages\": [\"a\"]}";
+    const sample samples[] = {
+        {"[\"format\", \"a\", {}, \"b\", {\"font-scale\": 2, \"vertical-align\": \"top\"}, \"c\", {\"text-font\": "
+         "[\"literal\", [\"x\", \"y\"]], \"text-color\": \"#0f0\"}]",
+         .type = "formatted",
+         .output = SECTIONS(TEXT("\"a\"") ", " SECTION("\"b\"", "null", "2", "null", "null", "\"top\"") ", " SECTION(
+             "\"c\"", "null", "null", "\"x,y\"", "{\"r\": 0, \"g\": 1, \"b\": 0, \"a\": 1}", "null"))},
+        {"[\"format\", [\"get\", \"x\"], \"\\n\", [\"get\", \"y\"]]", NULL, NULL, "{\"properties\": {\"y\": [1]}}",
+         "formatted", SECTIONS(TEXT("\"\"") ", " TEXT("\"\\n\"") ", " TEXT("\"[1]\""))},
+        {"[\"format\", [\"image\", \"a\"], [\"image\", \"b\"], {\"vertical-align\": \"center\"}]", NULL, images, NULL,
+         NULL,
+         SECTIONS(SECTION("\"\"", THERE, "null", "null", "null", "null") ", " SECTION("\"\"", NOT_THERE, "null", "null",
+                                                                                      "null", "\"center\""))},
+        {"[\"format\", [\"coalesce\", [\"image\", \"b\"], [\"get\", \"x\"]]]", NULL, images,
+         "{\"properties\": {\"x\": \"t\"}}", NULL, SECTIONS(TEXT("\"t\""))},
+        {"[\"to-string\", [\"format\", \"a\", {}, [\"image\", \"b\"], \"c\"]]", .type = "string", .output = "\"ac\""},
+        {"[\"concat\", [\"format\", \"a\"], 1]", .type = "string", .output = "\"a1\""},
+        {"[\"to-boolean\", [\"format\", \"\"]]", .output = "true"},
+        {"[\"typeof\", [\"format\", \"\"]]", .output = "\"formatted\""},
+        {"[\"typeof\", [\"image\", \"a\"]]", .output = "\"resolvedImage\""},
+        {"[\"to-string\", [\"image\", \"a\"]]", .output = "\"a\""},
+        {"[\"get\", \"x\"]", FORMATTED_SPEC, NULL, "{\"properties\": {\"x\": 7}}", "formatted",
+         SECTIONS(TEXT("\"7\""))},
+        {"[\"case\", [\"has\", \"x\"], [\"format\", \"a\"], \"b\"]", FORMATTED_SPEC, .type = "formatted",
+         .output = SECTIONS(TEXT("\"b\""))},
+        {"[\"coalesce\", [\"image\", \"b\"], [\"image\", \"a\"]]", IMAGE_SPEC, images, NULL, "resolvedImage", THERE},
+        {"[\"image\", [\"get\", \"x\"]]", NULL, images, "{\"properties\": {\"x\": \"b\"}}", "resolvedImage", NOT_THERE},
+        {"[\"is-supported-script\", [\"get\", \"x\"]]", NULL, NULL, "{\"properties\": {\"x\": \"a\"}}", "boolean",
+         "true"},
+        {"[\"is-supported-script\", [\"get\", \"x\"]]", NULL, NULL, "{\"properties\": {\"x\": 1}}", NULL, ERROR},
+        {"[\"format\", \"a\", {\"vertical-align\": \"left\"}]", .output = NULL},
+        {"[\"format\", \"a\", {\"text-font\": [\"x\", \"y\"]}]", .output = NULL},
+        {"[\"format\", \"a\", {\"font-scale\": \"2\"}]", .output = NULL},
+        {"[\"format\", {}, \"a\"]", .output = NULL},
+        {"[\"format\", \"a\", {}, {}]", .output = NULL},
+        {"[\"format\", 7]", .output = NULL},
+        {"[\"image\", 7]", .output = NULL},
+        {"[\"number\", [\"get\", \"x\"]]", FORMATTED_SPEC, .output = NULL},
+        {"[\"number\", [\"get\", \"x\"]]", IMAGE_SPEC, .output = NULL},
+        {"[\"==\", [\"format\", \"a\"], \"a\"]", .output = NULL},
+    };
+    CHECK(samples);
+}
+
+static void test_paddings(void **state) {
+    (void)state;
+    static const sample samples[] = {
+        {"[\"get\", \"x\"]", "{\"type\": \"padding\"}", NULL, "{\"properties\": {\"x\": [1, 2, 3]}}", "padding",
+         "{\"values\": [1, 2, 3, 2]}"},
+        {"[\"get\", \"x\"]", "{\"type\": \"padding\"}", NULL, "{\"properties\": {\"x\": []}}", NULL, ERROR},
+        {"[\"interpolate\", [\"linear\"], [\"zoom\"], 0, 2, 10, [\"literal\", [4, 8]]]", "{\"type\": \"padding\"}",
+         "{\"zoom\": 5}", NULL, "padding", "{\"values\": [3, 5, 3, 5]}"},
+        {"[\"get\", \"x\"]", "{\"type\": \"variableAnchorOffsetCollection\"}", NULL,
+         "{\"properties\": {\"x\": [\"top\", [1, 2]]}}", NULL, "{\"values\": [\"top\", [1, 2]]}"},
+        {"[\"get\", \"x\"]", "{\"type\": \"variableAnchorOffsetCollection\"}", NULL,
+         "{\"properties\": {\"x\": [\"up\", [1, 2]]}}", NULL, ERROR},
+        {"[\"interpolate\", [\"linear\"], [\"zoom\"], 0, [\"literal\", [\"top\", [0, 0]]], 10, [\"literal\", "
+         "[\"left\", "
+         "[2, 0]]]]",
+         "{\"type\": \"variableAnchorOffsetCollection\"}", "{\"zoom\": 5}", NULL, NULL, ERROR},
+    };
+    CHECK(samples);
+}
+
+static void test_number_formats(void **state) {
+    (void)state;
+#define FORMAT(number, options) "[\"number-format\", " number ", " options "]"
+    static const sample samples[] = {
+        {FORMAT("123456.789", "{}"), .type = "string", .output = "\"123,456.789\""},
+        {FORMAT("1234567", "{}"), .output = "\"1,234,567\""},
+        {FORMAT("999", "{}"), .output = "\"999\""},
+        {FORMAT("-1000", "{}"), .output = "\"-1,000\""},
+        {FORMAT("0", "{}"), .output = "\"0\""},
+        {FORMAT("0.0004", "{}"), .output = "\"0\""},
+        {FORMAT("0.0005", "{}"), .output = "\"0.001\""},
+        {FORMAT("1e21", "{}"), .output = "\"1,000,000,000,000,000,000,000\""},
+        {FORMAT("[\"/\", 1, 0]", "{}"), .output = "\"\xe2\x88\x9e\""},
+        {FORMAT("[\"/\", 0, 0]", "{}"), .output = "\"NaN\""},
+        {FORMAT("0.5", "{\"max-fraction-digits\": 0}"), .output = "\"1\""},
+        {FORMAT("2.5", "{\"max-fraction-digits\": 0}"), .output = "\"3\""},
+        {FORMAT("1.005", "{\"max-fraction-digits\": 2}"), .output = "\"1.01\""},
+        {FORMAT("999.96", "{\"max-fraction-digits\": 1}"), .output = "\"1,000\""},
+        {FORMAT("7", "{\"min-fraction-digits\": 2}"), .output = "\"7.00\""},
+        {FORMAT("7.123456", "{\"min-fraction-digits\": 5}"), .output = "\"7.12346\""},
+        {FORMAT("987654321.234567", "{\"min-fraction-digits\": 15, \"max-fraction-digits\": 20}"),
+         .output = "\"987,654,321.234567000000000\""},
+        {FORMAT("1e-7", "{\"max-fraction-digits\": 8}"), .output = "\"0.0000001\""},
+        {FORMAT("123456.789", "{\"currency\": \"JPY\"}"), .output = "\"\xc2\xa5"
+                                                                    "123,457\""},
+        {FORMAT("-5", "{\"currency\": \"EUR\"}"), .output = "\"-\xe2\x82\xac"
+                                                            "5.00\""},
+        {FORMAT("5", "{\"currency\": \"CHF\"}"), .output = "\"CHF\xc2\xa0"
+                                                           "5.00\""},
+        {FORMAT("5", "{\"currency\": \"USD\", \"max-fraction-digits\": 0}"), .output = "\"$5\""},
+        {FORMAT("1234.567", "{\"unit\": \"celsius\"}"), .output = "\"1,234.567\xc2\xb0"
+                                                                  "C\""},
+        {FORMAT("1", "{\"unit\": \"day\"}"), .output = "\"1 day\""},
+        {FORMAT("2", "{\"unit\": \"day\"}"), .output = "\"2 days\""},
+        {FORMAT("90", "{\"unit\": \"kilometer-per-hour\"}"), .output = "\"90 km/h\""},
+        {FORMAT("90", "{\"unit\": \"parsec\"}"), .output = NULL},
+        {FORMAT("90", "{\"currency\": \"euro\"}"), .output = NULL},
+        {FORMAT("90", "{\"currency\": \"EUR\", \"unit\": \"meter\"}"), .output = NULL},
+        {FORMAT("90", "{\"min-fraction-digits\": 101}"), .output = NULL},
+        {FORMAT("90", "{\"min-fraction-digits\": 3, \"max-fraction-digits\": 2}"), .output = NULL},
+        {FORMAT("90", "2"), .output = NULL},
+        {FORMAT("\"90\"", "{}"), .output = NULL},
+    };
+#undef FORMAT
+    CHECK(samples);
+}
+
 static void test_state(void **state) {
     (void)state;
     camber_status status;
@@ -548,10 +671,11 @@ static void test_specification(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_types),     cmocka_unit_test(test_features),      cmocka_unit_test(test_strings),
-        cmocka_unit_test(test_maths),     cmocka_unit_test(test_decisions),     cmocka_unit_test(test_curves),
-        cmocka_unit_test(test_functions), cmocka_unit_test(test_state),         cmocka_unit_test(test_hostile),
-        cmocka_unit_test(test_doubling),  cmocka_unit_test(test_specification),
+        cmocka_unit_test(test_types),          cmocka_unit_test(test_features),      cmocka_unit_test(test_strings),
+        cmocka_unit_test(test_maths),          cmocka_unit_test(test_decisions),     cmocka_unit_test(test_curves),
+        cmocka_unit_test(test_functions),      cmocka_unit_test(test_formats),       cmocka_unit_test(test_paddings),
+        cmocka_unit_test(test_number_formats), cmocka_unit_test(test_state),         cmocka_unit_test(test_hostile),
+        cmocka_unit_test(test_doubling),       cmocka_unit_test(test_specification),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,6 +96,34 @@ static void test_sheet_and_index(void **state) {
     close_desk(&d);
 }
 
+static bool same(float a, float b) {
+    return a >= b && a <= b;
+}
+
+/* How a text is fitted into an image. */
+static void test_fit(void **state) {
+    (void)state;
+    desk d;
+    camber_sprites *sprites = NULL;
+    open_desk(&d, "\"s\"");
+    write_sheet(&d, "s.png", 4);
+    write_index(&d, "s.json",
+                "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 8, \"height\": 4, \"stretchX\": [[1, 2.5], [4, 6]], "
+                "\"stretchY\": [[0, 4]], \"content\": [1, 0.5, 7, 3]}, \"b\": {\"x\": 0, \"y\": 0, \"width\": 3, "
+                "\"height\": 2, \"stretchX\": []}}");
+    assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 1, &sprites), CAMBER_OK);
+    const camber_sprite_image *a = camber_sprites_find(sprites, "a"), *b = camber_sprites_find(sprites, "b");
+    assert_int_equal(a->stretch_x_count, 2);
+    assert_true(same(a->stretch_x[0][1], 2.5f) && same(a->stretch_x[1][0], 4.0f));
+    assert_true(a->stretch_y_count == 1 && same(a->stretch_y[0][1], 4.0f));
+    assert_true(a->has_content && same(a->content[0], 1.0f) && same(a->content[1], 0.5f) && same(a->content[2], 7.0f) &&
+                same(a->content[3], 3.0f));
+    assert_true(!b->has_content && b->stretch_x_count == 0 && b->stretch_y_count == 0);
+    assert_true(same(b->content[0], 0.0f) && same(b->content[2], 3.0f) && same(b->content[3], 2.0f));
+    camber_sprites_destroy(sprites);
+    close_desk(&d);
+}
+
 static void test_several(void **state) {
     (void)state;
     desk d;
@@ -134,6 +162,17 @@ static void test_lies(void **state) {
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 1e300, \"height\": 4}}", "from 1 on"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 1e-300}}", "pixelRatio"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": -1}}", "pixelRatio"},
+#define SMALL(more) "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, " more "}}"
+        {NULL, SMALL("\"stretchX\": 3"), "lists of [from, to]"},
+        {NULL, SMALL("\"stretchX\": [3]"), "lists of [from, to]"},
+        {NULL, SMALL("\"stretchX\": [[3, 2]]"), "lists of [from, to]"},
+        {NULL, SMALL("\"stretchY\": [[1, 5]]"), "lists of [from, to]"},
+        {NULL, SMALL("\"stretchY\": [[1, 3], [2, 4]]"), "lists of [from, to]"},
+        {NULL, SMALL("\"content\": [0, 0, 4]"), "lists of [from, to]"},
+        {NULL, SMALL("\"content\": [0, 0, 4, 5]"), "lists of [from, to]"},
+        {NULL, SMALL("\"content\": [0, -1, 4, 4]"), "lists of [from, to]"},
+        {NULL, SMALL("\"content\": [0, null, 4, 4]"), "lists of [from, to]"},
+#undef SMALL
         {NULL, "{\"a\": 7}", "from 1 on"},
         {NULL, "{\"a\": {\"x\": NaN, \"y\": 0, \"width\": 4, \"height\": 4}}", "line 1, column"},
         {NULL, "[1]", "an object of images"},
@@ -248,8 +287,12 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sheet_and_index), cmocka_unit_test(test_several), cmocka_unit_test(test_lies),
-        cmocka_unit_test(test_false_sizes),     cmocka_unit_test(test_wanted),  cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sheet_and_index),
+                                       cmocka_unit_test(test_several),
+                                       cmocka_unit_test(test_fit),
+                                       cmocka_unit_test(test_lies),
+                                       cmocka_unit_test(test_false_sizes),
+                                       cmocka_unit_test(test_wanted),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,580 @@
+/* Texts: glyphs are compared with those of hb-shape, levels with Unicode's test file; lines, anchors, outlines, signed
+ * distances, and text, fonts and glyphs that are hostile. */
+#include "core.h"
+
+#include "base/embedded.h"
+#include "text/fonts.h"
+
+#include <math.h>
+#include <time.h>
+
+static const char *const noto_sans[] = {"Noto Sans"};
+
+typedef struct maker {
+    host h;
+    camber_context *context;
+    camber_fonts *fonts;
+} maker;
+
+static void make_fonts(maker *m, const camber_fonts_desc *desc) {
+    m->context = host_context(&m->h);
+    assert_int_equal(camber_fonts_create(m->context, desc, &m->fonts), CAMBER_OK);
+}
+
+/* Only with the fonts that are shipped. */
+static void make_shipped(maker *m) {
+    make_fonts(m, &(camber_fonts_desc){.no_system = true});
+}
+
+static void unmake(maker *m) {
+    camber_fonts_destroy(m->fonts);
+    host_done(&m->h, m->context);
+}
+
+static camber_text_run run_of(const char *text, const char *const *fonts) {
+    return (camber_text_run){.text = text, .size_bytes = strlen(text), .fonts = fonts, .font_count = 1};
+}
+
+static camber_text *shape(maker *m, const char *text, const char *const *fonts, camber_text_desc desc) {
+    const camber_text_run run = run_of(text, fonts);
+    camber_text *made = NULL;
+    desc.runs = &run;
+    desc.run_count = 1;
+    assert_int_equal(camber_text_shape(m->fonts, &desc, &made), CAMBER_OK);
+    return made;
+}
+
+static void assert_near(double a, double b) {
+    if (fabs(a - b) > 1e-4)
+        fail_msg("%.6f is not %.6f", a, b);
+}
+
+/* ---- Shaping ---- */
+
+/* Compares a text of one direction and one font with hb-shape. */
+static void check_beside(maker *m, const char *font, const char *text, const char *language) {
+    const char *const fonts[] = {font};
+    camber_text *made = shape(m, text, fonts, (camber_text_desc){.language = language});
+    const uint32_t source = m->fonts->glyphs[made->glyphs[0].glyph].source;
+    const camber_face *face = m->fonts->sources[source].face;
+    char command[1024];
+    snprintf(command, sizeof command,
+             "hb-shape --no-glyph-names --no-clusters --remove-default-ignorables %s%s \"%s\" \"%s\"",
+             language ? "--language=" : "", language ? language : "", m->fonts->sources[source].name, text);
+    FILE *output = popen(command, "r");
+    double x = made->left;
+    assert_non_null(output);
+    assert_int_equal(fgetc(output), '[');
+    for (size_t i = 0; i < made->glyph_count; i++) {
+        unsigned number = 0;
+        int dx = 0, dy = 0, advance = 0;
+        char after = 0;
+        if (i)
+            assert_int_equal(fgetc(output), '|');
+        assert_int_equal(fscanf(output, "%u%c", &number, &after), 2);
+        if (after == '@')
+            assert_int_equal(fscanf(output, "%d,%d%c", &dx, &dy, &after), 3);
+        assert_int_equal(fscanf(output, "%d", &advance), 1);
+        const camber_text_glyph *glyph = &made->glyphs[i];
+        if (m->fonts->glyphs[glyph->glyph].source != source || m->fonts->glyphs[glyph->glyph].number != number)
+            fail_msg("%s: glyph %zu is %u, not %u", text, i, m->fonts->glyphs[glyph->glyph].number, number);
+        assert_near(glyph->advance, (double)advance / (double)face->units_per_em);
+        assert_near(glyph->x, x + (double)dx / (double)face->units_per_em);
+        x += (double)advance / (double)face->units_per_em;
+    }
+    assert_int_equal(fgetc(output), ']');
+    assert_int_equal(pclose(output), 0);
+    camber_text_destroy(made);
+}
+
+static void test_beside_hb_shape(void **state) {
+    (void)state;
+    static const char *const texts[][3] = {
+        {"Noto Sans", "V\xc3\xa4nern, AVAST office", NULL},
+        {"Noto Sans Bold", "\xd0\x9c\xd0\xbe\xd1\x81\xd0\xba\xd0\xb2\xd0\xb0", NULL},
+        {"Noto Sans", "\xce\x91\xce\xb8\xce\xae\xce\xbd\xce\xb1", NULL},
+        {"Noto Sans", "Hanoi e\xcc\x82\xcc\x81 o\xcc\x88\xcc\xa3", NULL},
+        {"Noto Sans", "\xd0\xb1\xd0\xb3\xd0\xb4", "sr"},
+        {"Noto Sans Arabic", "\xd8\xa7\xd9\x84\xd9\x82\xd8\xa7\xd9\x87\xd8\xb1\xd8\xa9", "ar"},
+        {"Noto Sans Hebrew", "\xd7\xaa\xd6\xbc\xd6\xb5\xd7\x9c \xd7\x90\xd6\xb8\xd7\x91\xd6\xb4\xd7\x99\xd7\x91", NULL},
+        {"Noto Sans Devanagari", "\xe0\xa4\x95\xe0\xa5\x8d\xe0\xa4\xb7\xe0\xa5\x87\xe0\xa4\xa4\xe0\xa5\x8d\xe0\xa4\xb0",
+         NULL},
+        {"Noto Sans Thai", "\xe0\xb8\x81\xe0\xb8\xa3\xe0\xb8\xb8\xe0\xb8\x87\xe0\xb8\x99\xe0\xb9\x89\xe0\xb8\xb3",
+         NULL},
+        {"Noto Sans Khmer", "\xe1\x9e\x97\xe1\x9f\x92\xe1\x9e\x93\xe1\x9f\x86\xe1\x9e\x96\xe1\x9f\x81\xe1\x9e\x89",
+         NULL},
+        {"Noto Sans Myanmar", "\xe1\x80\x99\xe1\x80\xbc\xe1\x80\xad\xe1\x80\xaf\xe1\x80\xb7", NULL},
+    };
+    maker m;
+    if (system("hb-shape --version > /dev/null 2>&1") != 0) {
+        print_message("there is no hb-shape (Debian: libharfbuzz-bin): texts are not compared with it\n");
+        skip();
+    }
+    make_fonts(&m, NULL);
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        if (camber_fonts_find_stack(m.fonts, &texts[i][0], 1, NULL, &(uint32_t){0}) == CAMBER_OK && m.h.warnings) {
+            print_message("there is no %s: its texts are not compared\n", texts[i][0]);
+            m.h.warnings = 0;
+            continue;
+        }
+        if (m.fonts->index.entries[camber_font_index_find(&m.fonts->index, texts[i][0])].bytes)
+            continue; /* hb-shape cannot read the shipped one */
+        check_beside(&m, texts[i][0], texts[i][1], texts[i][2]);
+    }
+    unmake(&m);
+}
+
+/* ---- Both directions ---- */
+
+/* Reads numbers between white space, up to a semicolon or a line's end. x stands for 255. */
+static size_t read_numbers(const char **at, int base, uint32_t *numbers, size_t most) {
+    size_t count = 0;
+    while (**at && **at != ';' && **at != '\n') {
+        char *end;
+        assert_true(count < most);
+        if (**at == 'x') {
+            numbers[count++] = 255;
+            ++*at;
+        } else {
+            numbers[count++] = (uint32_t)strtoul(*at, &end, base);
+            *at = end;
+        }
+        while (**at == ' ')
+            ++*at;
+    }
+    *at += **at == ';';
+    return count;
+}
+
+static void test_bidi_beside_unicode(void **state) {
+    (void)state;
+    enum { MOST = 256 };
+    FILE *file = fopen("/usr/share/unicode/BidiCharacterTest.txt", "r");
+    if (!file) {
+        print_message("there is no BidiCharacterTest.txt (Debian: unicode-data): levels are not compared with it\n");
+        skip();
+    }
+    host h;
+    camber_context *context = host_context(&h);
+    char line[4096];
+    size_t number = 0, compared = 0;
+    while (fgets(line, sizeof line, file)) {
+        uint32_t codes[MOST], direction[1], base[1], wanted[MOST], found[MOST];
+        uint8_t levels[MOST];
+        const char *at = line;
+        if (line[0] == '#' || line[0] == '\n' || number++ % 7)
+            continue;
+        const size_t count = read_numbers(&at, 16, codes, MOST);
+        read_numbers(&at, 10, direction, 1);
+        read_numbers(&at, 10, base, 1);
+        assert_int_equal(read_numbers(&at, 10, wanted, MOST), count);
+        assert_int_equal(
+            camber_bidi_find_levels(context, codes, count, direction[0] == 2 ? -1 : (int)direction[0], levels),
+            CAMBER_OK);
+        /* White space at the end is cut from lines, so that its level (rule L1) does not count. */
+        size_t end = count;
+        while (end && (wanted[end - 1] == base[0] || wanted[end - 1] == 255))
+            end--;
+        size_t kept = 0;
+        for (size_t i = 0; i < end; i++) {
+            if (wanted[i] == 255)
+                continue;
+            if (levels[i] != wanted[i])
+                fail_msg("line %zu: level %zu is %u, not %u: %s", number, i, levels[i], wanted[i], line);
+            levels[kept++] = levels[i];
+        }
+        camber_bidi_find_order(levels, kept, found);
+        compared++;
+    }
+    fclose(file);
+    assert_true(compared > 10000);
+    host_done(&h, context);
+}
+
+static void test_order(void **state) {
+    (void)state;
+    static const uint8_t levels[] = {0, 1, 2, 2, 1, 0};
+    static const uint32_t wanted[] = {0, 4, 2, 3, 1, 5};
+    uint32_t order[6];
+    camber_bidi_find_order(levels, 6, order);
+    assert_memory_equal(order, wanted, sizeof wanted);
+}
+
+/* A name of both directions: the Latin part stands to the right of what follows it in Hebrew text. */
+static void test_both_directions(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    camber_text *text = shape(&m, "\xd7\x90\xd7\x91 ab \xd7\x92", noto_sans, (camber_text_desc){0});
+    static const uint32_t bytes[] = {8, 7, 5, 6, 4, 2, 0};
+    assert_int_equal(text->glyph_count, 7);
+    for (size_t i = 0; i < 7; i++)
+        assert_int_equal(text->glyphs[i].byte, bytes[i]);
+    assert_int_equal(m.h.warnings, 1); /* no font has Hebrew letters */
+    camber_text_destroy(text);
+    unmake(&m);
+}
+
+/* ---- Lines and anchors ---- */
+
+static void check_lines(maker *m, const char *text, float max_width_em, const char *wanted) {
+    char found[256] = "";
+    const camber_text_desc desc = {.max_width_em = max_width_em};
+    camber_text *made = shape(m, text, noto_sans, desc);
+    for (size_t i = 0; i < made->line_count; i++) {
+        const camber_text_line *line = &made->lines[i];
+        snprintf(found + strlen(found), sizeof found - strlen(found), "%s", i ? "|" : "");
+        for (size_t g = line->first; g < line->first + line->count; g++)
+            snprintf(found + strlen(found), sizeof found - strlen(found), "%c", text[made->glyphs[g].byte]);
+    }
+    assert_string_equal(found, wanted);
+    camber_text_destroy(made);
+}
+
+static void test_breaks(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    check_lines(&m, "", 10.0f, "");
+    check_lines(&m, "Reykjavik", 1.0f, "Reykjavik");
+    check_lines(&m, "Avenue of the Americas", 8.0f, "Avenue of the|Americas");
+    check_lines(&m, "Avenue of the Americas", 0.0f, "Avenue of the Americas");
+    check_lines(&m, "Avenue\nof the Americas", 0.0f, "Avenue|of the Americas");
+    check_lines(&m, "a\n\nb", 0.0f, "a||b");
+    check_lines(&m, "  a  \n  b ", 10.0f, "a|b");
+    check_lines(&m, "Frankfurt-Hoechst/Sued", 5.0f, "Frankfurt-|Hoechst/|Sued");
+    check_lines(&m, "Praha (Prag) (Prague)", 6.0f, "Praha (Prag)|(Prague)");
+    assert_int_equal(m.h.warnings, 0);
+    unmake(&m);
+}
+
+static void test_anchors(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    camber_text *text = shape(&m, "long line\nb", noto_sans, (camber_text_desc){.justify = CAMBER_JUSTIFY_LEFT});
+    const float width = text->right - text->left;
+    assert_int_equal(text->line_count, 2);
+    assert_near(text->bottom - text->top, 2.4);
+    assert_near(text->left, -width / 2.0f);
+    assert_near(text->lines[0].width, width);
+    assert_near(text->glyphs[0].x, text->left);
+    assert_near(text->glyphs[text->lines[1].first].x, text->left);
+    /* Noto Sans has an ascender of 1.069 em. */
+    assert_near(text->glyphs[0].y, -0.6 - 17.0 / 24.0 + 1.069);
+    const float x = text->glyphs[0].x, y = text->glyphs[0].y;
+    camber_text_place(text, CAMBER_ANCHOR_TOP_RIGHT, CAMBER_JUSTIFY_AUTO);
+    assert_near(text->right, 0.0);
+    assert_near(text->top, 0.0);
+    assert_near(text->glyphs[0].x, -width);
+    assert_near(text->glyphs[0].y, y + 1.2);
+    assert_near(text->glyphs[text->lines[1].first].x, -text->lines[1].width);
+    camber_text_place(text, CAMBER_ANCHOR_CENTER, CAMBER_JUSTIFY_LEFT);
+    assert_near(text->glyphs[0].x, x);
+    assert_near(text->glyphs[0].y, y);
+    camber_text_destroy(text);
+    unmake(&m);
+}
+
+static void test_spacing_and_scale(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    camber_text *plain = shape(&m, "office", noto_sans, (camber_text_desc){0});
+    camber_text *wide = shape(&m, "office", noto_sans, (camber_text_desc){.letter_spacing_em = 0.1f});
+    assert_int_equal(wide->glyph_count, 6);
+    assert_true(wide->right - wide->left > plain->right - plain->left + 0.45f);
+    camber_text_destroy(plain);
+    camber_text_destroy(wide);
+    camber_text_run runs[3] = {
+        run_of("H", noto_sans), {.image_width_em = 0.5f, .image_height_em = 0.4f}, run_of("H", noto_sans)};
+    camber_text *mixed = NULL;
+    runs[2].scale = 0.5f;
+    assert_int_equal(camber_text_shape(m.fonts, &(camber_text_desc){.runs = runs, .run_count = 3}, &mixed), CAMBER_OK);
+    assert_int_equal(mixed->glyph_count, 3);
+    assert_int_equal(mixed->glyphs[1].glyph, CAMBER_NO_GLYPH);
+    assert_int_equal(mixed->glyphs[2].run, 2);
+    assert_near(mixed->glyphs[0].y, mixed->glyphs[2].y);
+    assert_near(mixed->glyphs[1].y, 7.0 / 24.0 - 0.4); /* it stands on the bottom of the ems */
+    assert_near(mixed->glyphs[2].x, mixed->glyphs[1].x + 0.5);
+    assert_near(mixed->glyphs[2].scale, 0.5);
+    camber_text_destroy(mixed);
+    unmake(&m);
+}
+
+/* ---- Outlines ---- */
+
+static double area_of(const camber_outline *outline) {
+    double area = 0.0;
+    for (size_t r = 0; r < outline->ring_count; r++)
+        for (uint32_t i = outline->offsets[r], end = outline->offsets[r + 1], j = end - 1; i < end; j = i++) {
+            const float *a = outline->points + 2 * (size_t)j, *b = outline->points + 2 * (size_t)i;
+            area += ((double)a[0] * (double)b[1] - (double)b[0] * (double)a[1]) / 2.0;
+        }
+    return area;
+}
+
+static void check_outlines(maker *m, const char *const *fonts, double o_area) {
+    camber_text *text = shape(m, "oi H", fonts, (camber_text_desc){0});
+    static const size_t rings[] = {2, 2, 0, 1};
+    camber_outline outline, fine, again;
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(camber_fonts_get_outline(m->fonts, text->glyphs[i].glyph, 0.0f, &outline), CAMBER_OK);
+        assert_int_equal(outline.ring_count, rings[i]);
+        assert_true(i == 2 || area_of(&outline) > 0.01);
+        assert_int_equal(camber_fonts_get_outline(m->fonts, text->glyphs[i].glyph, 0.0f, &again), CAMBER_OK);
+        assert_ptr_equal(again.points, outline.points);
+        assert_int_equal(camber_fonts_get_outline(m->fonts, text->glyphs[i].glyph, 1e-5f, &fine), CAMBER_OK);
+        assert_true(fabs(area_of(&fine) - area_of(&outline)) < 0.01);
+        if (i == 0)
+            assert_true(fabs(area_of(&fine) - o_area) < 0.02);
+        if (i == 3)
+            assert_true(fabsf(outline.bottom) < 0.01f && outline.top < -0.6f && outline.top > -0.8f);
+    }
+    camber_text_destroy(text);
+}
+
+static void test_outlines(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    check_outlines(&m, noto_sans, 0.122);
+    unmake(&m);
+}
+
+/* ---- Glyphs as signed distances ---- */
+
+typedef struct glyph_folder {
+    const char *folder;
+    uint8_t bytes[1 << 20];
+} glyph_folder;
+
+static camber_status read_range(void *user, const char *stack, uint32_t first, const uint8_t **bytes,
+                                size_t *size_bytes) {
+    glyph_folder *from = user;
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s/%u-%u.pbf", from->folder, stack, first, first + 255);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return CAMBER_ERROR_NOT_FOUND;
+    *size_bytes = fread(from->bytes, 1, sizeof from->bytes, file);
+    *bytes = from->bytes;
+    fclose(file);
+    return CAMBER_OK;
+}
+
+static void test_ranges(void **state) {
+    (void)state;
+    static const char *const names[] = {"Open Sans Semibold", "Arial Unicode MS Bold"};
+    static glyph_folder folder;
+    char path[2048];
+    const char *data = getenv("CAMBER_DATA");
+    snprintf(path, sizeof path, "%s/symbol-tests/glyphs", data ? data : "");
+    if (!data || access(path, R_OK)) {
+        print_message("CAMBER_DATA has no symbol-tests: its glyphs are not read\n");
+        skip();
+    }
+    folder.folder = path;
+    maker m;
+    make_fonts(&m, &(camber_fonts_desc){.no_system = true, .glyphs = read_range, .glyphs_user = &folder});
+    camber_text_run run = run_of("oH", names);
+    run.font_count = 2;
+    camber_text *text = NULL;
+    camber_outline outline;
+    assert_int_equal(camber_text_shape(m.fonts, &(camber_text_desc){.runs = &run, .run_count = 1}, &text), CAMBER_OK);
+    assert_int_equal(text->glyph_count, 2);
+    assert_near(text->glyphs[0].advance, 14.0 / 24.0);
+    assert_near(text->glyphs[0].y, 9.0 / 24.0);
+    assert_int_equal(camber_fonts_get_outline(m.fonts, text->glyphs[0].glyph, 0.0f, &outline), CAMBER_OK);
+    assert_int_equal(outline.ring_count, 2);
+    assert_true(area_of(&outline) > 0.1 && area_of(&outline) < 0.25);
+    assert_int_equal(camber_fonts_get_outline(m.fonts, text->glyphs[1].glyph, 0.0f, &outline), CAMBER_OK);
+    assert_true(fabsf(outline.bottom) < 0.01f);
+    camber_text_destroy(text);
+    assert_int_equal(m.h.warnings, 0);
+    unmake(&m);
+}
+
+/* ---- Fonts ---- */
+
+static void test_names(void **state) {
+    (void)state;
+    camber_font_name name = camber_font_name_split("Open Sans Semibold Italic");
+    assert_true(name.family_key == camber_font_name_key("OpenSans", NULL));
+    assert_true(name.style.weight == 600.0f && name.style.is_italic && name.style.width == 100.0f);
+    name = camber_font_name_split("Noto Sans Semi-Bold");
+    assert_true(name.style.weight == 600.0f && !name.style.is_italic);
+    name = camber_font_name_split("Roboto Condensed Light");
+    assert_true(name.style.weight == 300.0f && name.style.width == 75.0f);
+    assert_true(name.family_key == camber_font_name_key("Roboto", NULL));
+    name = camber_font_name_split("Noto Sans Regular");
+    assert_true(name.whole_key == camber_font_name_key("Noto Sans", NULL) && name.whole_key == name.family_key);
+    name = camber_font_name_split("Bold");
+    assert_true(name.family_key == camber_font_name_key("Bold", NULL));
+    assert_string_equal(camber_font_name_package("Noto Sans CJK JP Bold"), "fonts-noto-cjk");
+    assert_string_equal(camber_font_name_package("Open Sans Bold"), "fonts-open-sans");
+    assert_null(camber_font_name_package("Metropolis Light"));
+}
+
+static void test_missing_font(void **state) {
+    (void)state;
+    static const char *const names[] = {"Metropolis Light"};
+    maker m;
+    make_shipped(&m);
+    for (int i = 0; i < 2; i++) {
+        camber_text *text = shape(&m, "Oslo", names, (camber_text_desc){0});
+        assert_int_equal(text->glyph_count, 4);
+        camber_text_destroy(text);
+        assert_int_equal(m.h.warnings, 1);
+    }
+    unmake(&m);
+    m.context = host_context(&m.h);
+    const char *const folders[] = {"/nonexistent/fonts"};
+    const camber_fonts_desc desc = {.folders = folders, .folder_count = 1};
+    assert_int_equal(camber_fonts_create(m.context, &desc, &m.fonts), CAMBER_ERROR_NOT_FOUND);
+    assert_story(&m.h, "/nonexistent/fonts");
+    host_done(&m.h, m.context);
+}
+
+/* ---- Hostile input ---- */
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+static void check_long(maker *m, const char *part, float max_width_em) {
+    const size_t size = (size_t)1 << 20, part_size = strlen(part);
+    char *text = malloc(size);
+    for (size_t i = 0; i < size; i++)
+        text[i] = part[i % part_size];
+    const camber_text_run run = {.text = text, .size_bytes = size, .fonts = noto_sans, .font_count = 1};
+    const camber_text_desc desc = {.runs = &run, .run_count = 1, .max_width_em = max_width_em};
+    camber_text *made = NULL;
+    const double start = seconds();
+    assert_int_equal(camber_text_shape(m->fonts, &desc, &made), CAMBER_OK);
+    print_message("a megabyte of %zu bytes again and again: %.2f s, %zu lines\n", part_size, seconds() - start,
+                  made->line_count);
+    for (size_t i = 0; i < made->glyph_count; i++)
+        assert_true(isfinite(made->glyphs[i].x) && isfinite(made->glyphs[i].y));
+    camber_text_destroy(made);
+    free(text);
+}
+
+static void test_long(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    check_long(&m, "\xcc\x81", 10.0f);                  /* marks without a letter */
+    check_long(&m, "a\xcc\x81\xcc\xa3\xcc\x8a", 10.0f); /* and with one */
+    check_long(&m, "\xe2\x80\xae", 0.0f);               /* overrides of the direction */
+    check_long(&m, "a\xe2\x80\xae\xd7\x90 ", 10.0f);
+    check_long(&m, "a b-", 1e6f);
+    check_long(&m, "a ", 10.0f);
+    check_long(&m, "\n", 10.0f);
+    const camber_text_run run = {.text = "", .size_bytes = ((size_t)1 << 20) + 1, .fonts = noto_sans, .font_count = 1};
+    camber_text *made = NULL;
+    assert_int_equal(camber_text_shape(m.fonts, &(camber_text_desc){.runs = &run, .run_count = 1}, &made),
+                     CAMBER_ERROR_LIMIT);
+    assert_story(&m.h, "bytes");
+    unmake(&m);
+}
+
+static void test_invalid(void **state) {
+    (void)state;
+    maker m;
+    make_shipped(&m);
+    static const struct {
+        const char *text;
+        size_t size_bytes, glyph_count;
+    } texts[] = {
+        {"a\0b", 3, 2},          /* NUL */
+        {"a\xff\xc0\xaf", 4, 4}, /* what is never UTF-8 */
+        {"\xed\xa0\x80", 3, 3},  /* half of a surrogate pair */
+        {"\xf4\x90\x80\x80", 4, 4},
+        {"\xe2\x82", 2, 2},      /* cut off */
+        {"a\x1b[31m\x7f", 7, 5}, /* control characters */
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        const camber_text_run run = {
+            .text = texts[i].text, .size_bytes = texts[i].size_bytes, .fonts = noto_sans, .font_count = 1};
+        camber_text *made = NULL;
+        assert_int_equal(camber_text_shape(m.fonts, &(camber_text_desc){.runs = &run, .run_count = 1}, &made),
+                         CAMBER_OK);
+        assert_int_equal(made->glyph_count, texts[i].glyph_count);
+        camber_text_destroy(made);
+    }
+    unmake(&m);
+}
+
+/* Files of a folder that are no fonts, or cut off. */
+static void test_broken_files(void **state) {
+    (void)state;
+    char folder[64], path[80];
+    static const size_t sizes[] = {0, 1, 12, 100, 5000, 60000};
+    folder_make(folder);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        snprintf(path, sizeof path, "%s/%zu.ttf", folder, i);
+        file_write(path, camber_font_regular, sizes[i]);
+    }
+    maker m;
+    const char *const folders[] = {folder};
+    make_fonts(&m, &(camber_fonts_desc){.folders = folders, .folder_count = 1, .no_system = true});
+    camber_text *text = shape(&m, "Oslo \xe2\x86\x92 \xd7\x90", noto_sans, (camber_text_desc){0});
+    for (size_t i = 0; i < text->glyph_count; i++) {
+        camber_outline outline;
+        assert_int_equal(camber_fonts_get_outline(m.fonts, text->glyphs[i].glyph, 0.0f, &outline), CAMBER_OK);
+    }
+    camber_text_destroy(text);
+    unmake(&m);
+    folder_remove(folder);
+}
+
+static camber_status shape_once(camber_context *context, void *user) {
+    const camber_text_run run = run_of("Oslo \xd7\x90 (M\xc3\xbchle)", noto_sans);
+    camber_fonts *fonts = NULL;
+    camber_text *text = NULL;
+    camber_outline outline;
+    (void)user;
+    camber_status status = camber_fonts_create(context, &(camber_fonts_desc){.no_system = true}, &fonts);
+    if (!status)
+        status =
+            camber_text_shape(fonts, &(camber_text_desc){.runs = &run, .run_count = 1, .max_width_em = 4.0f}, &text);
+    if (!status)
+        status = camber_fonts_get_outline(fonts, text->glyphs[0].glyph, 0.0f, &outline);
+    camber_text_destroy(text);
+    camber_fonts_destroy(fonts);
+    return status;
+}
+
+static void test_no_memory(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    each_allocation_fails(&h, shape_once, context, NULL);
+    host_done(&h, context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_beside_hb_shape),
+        cmocka_unit_test(test_bidi_beside_unicode),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_both_directions),
+        cmocka_unit_test(test_breaks),
+        cmocka_unit_test(test_anchors),
+        cmocka_unit_test(test_spacing_and_scale),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_missing_font),
+        cmocka_unit_test(test_long),
+        cmocka_unit_test(test_invalid),
+        cmocka_unit_test(test_broken_files),
+        cmocka_unit_test(test_no_memory),
+    };
+    if (getenv("ONLY"))
+        cmocka_set_test_filter(getenv("ONLY"));
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -515,6 +515,10 @@ typedef struct camber_mesh camber_mesh;
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh);
 CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
+/* Gets a second mesh, for the same renderer, that lives as long as this one: for what is drawn among its lines, such as
+ * labels. The first call makes it. It may have a companion, too. Tessellating a mesh empties its companion.
+ * Returns CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_mesh_get_companion(camber_mesh *mesh, camber_mesh **companion);
 
 /* Tessellates on the device, and replaces what the mesh held. The output is in input order, and is the same from run to
  * run, byte for byte. The mesh keeps the polylines: a second call with the same object and other strokes uploads

@@ -8,6 +8,7 @@
 
 #include "camber_files.h"
 #include "camber_network.h"
+#include "camber_text.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,6 +30,13 @@ typedef struct camber_style camber_style;
  * the JSON pointer of a wrong type or value. */
 CAMBER_API camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes,
                                             const char *name, camber_style **style);
+/* Rewrites a style document so that symbol layers read a feature's name in a language first: the properties name:de and
+ * name_de, and then what they read before. language: its code, such as "de". name is used in messages. The context
+ * allocates *translated; camber_style_parse takes it, and camber_style_free_text frees it.
+ * Returns CAMBER_ERROR_ARGUMENT (the language), CAMBER_ERROR_INPUT (not JSON), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_style_translate(camber_context *context, const char *json, size_t size_bytes,
+                                                const char *name, const char *language, char **translated);
+CAMBER_API void camber_style_free_text(camber_context *context, char *text);
 /* Makes the built-in style, "city". Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
@@ -286,6 +294,14 @@ CAMBER_API camber_status camber_features_read_sources(camber_features *features,
  * unknown scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 2^24 px), CAMBER_ERROR_ARGUMENT (the ratio),
  * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path);
+
+/* Reads the fonts that labels are drawn with; without this call symbol layers are left out. Call it before files are
+ * read, since what is only labelled is read only for labels. Glyphs that the style names (as files: nothing is
+ * downloaded) are used before fonts. desc may be NULL. base_path is as in camber_features_read_sources.
+ * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, an unknown scheme),
+ * CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_features_read_fonts(camber_features *features, const camber_fonts_desc *desc,
+                                                    const char *base_path);
 
 /* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */
 

@@ -68,7 +68,8 @@ static void print_bash_value(const camber_option_spec *spec, FILE *file) {
     fprintf(file, "--%s) echo '", spec->name);
     switch (spec->kind) {
     case CAMBER_OPTION_FILE: fputs("@files", file); break;
-    case CAMBER_OPTION_FOLDER: fputs("@folders", file); break;
+    case CAMBER_OPTION_FOLDER:
+    case CAMBER_OPTION_FONTS: fputs("@folders", file); break;
     case CAMBER_OPTION_STYLE:
         fputs("@files ", file);
         print_styles(file);
@@ -179,7 +180,8 @@ static void print_zsh_value(const camber_option_spec *spec, camber_verb verb, FI
     fputc(':', file);
     switch (spec->kind) {
     case CAMBER_OPTION_FILE: fputs("_files", file); break;
-    case CAMBER_OPTION_FOLDER: fputs("_files -/", file); break;
+    case CAMBER_OPTION_FOLDER:
+    case CAMBER_OPTION_FONTS: fputs("_files -/", file); break;
     case CAMBER_OPTION_STYLE: fputs("_camber_styles", file); break;
     case CAMBER_OPTION_DEVICE: fputs("(cpu gpu)", file); break;
     case CAMBER_OPTION_CHOICE:
@@ -199,8 +201,7 @@ static void print_zsh_option(const camber_option_spec *spec, camber_verb verb, F
         fprintf(file, "'(-%c --%s)'{-%c%s,--%s%s}'[", spec->letter, name, spec->letter, spec->argument ? "+" : "", name,
                 is);
     else
-        fprintf(file, "'%s--%s%s[", spec->kind == CAMBER_OPTION_WHERES || spec->kind == CAMBER_OPTION_PLACES ? "*" : "",
-                name, is);
+        fprintf(file, "'%s--%s%s[", camber_option_repeats(spec) ? "*" : "", name, is);
     print_escaped(camber_option_help(spec, verb), file);
     fputc(']', file);
     print_zsh_value(spec, verb, file);

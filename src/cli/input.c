@@ -160,9 +160,21 @@ int camber_input_read_style(camber_session *session, const char *path, camber_th
     return status;
 }
 
+static int translate(camber_session *session, camber_style_input *document, char **translated) {
+    const camber_status status =
+        camber_style_translate(session->context, document->text, document->size_bytes, document->name,
+                               session->options->language, translated);
+    if (status == CAMBER_OK) {
+        document->text = *translated;
+        document->size_bytes = strlen(*translated);
+    }
+    return camber_report_status(session->report, status);
+}
+
 int camber_input_make_style(camber_session *session, camber_theme theme, camber_style **style, const char **base_path) {
     const camber_options *options = session->options;
     camber_style_input document = {.name = "the built-in style"};
+    char *translated = NULL;
     int status = CAMBER_EXIT_DONE;
     if (options->style)
         status = camber_input_read_style(session, options->style, theme, &document);
@@ -170,11 +182,14 @@ int camber_input_make_style(camber_session *session, camber_theme theme, camber_
         document.text = camber_style_get_text(camber_style_list(0), theme, &document.size_bytes);
     if (status == CAMBER_EXIT_DONE && camber_plain_is_given(options))
         status = camber_plain_apply(session, &document);
+    if (status == CAMBER_EXIT_DONE && options->language)
+        status = translate(session, &document, &translated);
     if (status == CAMBER_EXIT_DONE) {
         *base_path = document.base_path;
         status = camber_report_status(session->report, camber_style_parse(session->context, document.text,
                                                                           document.size_bytes, document.name, style));
     }
+    camber_style_free_text(session->context, translated);
     free(document.bytes);
     return status;
 }
@@ -255,6 +270,16 @@ static int read_for_view(const camber_input *input, bool *done) {
     return camber_report_status(input->session->report, camber_features_read_for(input->features, &desc));
 }
 
+/* Labels are drawn in pictures of one view. */
+static int read_fonts(const camber_input *input) {
+    const camber_options *options = input->session->options;
+    if (options->verb != CAMBER_VERB_RENDER || options->no_labels)
+        return CAMBER_EXIT_DONE;
+    const camber_fonts_desc desc = {.folders = options->fonts, .folder_count = options->font_count};
+    return camber_report_status(input->session->report,
+                                camber_features_read_fonts(input->features, &desc, input->base_path));
+}
+
 static int open_map(camber_input *input) {
     camber_session *session = input->session;
     const double start_ms = camber_now_ms();
@@ -267,6 +292,8 @@ static int open_map(camber_input *input) {
     if (status == CAMBER_EXIT_DONE)
         status = camber_report_status(session->report,
                                       camber_features_create(session->context, input->style, &input->features));
+    if (status == CAMBER_EXIT_DONE)
+        status = read_fonts(input);
     if (status == CAMBER_EXIT_DONE)
         status = read_for_view(input, &done);
     for (size_t i = 0; !done && i < session->options->input_count && status == CAMBER_EXIT_DONE; i++)

@@ -223,10 +223,13 @@ static int parse_value(const camber_option_reader *p, const camber_option_spec *
     case CAMBER_OPTION_STYLE:
     case CAMBER_OPTION_DEVICE:
     case CAMBER_OPTION_WHERES:
+    case CAMBER_OPTION_FONTS:
         if (*text == 0)
             return camber_options_refuse(p, "--%s: empty; give %s", spec->name, spec->argument);
         if (spec->kind == CAMBER_OPTION_WHERES)
             p->options->wheres[p->options->where_count++] = text;
+        else if (spec->kind == CAMBER_OPTION_FONTS)
+            p->options->fonts[p->options->font_count++] = text;
         else
             *(const char **)(void *)field = text;
         return CAMBER_EXIT_DONE;
@@ -411,8 +414,9 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
     const camber_option_reader p = {options, message, message_size, NULL};
     options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
     options->wheres = calloc((size_t)argc + 1, sizeof *options->wheres);
+    options->fonts = calloc((size_t)argc + 1, sizeof *options->fonts);
     options->places = calloc((size_t)argc + 1, sizeof *options->places);
-    if (!options->inputs || !options->wheres || !options->places) {
+    if (!options->inputs || !options->wheres || !options->fonts || !options->places) {
         (void)camber_options_refuse(&p, "out of memory for %d arguments; give fewer", argc);
         return CAMBER_EXIT_INTERNAL;
     }
@@ -446,5 +450,6 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
 void camber_options_free(camber_options *options) {
     free(options->inputs);
     free(options->wheres);
+    free(options->fonts);
     free(options->places);
 }

@@ -63,6 +63,10 @@ typedef struct camber_options {
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
     const char *attribution; /* "": none */
     const char *where;       /* the first */
+    const char **fonts; /* font_count folders, each as --fonts gave it */
+    size_t font_count;
+    const char *language; /* of names. NULL: as they are */
+    bool no_labels;
     const char *root;        /* a style reads no file outside this folder. NULL: any file */
     bool allow_remote, allow_vrt;
     int completion; /* camber_shell whose completion is to be printed; -1: none */

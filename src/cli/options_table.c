@@ -36,6 +36,7 @@ enum {
 #endif
     SEEN = MAPS & ~PYRAMIDS, /* one view of a map */
     STYLED = MAPS & ~COMPARE,
+    LABELLED = MAPS & RENDER,
     SIGNED = MAPS & (RENDER | TESSELLATE | PYRAMIDS),
 };
 
@@ -101,6 +102,11 @@ const camber_option_spec camber_option_specs[] = {
      "colour of areas without a rule in the built-in style"},
     {"width", 0, CAMBER_OPTION_NUMBER, SIGNED, FIELD(width), "PX",
      "width of lines without a rule in the built-in style, in CSS px (1.6)", 0.1, 1000},
+    {"fonts", 0, CAMBER_OPTION_FONTS, LABELLED, 0, "FOLDER",
+     "search this folder for fonts before the system's; may be given several times"},
+    {"language", 0, CAMBER_OPTION_TEXT, LABELLED, FIELD(language), "CODE",
+     "language of names, such as de; without a name in it, the local name"},
+    {"no-labels", 0, CAMBER_OPTION_FLAG, LABELLED, FIELD(no_labels), NULL, "draw no labels"},
     {"layer", 0, CAMBER_OPTION_TEXT, MAPS, FIELD(layer), "NAME", "read only this layer of INPUT"},
     {"where", 0, CAMBER_OPTION_WHERES, MAPS, 0, "SQL",
      "read only matching features, as in \"highway='primary'\"; compare: each makes a network",

@@ -17,6 +17,7 @@ typedef enum camber_option_kind {
     CAMBER_OPTION_TEXT,   /* const char * */
     CAMBER_OPTION_FILE,   /* const char *, a path */
     CAMBER_OPTION_FOLDER, /* const char *, a path */
+    CAMBER_OPTION_FONTS,  /* camber_options.fonts: folders, several times */
     CAMBER_OPTION_STYLE,  /* const char *, the name of a style that ships, or a path */
     CAMBER_OPTION_DEVICE, /* const char *, cpu, gpu, or part of a name */
     CAMBER_OPTION_WORDS,  /* const char *, UTF-8; may be empty */
@@ -56,6 +57,11 @@ extern const size_t camber_verb_count;
 extern const camber_option_spec camber_option_specs[];
 extern const size_t camber_option_count;
 
+/* Whether the option may be given several times. */
+static inline bool camber_option_repeats(const camber_option_spec *spec) {
+    return spec->kind == CAMBER_OPTION_WHERES || spec->kind == CAMBER_OPTION_PLACES ||
+           spec->kind == CAMBER_OPTION_FONTS;
+}
 /* An option's help in that of a verb, or in the tool's (CAMBER_VERB_NONE). "": the verb's help leaves it out. */
 const char *camber_option_help(const camber_option_spec *spec, camber_verb verb);
 /* An option's argument as that help shows it: the words that the verb takes. */

@@ -103,6 +103,8 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features->whole_counts);
     camber_free(context, features->importance);
     camber_free(context, features->points);
+    if (features->fonts)
+        features->free_fonts(features);
     if (features->sprites)
         features->free_sprites(features->sprites);
     camber_free(context, features);

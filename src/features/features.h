@@ -76,6 +76,10 @@ struct camber_features {
     void (*free_sprites)(
         struct camber_sprites *sprites); /* a pointer, because the module that reads files does not contain sprites */
 
+    struct camber_fonts *fonts; /* what labels are drawn with. NULL: not read, and there are no labels */
+    void *fonts_user;           /* of the glyphs that they read */
+    void (*free_fonts)(camber_features *features); /* a pointer, as for sprites */
+
     void *interned; /* the hash tables of strings and classes (features.c) */
 };
 

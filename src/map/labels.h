@@ -12,7 +12,7 @@
 
 /* How items are drawn: the same for all glyphs of a label's section. */
 typedef struct camber_label_look {
-    camber_color color; /* straight; alpha includes all opacities */
+    camber_color color; /* straight; alpha includes all opacities. Of an icon without sdf: white, with its opacity */
     camber_color halo_color;
     float halo_width_px, halo_blur_px; /* device px */
     bool flat;                         /* it lies on the map: a pitch tilts it */
@@ -28,12 +28,15 @@ typedef struct camber_label_item {
      * px = (x + xx * u + xy * v, y + yx * u + yy * v). If the look is flat, px are of the map's plane; else they are of
      * the picture as it is seen, whatever the pitch. */
     float x, y, xx, xy, yx, yy;
+    /* An icon that is fitted to a text keeps the parts of its image that must not be stretched: a px of these is so
+     * many px of the picture. 0: the icon is not fitted. */
+    float unstretched_px;
 } camber_label_item;
 
 /* A label that is shown. */
 typedef struct camber_label {
     uint32_t feature;
-    camber_box box; /* around its parts, device px of the picture */
+    camber_box box; /* around its parts with their padding, device px of the picture */
 } camber_label;
 
 /* The items of a layer of the style, in drawing order: icons, then text. */
@@ -56,10 +59,10 @@ typedef struct camber_labels {
 } camber_labels;
 
 /* Places the labels of a view. The result depends neither on the number of threads nor on the order of the features.
- * fonts may make new outlines. sprites may be NULL. Free it with camber_labels_free, also after a failure.
- * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
+ * fonts may make new outlines. sprites, which note missing names, may be NULL. Free it with camber_labels_free, also
+ * after a failure. Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 camber_status camber_labels_place(const camber_features *features, const camber_view *view, camber_fonts *fonts,
-                                  const camber_sprites *sprites, camber_labels *labels);
+                                  camber_sprites *sprites, camber_labels *labels);
 void camber_labels_free(camber_labels *labels);
 
 #endif

@@ -1,7 +1,7 @@
-/* Makes the passes that draw a plan with a mesh.
+/* Passes: the steps in which a plan is drawn with a mesh.
  *
  * Input: a plan, and which of its pairs or rows have polylines in the mesh. Output: passes over these polylines, each
- * with its paints. Main idea: consecutive opaque layers whose polylines are adjacent become one pass. */
+ * with its paints. Main idea: opaque layers whose polylines follow each other become one pass. */
 #include "map/passes.h"
 
 #include <string.h>
@@ -30,7 +30,8 @@ typedef struct layer_run {
     float opacity; /* the layer's opacity; 1 if several layers are drawn together */
     camber_overlap overlap;
     bool opaque;
-    const camber_plan_fill *fill; /* NULL: none. With a fill, the fields above are unused */
+    const camber_plan_fill *fill;     /* NULL: none. With a fill or labels, the fields above are unused */
+    const camber_label_range *labels; /* NULL: none */
 } layer_run;
 
 static bool draws(const camber_paint *paint) {
@@ -52,18 +53,26 @@ static bool layer_draws(const camber_mesh_rows *rows, const camber_plan_layer *l
     return drawn;
 }
 
+/* Whether a range of labels is below a layer of the plan. Beyond the last one, all are. */
+static bool are_below(const camber_mesh_rows *rows, size_t range, size_t layer) {
+    return layer == rows->plan->layer_count ||
+           rows->labels->ranges[range].layer < (size_t)(rows->plan->layers[layer].look.layer - rows->style_layers);
+}
+
 /* Groups layers into runs. Consecutive opaque layers whose polylines are adjacent are drawn by one pass. A translucent
  * layer has its own pass, because it is flattened separately. A layer of areas also has its own, because equal fills of
  * two layers would otherwise become one path; if it has an opacity, its outline is in the same pass. Fills of the whole
- * picture come between. */
+ * picture, and labels, come between. */
 static size_t find_runs(const camber_mesh_rows *rows, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = rows->plan;
-    size_t count = 0, fill = 0, counted = plan->layer_count;
+    size_t count = 0, fill = 0, range = 0, counted = plan->layer_count;
     *layer_count = 0;
     for (size_t i = 0; i <= plan->layer_count; i++) {
         bool opaque;
         for (; fill < plan->patterns.fill_count && plan->patterns.fills[fill].before == i; fill++)
             runs[count++] = (layer_run){.fill = plan->patterns.fills + fill};
+        for (; rows->labels && range < rows->labels->range_count && are_below(rows, range, i); range++)
+            runs[count++] = (layer_run){.labels = rows->labels->ranges + range};
         if (i == plan->layer_count)
             break;
         if (!layer_draws(rows, plan->layers + i, &opaque))
@@ -73,8 +82,7 @@ static size_t find_runs(const camber_mesh_rows *rows, layer_run *runs, size_t *l
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
         const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
         opaque = opaque && opacity >= 1.0f;
-        const size_t first = rows->first_polylines[plan->layers[i].set],
-                     end = rows->first_polylines[plan->layers[i].set + 1];
+        const size_t first = rows->first_polylines[plan->layers[i].set], end = rows->first_polylines[plan->layers[i].set + 1];
         const camber_overlap overlap = plan->layers[i].look.layer->overlap;
         layer_run *last = count ? runs + count - 1 : NULL;
         const bool same_group = opacity < 1.0f && plan->layers[i].part == CAMBER_PLAN_OUTLINE && last &&
@@ -85,14 +93,14 @@ static size_t find_runs(const camber_mesh_rows *rows, layer_run *runs, size_t *l
             last->end_polyline = end;
             last->end_paint = end_of(rows, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, first, end, end_of(rows, set), opacity, overlap, opaque, NULL};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(rows, set), opacity, overlap, opaque, NULL, NULL};
         }
     }
     return count;
 }
 
-/* Removes everything that depends on the position along a line, because lines that were cut do not know where they
- * begin: patterns are dropped, and a gradient becomes its middle colour. */
+/* Lines that were cut do not know where their polylines begin, so patterns are dropped, and a gradient becomes the
+ * colour of its middle. */
 static void forget_progress(camber_paint *paint) {
     if (paint->ramp) {
         const float alpha = paint->color.a;
@@ -122,10 +130,39 @@ static void put_paints(const camber_mesh_rows *rows, const layer_run *run, cambe
     }
 }
 
+/* Adds the pass of a run of layers or of a fill. Returns the first of the paints that are left. */
+static camber_paint *add_pass(const camber_mesh_rows *rows, const layer_run *run, camber_paint *paints,
+                              camber_pass_list *list) {
+    camber_pass *pass = list->passes + list->count++;
+    put_paints(rows, run, paints);
+    *pass = (camber_pass){.first_polyline = run->first_polyline,
+                          .polyline_count = run->end_polyline - run->first_polyline,
+                          .paints = paints,
+                          .paint_count = run->end_paint,
+                          .overlap = run->overlap,
+                          .opacity = run->opacity};
+    if (run->fill) {
+        pass->kind = CAMBER_PASS_FILL;
+        pass->fill = run->fill->fill;
+    }
+    return paints + run->end_paint;
+}
+
+static bool allocate_passes(camber_context *context, const layer_run *runs, size_t run_count, size_t paint_count,
+                            camber_pass_list *list) {
+    size_t count = 0;
+    for (size_t i = 0; i < run_count; i++)
+        count += runs[i].labels ? CAMBER_LABEL_PASSES : 1u;
+    return (list->paints = camber_alloc(context, paint_count, sizeof *list->paints)) &&
+           (list->passes = camber_alloc(context, count, sizeof *list->passes)) &&
+           (list->meshes = camber_alloc_zero(context, count, sizeof *list->meshes));
+}
+
 camber_status camber_passes_make(camber_context *context, const camber_mesh_rows *rows, size_t *layer_count,
                                  camber_pass_list *list) {
+    const size_t ranges = rows->labels ? rows->labels->range_count : 0;
     camber_status status = CAMBER_ERROR_MEMORY;
-    layer_run *runs = camber_alloc(context, rows->plan->layer_count + rows->plan->patterns.fill_count, sizeof *runs);
+    layer_run *runs = camber_alloc(context, rows->plan->layer_count + rows->plan->patterns.fill_count + ranges, sizeof *runs);
     if (!runs)
         return CAMBER_ERROR_MEMORY;
     const size_t count = find_runs(rows, runs, layer_count);
@@ -133,30 +170,20 @@ camber_status camber_passes_make(camber_context *context, const camber_mesh_rows
     for (size_t i = 0; i < count; i++)
         paint_count += runs[i].end_paint;
     if (paint_count > MOST_PAINTS) {
-        status = camber_fail(context, CAMBER_ERROR_LIMIT,
-                             "style: %zu passes with up to %zu kinds of lines are too many; use fewer layers", count,
-                             runs[count - 1].end_paint);
+        status = camber_fail(context, CAMBER_ERROR_LIMIT, "style: %zu passes over %zu kinds of lines; use fewer layers",
+                             count, runs[count - 1].end_paint);
         goto done;
     }
-    if (!(list->paints = camber_alloc(context, paint_count, sizeof *list->paints)) ||
-        !(list->passes = camber_alloc(context, count, sizeof *list->passes)))
+    if (!allocate_passes(context, runs, count, paint_count, list))
         goto done;
     camber_paint *paints = list->paints;
     for (size_t i = 0; i < count; i++) {
-        put_paints(rows, runs + i, paints);
-        list->passes[i] = (camber_pass){.first_polyline = runs[i].first_polyline,
-                                        .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
-                                        .paints = paints,
-                                        .paint_count = runs[i].end_paint,
-                                        .overlap = runs[i].overlap,
-                                        .opacity = runs[i].opacity};
-        if (runs[i].fill) {
-            list->passes[i].kind = CAMBER_PASS_FILL;
-            list->passes[i].fill = runs[i].fill->fill;
-        }
-        paints += runs[i].end_paint;
+        if (runs[i].labels)
+            list->count += camber_label_shapes_passes(rows->labels, runs[i].labels, list->passes + list->count,
+                                                      list->meshes + list->count);
+        else
+            paints = add_pass(rows, runs + i, paints, list);
     }
-    list->count = count;
     status = CAMBER_OK;
 done:
     camber_free(context, runs);
@@ -165,5 +192,6 @@ done:
 
 void camber_passes_free(camber_context *context, camber_pass_list *list) {
     camber_free(context, list->passes);
+    camber_free(context, list->meshes);
     camber_free(context, list->paints);
 }

@@ -40,9 +40,8 @@ static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, c
     return kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POLYGON || (kind == CAMBER_GEOMETRY_POINT && points);
 }
 
-/* Whether the layer's filter gets to see features of the class: whether its source and its source layer match. */
-static bool matches_source(const camber_features *features, const camber_style_layer *layer,
-                           const camber_feature_class *class) {
+bool camber_plan_comes_to(const camber_features *features, const camber_style_layer *layer,
+                          const camber_feature_class *class) {
     if (layer->plain && !class->plain)
         return false;
     if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
@@ -60,7 +59,7 @@ static camber_plan_part part_of(const camber_style_layer *layer) {
 bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
                         const camber_feature_class *class) {
     const camber_feature_view feature = camber_plan_view_of(features, class);
-    return layer->kind == CAMBER_LAYER_SYMBOL && class->labelled && matches_source(features, layer, class) &&
+    return layer->kind == CAMBER_LAYER_SYMBOL && class->labelled && camber_plan_comes_to(features, layer, class) &&
            camber_style_layer_matches(layer, zoom, &feature);
 }
 
@@ -71,13 +70,13 @@ bool camber_plan_takes(const camber_features *features, const camber_style_layer
     const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
                       (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
     return layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && fits &&
-           matches_source(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
+           camber_plan_comes_to(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
                         const camber_feature_class *class) {
     const camber_style_layer *layer = drawn->look.layer;
-    if (!takes_kind(layer, drawn->part, class->geometry) || !matches_source(features, layer, class))
+    if (!takes_kind(layer, drawn->part, class->geometry) || !camber_plan_comes_to(features, layer, class))
         return false;
     const camber_feature_view feature = camber_plan_view_of(features, class);
     return camber_style_layer_matches(layer, camber_view_style_zoom(view), &feature);

@@ -116,7 +116,10 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
 void camber_plan_entries_free(camber_plan_entries *list);
 /* Returns a class as the style's expressions see it. */
 camber_feature_view camber_plan_view_of(const camber_features *features, const camber_feature_class *class);
-/* Whether a layer takes features of the class at a zoom. It may still draw them without width or colour. */
+/* Whether features of the class come to the layer's filter: those of its source and source layer do. */
+bool camber_plan_comes_to(const camber_features *features, const camber_style_layer *layer,
+                          const camber_feature_class *class);
+/* Whether a layer takes features of the class at a zoom, which it may yet draw without width or colour. */
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class);
 /* Whether a symbol layer takes them. A plan does not contain labels. */

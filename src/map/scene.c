@@ -7,6 +7,7 @@
  * memory for drawing does not grow with the data. camber_scene_project makes the same lines on the host, with the CPU
  * twin. */
 #include "map/scene.h"
+#include "map/label_shapes.h"
 #include "map/passes.h"
 #include "map/plan_areas.h"
 #include "map/plan_network.h"
@@ -25,6 +26,7 @@ struct camber_scene {
     camber_view view;
     camber_plan_network geometry;
     camber_pass_list pair_passes;
+    camber_label_shapes labels; /* of the picture */
 
     /* On the host: empty until camber_scene_project. */
     bool is_projected;
@@ -44,7 +46,12 @@ static camber_status make_pair_passes(camber_scene *scene) {
     const size_t count = scene->geometry.first_entries[plan->set_count];
     for (size_t i = 0; i < count; i++)
         used[scene->geometry.entries[i].row] = true;
-    const camber_mesh_rows rows = {plan, true, scene->geometry.first_entries, used};
+    const camber_mesh_rows rows = {.plan = plan,
+                                .by_pair = true,
+                                .first_polylines = scene->geometry.first_entries,
+                                .used = used,
+                                .labels = &scene->labels,
+                                .style_layers = scene->zoom->features->style->layers};
     const camber_status status = camber_passes_make(scene->context, &rows, &layer_count, &scene->pair_passes);
     camber_free(scene->context, used);
     return status;
@@ -88,7 +95,7 @@ static camber_status make_row_passes(camber_scene *scene) {
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < scene->seen.lines.polyline_count; i++)
         used[scene->seen.rows[i]] = true;
-    const camber_mesh_rows rows = {plan, false, scene->seen.first_polylines, used};
+    const camber_mesh_rows rows = {.plan = plan, .first_polylines = scene->seen.first_polylines, .used = used};
     const camber_status status = camber_passes_make(scene->context, &rows, &scene->counts.layers, &scene->passes);
     camber_free(scene->context, used);
     return status;
@@ -145,6 +152,20 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
     return status;
 }
 
+/* Places the labels of the view and makes their shapes, if fonts were read with the features. */
+static camber_status make_labels(camber_scene *scene) {
+    const camber_features *features = scene->zoom->features;
+    camber_labels labels = {0};
+    if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
+        return CAMBER_OK;
+    camber_status status =
+        camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
+    if (status == CAMBER_OK)
+        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
+    camber_labels_free(&labels);
+    return status;
+}
+
 /* Makes the scene of a whole view. former: a network that is taken over if it can be used for this view, too. */
 static camber_status make_view_scene(camber_scene *scene, const camber_features *features,
                                      const camber_scene_desc *desc, camber_plan_network *former,
@@ -155,6 +176,9 @@ static camber_status make_view_scene(camber_scene *scene, const camber_features 
     scene->zoom = scene->own;
     scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
     scene->view = scene->zoom->view;
+    status = make_labels(scene); /* first, since making the network may take the features' points */
+    if (status != CAMBER_OK)
+        return status;
     if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
         scene->geometry = *former;
         *former = (camber_plan_network){0};
@@ -167,6 +191,7 @@ static camber_status make_view_scene(camber_scene *scene, const camber_features 
 static void release_contents(camber_scene *scene) {
     release_projection(scene);
     camber_passes_free(scene->context, &scene->pair_passes);
+    camber_label_shapes_free(&scene->labels);
     camber_plan_network_destroy(&scene->geometry);
     camber_zoom_plan_destroy(scene->own);
 }
@@ -295,7 +320,8 @@ camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *vie
 camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method) {
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc desc = desc_of(scene, method);
-    return camber_mesh_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
+    const camber_status status = camber_mesh_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
+    return status == CAMBER_OK ? camber_label_shapes_tessellate(&scene->labels, mesh, method) : status;
 }
 
 camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
@@ -367,14 +393,24 @@ static void move_fills(camber_scene *scene) {
             scene->pair_passes.passes[i].fill = patterns->fills[fill++].fill;
 }
 
+/* Sets the meshes of passes. Labels' are companions, which camber_scene_tessellate made. */
+static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
+    camber_mesh *meshes[] = {mesh, NULL, NULL};
+    for (size_t i = 0; i < list->count; i++) {
+        for (size_t k = 1; k <= list->meshes[i] && !meshes[k]; k++)
+            if (camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
+                meshes[k] = mesh; /* it draws nothing that it does not hold */
+        list->passes[i].mesh = meshes[list->meshes[i]];
+    }
+}
+
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
     const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
     assert(holds_network || scene->is_projected);
     if (!scene->own && (scene->zoom->has_images || scene->zoom->has_area_images))
         move_fills(scene);
     const camber_pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
-    for (size_t i = 0; i < list->count; i++)
-        list->passes[i].mesh = mesh;
+    set_meshes(list, mesh);
     return (camber_frame){.width = scene->view.width,
                           .height = scene->view.height,
                           .background = scene->zoom->plan.background,

@@ -178,6 +178,14 @@ void camber_view_corners(const camber_view *view, double corners[8]) {
     }
 }
 
+camber_view_lens camber_view_lens_of(const camber_view *view) {
+    camber_view_lens lens = {
+        .pitched = view->pitch_deg > 0.0, .half_width = 0.5 * view->width, .half_height = 0.5 * view->height};
+    if (lens.pitched)
+        lens.perspective = camber_perspective_of(view->pitch_deg, view->height);
+    return lens;
+}
+
 double camber_view_style_zoom(const camber_view *view) {
     return view->zoom < 0.0 ? 0.0 : view->zoom;
 }

@@ -4,6 +4,7 @@
 #define CAMBER_MAP_VIEW_H
 
 #include "base/base.h"
+#include "base/perspective.h"
 #include "camber_map.h"
 
 /* An axis-aligned box. It is empty if x0 > x1. */
@@ -55,7 +56,31 @@ static inline void camber_view_project(const camber_view *view, double world_x, 
     px[1] = dy * view->cosine - dx * view->sine + 0.5 * view->height;
 }
 
-/* Returns the bounds in device px of a box in world coordinates. */
+/* How a picture shows the plane of the map: as it is without a pitch, else in perspective. */
+typedef struct camber_view_lens {
+    bool pitched;
+    camber_perspective perspective;
+    double half_width, half_height;
+} camber_view_lens;
+
+camber_view_lens camber_view_lens_of(const camber_view *view);
+/* Px of the plane to px of the picture as it is seen. Returns the depth: 1 at the centre, more above it. 0: the
+ * point is not in front of the camera, and it is not seen. */
+static inline double camber_lens_see(const camber_view_lens *lens, const double *plane, double *seen) {
+    const double x = plane[0] - lens->half_width, y = plane[1] - lens->half_height;
+    const double depth = 1.0 - lens->perspective.fall * y;
+    seen[0] = plane[0];
+    seen[1] = plane[1];
+    if (!lens->pitched)
+        return 1.0;
+    if (!(depth > 1e-6))
+        return 0.0;
+    seen[0] = lens->half_width + x / depth;
+    seen[1] = lens->half_height + lens->perspective.cosine * y / depth;
+    return depth;
+}
+
+/* Bounds in device px of a box in world coordinates. */
 camber_box camber_view_project_box(const camber_view *view, camber_box world);
 
 static inline void camber_box_add(camber_box *box, double x, double y) {

@@ -20,10 +20,26 @@ camber_status camber_mesh_create_on(camber_device *device, const camber_shared_b
     return CAMBER_OK;
 }
 
+camber_status camber_mesh_get_companion(camber_mesh *mesh, camber_mesh **companion) {
+    if (!mesh->companion) {
+        camber_mesh *made;
+        const camber_status status =
+            camber_mesh_create_on(mesh->device, mesh->ops, mesh->ops_user, mesh->output, &made);
+        if (status != CAMBER_OK)
+            return status;
+        made->owner = mesh->owner;
+        made->buffer_copies = mesh->buffer_copies;
+        mesh->companion = made;
+    }
+    *companion = mesh->companion;
+    return CAMBER_OK;
+}
+
 void camber_mesh_destroy(camber_mesh *mesh) {
     if (!mesh)
         return;
     camber_context *context = mesh->device->context;
+    camber_mesh_destroy(mesh->companion);
     camber_mesh_return_points(mesh);
     camber_mesh_release_parts(mesh);
     camber_mesh_release_source(mesh);

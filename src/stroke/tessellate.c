@@ -206,6 +206,8 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     camber_status status = camber_check_process(context);
     if (status != CAMBER_OK)
         return status;
+    for (camber_mesh *companion = mesh->companion; companion; companion = companion->companion)
+        companion->empty = true;
     mesh->empty = mesh->joins_counted = true;
     mesh->done = mesh->round_limits = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = mesh->wide = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {

@@ -1,0 +1,124 @@
+/* Tells whether a label would cover others.
+ *
+ * Input: shapes, one after the other. Output: whether one is free. Main idea: a grid of cells, each with a list of the
+ * shapes that touch it. */
+#include "map/collision.h"
+
+#include <math.h>
+
+/* A grid has no more cells than this a side; beyond that they are larger. */
+enum { MOST_CELLS_A_SIDE = 1024 };
+
+camber_status camber_collision_make(camber_context *context, camber_box bounds, double cell,
+                                    camber_collision *collision) {
+    const double width = bounds.x1 - bounds.x0, height = bounds.y1 - bounds.y0;
+    camber_collision made = {.context = context, .bounds = bounds};
+    made.cell = fmax(cell, fmax(width, height) / MOST_CELLS_A_SIDE);
+    made.columns = (size_t)(width / made.cell) + 1;
+    made.rows = (size_t)(height / made.cell) + 1;
+    made.cells = camber_alloc_zero(context, made.columns * made.rows, sizeof *made.cells);
+    *collision = made;
+    return made.cells ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+void camber_collision_free(camber_collision *collision) {
+    camber_free(collision->context, collision->cells);
+    camber_free(collision->context, collision->entries);
+    camber_free(collision->context, collision->shapes);
+    camber_free(collision->context, collision->overlaps);
+}
+
+/* ---- Shapes ---- */
+
+static bool circles_meet(const camber_obstacle *a, const camber_obstacle *b) {
+    const double dx = 0.5 * ((double)a->x0 + (double)a->x1 - (double)b->x0 - (double)b->x1);
+    const double dy = 0.5 * ((double)a->y0 + (double)a->y1 - (double)b->y0 - (double)b->y1);
+    const double reach = (double)a->radius + (double)b->radius;
+    return dx * dx + dy * dy < reach * reach;
+}
+
+static bool circle_meets_box(const camber_obstacle *circle, const camber_obstacle *box) {
+    const double x = 0.5 * ((double)circle->x0 + (double)circle->x1),
+                 y = 0.5 * ((double)circle->y0 + (double)circle->y1);
+    const double dx = x - fmin(fmax(x, (double)box->x0), (double)box->x1);
+    const double dy = y - fmin(fmax(y, (double)box->y0), (double)box->y1);
+    return dx * dx + dy * dy <= (double)circle->radius * (double)circle->radius;
+}
+
+bool camber_obstacles_meet(const camber_obstacle *a, const camber_obstacle *b) {
+    if (!(a->x0 <= b->x1 && a->x1 >= b->x0 && a->y0 <= b->y1 && a->y1 >= b->y0))
+        return false;
+    if (a->radius > 0.0f)
+        return b->radius > 0.0f ? circles_meet(a, b) : circle_meets_box(a, b);
+    return b->radius > 0.0f ? circle_meets_box(b, a) : true;
+}
+
+/* Whether a new label may cover one that is there. */
+static bool may_overlap(camber_symbol_overlap made, camber_symbol_overlap there) {
+    return made == CAMBER_OVERLAP_ALWAYS || (made != CAMBER_OVERLAP_NEVER && there != CAMBER_OVERLAP_NEVER);
+}
+
+/* ---- The grid ---- */
+
+typedef struct cell_range {
+    size_t x0, y0, x1, y1; /* all of them count */
+} cell_range;
+
+static size_t cell_of(double offset, double cell, size_t count) {
+    const double at = floor(offset / cell);
+    return at <= 0.0 ? 0 : at >= (double)(count - 1) ? count - 1 : (size_t)at;
+}
+
+static cell_range cells_of(const camber_collision *c, const camber_obstacle *shape) {
+    return (cell_range){cell_of((double)shape->x0 - c->bounds.x0, c->cell, c->columns),
+                        cell_of((double)shape->y0 - c->bounds.y0, c->cell, c->rows),
+                        cell_of((double)shape->x1 - c->bounds.x0, c->cell, c->columns),
+                        cell_of((double)shape->y1 - c->bounds.y0, c->cell, c->rows)};
+}
+
+bool camber_collision_holds(const camber_collision *collision, const camber_obstacle *shape) {
+    const camber_box *b = &collision->bounds;
+    return (double)shape->x1 >= b->x0 && (double)shape->x0 < b->x1 && (double)shape->y1 >= b->y0 &&
+           (double)shape->y0 < b->y1;
+}
+
+bool camber_collision_hits(const camber_collision *collision, const camber_obstacle *shape,
+                           camber_symbol_overlap overlap) {
+    const camber_collision *c = collision;
+    if (overlap == CAMBER_OVERLAP_ALWAYS || !camber_collision_holds(c, shape))
+        return false;
+    const cell_range range = cells_of(c, shape);
+    for (size_t y = range.y0; y <= range.y1; y++)
+        for (size_t x = range.x0; x <= range.x1; x++)
+            for (uint32_t e = c->cells[y * c->columns + x]; e; e = c->entries[e - 1].next) {
+                const uint32_t there = c->entries[e - 1].shape;
+                if (camber_obstacles_meet(shape, c->shapes + there) &&
+                    !may_overlap(overlap, (camber_symbol_overlap)c->overlaps[there]))
+                    return true;
+            }
+    return false;
+}
+
+camber_status camber_collision_add(camber_collision *collision, const camber_obstacle *shape,
+                                   camber_symbol_overlap overlap) {
+    camber_collision *c = collision;
+    if (!camber_collision_holds(c, shape))
+        return CAMBER_OK;
+    const cell_range range = cells_of(c, shape);
+    const size_t added = (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1);
+    if (c->entry_count + added >= UINT32_MAX)
+        return camber_fail(c->context, CAMBER_ERROR_LIMIT, "labels: more than 2^32 places in the grid");
+    if (!camber_grow(c->context, &c->shapes, &c->shape_capacity, c->shape_count + 1, sizeof *c->shapes) ||
+        !camber_grow(c->context, &c->overlaps, &c->overlap_capacity, c->shape_count + 1, sizeof *c->overlaps) ||
+        !camber_grow(c->context, &c->entries, &c->entry_capacity, c->entry_count + added, sizeof *c->entries))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t y = range.y0; y <= range.y1; y++)
+        for (size_t x = range.x0; x <= range.x1; x++) {
+            uint32_t *cell = c->cells + y * c->columns + x;
+            c->entries[c->entry_count++] = (camber_grid_entry){(uint32_t)c->shape_count, *cell};
+            *cell = (uint32_t)c->entry_count;
+        }
+    c->shapes[c->shape_count] = *shape;
+    c->overlaps[c->shape_count++] = (uint8_t)overlap;
+    return CAMBER_OK;
+}

@@ -1,0 +1,47 @@
+/* Collisions of labels: a grid of the boxes and circles that labels have taken of a picture. */
+#ifndef CAMBER_MAP_COLLISION_H
+#define CAMBER_MAP_COLLISION_H
+
+#include "map/view.h"
+#include "style/symbol.h"
+
+/* A box, or a circle about its middle. */
+typedef struct camber_obstacle {
+    float x0, y0, x1, y1;
+    float radius; /* 0: a box */
+} camber_obstacle;
+
+typedef struct camber_grid_entry {
+    uint32_t shape;
+    uint32_t next; /* of the cell: its number + 1; 0: none */
+} camber_grid_entry;
+
+typedef struct camber_collision {
+    camber_context *context;
+    camber_box bounds; /* shapes outside of it do not count */
+    double cell;
+    size_t columns, rows;
+    uint32_t *cells; /* first entries, numbers + 1 */
+    camber_grid_entry *entries;
+    size_t entry_count, entry_capacity;
+    camber_obstacle *shapes;
+    uint8_t *overlaps; /* camber_symbol_overlap, by shape */
+    size_t shape_count, shape_capacity, overlap_capacity;
+} camber_collision;
+
+/* Returns CAMBER_ERROR_MEMORY. camber_collision_free frees also what a failure left. */
+camber_status camber_collision_make(camber_context *context, camber_box bounds, double cell,
+                                    camber_collision *collision);
+void camber_collision_free(camber_collision *collision);
+/* Whether the shape is at least partly within the bounds. */
+bool camber_collision_holds(const camber_collision *collision, const camber_obstacle *shape);
+/* Whether a new shape meets one that is there and that it may not overlap. */
+bool camber_collision_hits(const camber_collision *collision, const camber_obstacle *shape,
+                           camber_symbol_overlap overlap);
+/* Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^32 entries). */
+camber_status camber_collision_add(camber_collision *collision, const camber_obstacle *shape,
+                                   camber_symbol_overlap overlap);
+/* Whether two shapes meet; boxes that touch do. */
+bool camber_obstacles_meet(const camber_obstacle *a, const camber_obstacle *b);
+
+#endif

@@ -1,0 +1,52 @@
+/* Anchors of labels: the places along a line, or in an area, that labels may take. */
+#ifndef CAMBER_MAP_LABEL_ANCHORS_H
+#define CAMBER_MAP_LABEL_ANCHORS_H
+
+#include "map/view.h"
+
+/* A line in px, whatever they are measured from. */
+typedef struct camber_label_path {
+    double *points; /* count pairs; no two neighbours are equal */
+    double *along;  /* count: distances from the first point */
+    size_t count;
+} camber_label_path;
+
+typedef struct camber_path_anchor {
+    double along;
+    size_t segment; /* of the path: it begins with this point */
+} camber_path_anchor;
+
+typedef struct camber_path_anchors {
+    camber_context *context;
+    camber_path_anchor *items;
+    size_t count, capacity;
+} camber_path_anchors;
+
+/* How labels stand on a line. Lengths are px. */
+typedef struct camber_anchor_rule {
+    double spacing;      /* between anchors */
+    double label_length; /* of the line that a label takes */
+    double em;           /* the size of the text */
+    double window;       /* no stretch of this length turns by more than max_angle. 0: any turn is fine */
+    double max_angle;    /* radians */
+    camber_box seen;     /* anchors outside of it are not wanted */
+} camber_anchor_rule;
+
+/* Whether a label about the anchor has room on the line, which nowhere turns too sharply for it. */
+bool camber_path_takes(const camber_label_path *path, const camber_path_anchor *anchor, const camber_anchor_rule *rule);
+/* Adds the anchors at even distances along a line, or one in the middle if the line has room for no other. Which ones
+ * there are does not depend on the box of those that are wanted. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_path_repeat(const camber_label_path *path, const camber_anchor_rule *rule,
+                                 camber_path_anchors *anchors);
+/* Adds the one in the middle, if a label fits there. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_path_middle(const camber_label_path *path, const camber_anchor_rule *rule,
+                                 camber_path_anchors *anchors);
+/* The point at an anchor. */
+void camber_path_point(const camber_label_path *path, const camber_path_anchor *anchor, double point[2]);
+
+/* Finds the point of a polygon that is farthest from its edges, within precision. Ring i has the points
+ * [offsets[i], offsets[i + 1]), pairs; the first ring is the outer one. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_pole_find(camber_context *context, const double *points, const size_t *offsets, size_t ring_count,
+                               double precision, double pole[2]);
+
+#endif

@@ -1,0 +1,185 @@
+/* A view's labels before they are placed.
+ *
+ *     features -> things (what the view may see) -> for each layer and class a form (rule, texts, icon)
+ *     form, geometry -> candidates: a form at an anchor */
+#ifndef CAMBER_MAP_LABEL_LAYOUT_H
+#define CAMBER_MAP_LABEL_LAYOUT_H
+
+#include "map/label_anchors.h"
+#include "map/labels.h"
+#include "style/symbol.h"
+
+#define CAMBER_NO_PATH UINT32_MAX
+/* Labels push each other aside up to this far outside of the picture, CSS px, so that they seldom change while a map
+ * moves. */
+#define CAMBER_LABEL_MARGIN_PX 100.0
+
+/* How a layer shows labels. Those that agree in all but what they say share a rule. Lengths are device px or em. */
+typedef struct camber_label_rule {
+    camber_symbol symbol; /* without text, icon and sort key */
+    uint32_t text_look, icon_look;
+    bool text_along, icon_along; /* they turn with a line */
+    bool text_flat, icon_flat;
+    double text_px; /* size of the text */
+    double text_translate_px[2], icon_translate_px[2];
+    double text_turn, icon_turn; /* radians: by the style, and with the bearing where the map turns them */
+    bool text_by_map, icon_by_map;
+    /* The anchors of a text, in the order in which they are tried, and their offsets. */
+    camber_text_anchor anchors[CAMBER_SYMBOL_ANCHORS_MAX];
+    double offsets_em[CAMBER_SYMBOL_ANCHORS_MAX][2];
+    size_t anchor_count;
+    bool variable; /* texts are shaped about their centres */
+} camber_label_rule;
+
+/* How a run of a text is drawn. */
+typedef struct camber_label_run {
+    uint32_t look;
+    const camber_sprite_image *image; /* NULL: it is text, or its image is missing */
+    float image_scale;
+} camber_label_run;
+
+/* The texts and the icon that a layer's labels of a class show. */
+typedef struct camber_label_form {
+    uint32_t rule;
+    uint32_t first_run;    /* of the text */
+    camber_text *text;     /* NULL: none */
+    camber_text *vertical; /* the same, downwards. NULL: it is not written so */
+    const camber_sprite_image *icon;
+    double sort_key;
+    double weight; /* of two with one sort key the lighter comes first */
+    uint64_t hash; /* of its words and its icon */
+} camber_label_form;
+
+/* A line that labels follow, px of the map's plane. */
+typedef struct camber_label_line {
+    size_t first, count; /* of line_points */
+    bool reversed;       /* it runs from its last point to its first */
+} camber_label_line;
+
+/* A form at an anchor. */
+typedef struct camber_label_candidate {
+    uint32_t form, feature;
+    uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it stands on */
+    double x, y;            /* of the anchor, px of the plane */
+    uint64_t rank;          /* which of two that are alike comes first: a hash of its place and words */
+    /* Placement fills these in. */
+    bool shows_text, shows_icon, vertical;
+    uint8_t anchor; /* of the rule's */
+    camber_box box; /* around what is shown */
+} camber_label_candidate;
+
+typedef struct camber_layout_layer {
+    size_t layer; /* of the style */
+    size_t first_candidate, candidate_count;
+} camber_layout_layer;
+
+typedef struct camber_label_layout {
+    camber_context *context;
+    const camber_features *features;
+    const camber_view *view;
+    camber_fonts *fonts;
+    camber_sprites *sprites; /* NULL: none */
+    camber_view_lens lens;
+    camber_layout_layer *layers; /* in drawing order */
+    size_t layer_count, layer_capacity;
+    camber_label_rule *rules;
+    size_t rule_count, rule_capacity;
+    camber_label_form *forms;
+    size_t form_count, form_capacity;
+    camber_label_run *runs;
+    size_t run_count, run_capacity;
+    camber_label_look *looks;
+    size_t look_count, look_capacity;
+    camber_label_candidate *candidates; /* layer by layer */
+    size_t candidate_count, candidate_capacity;
+    camber_label_line *lines;
+    size_t line_count, line_capacity;
+    float *line_points; /* pairs */
+    size_t line_point_count, line_point_capacity;
+    struct camber_label_words *words; /* texts that were shaped (label_text.c) */
+} camber_label_layout;
+
+/* Frees what a failure left, too. */
+void camber_label_layout_free(camber_label_layout *layout);
+/* Finds the candidates of a view. The caller has filled in what the layout reads. Returns CAMBER_ERROR_MEMORY,
+ * CAMBER_ERROR_LIMIT. */
+camber_status camber_label_layout_make(camber_label_layout *layout);
+
+/* ---- Forms (label_forms.c, label_text.c) ---- */
+
+/* Makes the form that a layer's labels of a class have. *form is CAMBER_NO_FORM if they show nothing. */
+#define CAMBER_NO_FORM UINT32_MAX
+camber_status camber_label_form_make(camber_label_layout *layout, const camber_layer_look *look,
+                                     const camber_feature_class *class, uint32_t *form);
+/* Shapes a form's texts, or finds that this was done. */
+camber_status camber_label_text_make(camber_label_layout *layout, const camber_symbol *symbol, camber_label_form *form);
+void camber_label_words_free(camber_label_layout *layout);
+/* Finds an image, and tells if it is missing. NULL: it is. */
+const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name);
+
+static inline const camber_label_rule *camber_label_rule_of(const camber_label_layout *layout,
+                                                            const camber_label_candidate *c) {
+    return layout->rules + layout->forms[c->form].rule;
+}
+
+/* ---- Parts of labels about their anchors (label_parts.c) ---- */
+
+/* How a part stands about the anchor of a candidate: a point (u, v) of the part, px, goes to
+ * (x + xx * u + xy * v, y + yx * u + yy * v). */
+typedef struct camber_label_frame {
+    double x, y, xx, xy, yx, yy;
+    bool flat; /* px of the plane, else of the picture */
+} camber_label_frame;
+
+/* How near the camera is at a candidate's anchor: 1 at the picture's centre. 0: nothing is shown there. */
+double camber_label_nearness(const camber_label_layout *layout, const camber_label_candidate *c);
+camber_label_frame camber_label_text_frame(const camber_label_layout *layout, const camber_label_candidate *c);
+camber_label_frame camber_label_icon_frame(const camber_label_layout *layout, const camber_label_candidate *c);
+/* The box of a text that has one of its rule's anchors, px about the candidate's anchor. */
+camber_box camber_label_text_box(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
+                                 size_t anchor);
+/* How far such a text is moved from where it is shaped, px. */
+void camber_label_text_shift(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
+                             size_t anchor, double shift_px[2]);
+/* The box of the icon, without padding. vertical, anchor: those of the text that it fits. */
+camber_box camber_label_icon_box(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
+                                 size_t anchor);
+/* The bounds in the picture of a box in a frame. false: it is not in front of the camera. */
+bool camber_label_bounds(const camber_label_layout *layout, const camber_label_frame *frame, const camber_box *box,
+                         camber_box *bounds);
+
+/* ---- Texts along lines (label_along.c) ---- */
+
+/* A stretch of a line, as far as a text takes it, in the order of the text; px of the plane or the picture. */
+typedef struct camber_label_track {
+    camber_context *context;
+    double *points; /* threes: x, y and the distance from the anchor, negative before it */
+    size_t count, capacity;
+    double side; /* 1: the text runs with the line; -1: against it */
+    bool vertical, flat;
+    double first, last; /* distances of the first and the last glyph */
+    double across;      /* how far to the line's right the text is */
+    double shift;       /* how far along it */
+    double size;        /* px an em */
+} camber_label_track;
+
+typedef struct camber_track_point {
+    double x, y, cosine, sine; /* and its direction */
+} camber_track_point;
+
+/* Finds the way of a candidate's text. *fits is false if the line ends before. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_label_track_find(const camber_label_layout *layout, const camber_label_candidate *c,
+                                      camber_label_track *track, bool *fits);
+/* The point at a distance. */
+camber_track_point camber_label_track_point(const camber_label_track *track, double distance);
+/* Where a glyph's cluster begins to turn: the distance of its middle, em, and the cluster's end. */
+double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end);
+
+/* ---- Placement and items ---- */
+
+/* Decides which candidates are shown. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_label_place_all(camber_label_layout *layout);
+/* Makes the items of what is shown. The looks move to the labels. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels);
+
+#endif

@@ -1,0 +1,380 @@
+/* Decides which labels are shown.
+ *
+ * Input: candidates by layer. Output: what each shows. Main idea (MapLibre's): later layers come first, and in a layer
+ * the order is by sort key, by rank, then by a hash of place and words, so that the order of the input does not matter.
+ * Each label in turn takes its shapes in the picture, unless others have them. */
+#include "map/collision.h"
+#include "map/label_layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Cells of the grid, CSS px. */
+static const double CELL_PX = 32.0;
+/* Texts along lines are no lower than this for others, em. */
+static const double LEAST_HEIGHT_EM = 10.0 / 24.0;
+
+/* A label whose words stand along a line, so that they are not said again too near. */
+typedef struct said {
+    uint64_t key;
+    double x, y;
+    uint32_t next; /* number + 1; 0: none */
+} said;
+
+typedef struct placer {
+    camber_label_layout *layout;
+    camber_collision grid;
+    camber_label_track track;
+    camber_obstacle *shapes; /* of the text in hand, then of its icon */
+    size_t shape_count, shape_capacity;
+    said *said;
+    size_t said_count, said_capacity;
+    uint32_t *said_slots; /* said_slot_count, a power of two */
+    size_t said_slot_count;
+} placer;
+
+/* A part of a label, as it would be placed. */
+typedef struct tried {
+    bool placed, vertical;
+    uint8_t anchor;
+    size_t first_shape, shape_count;
+} tried;
+
+/* ---- The order ---- */
+
+typedef struct ordered {
+    const camber_label_candidate *candidate;
+    double keys[3]; /* the sort key, the order in the layer, the weight */
+} ordered;
+
+static int compare(const void *a, const void *b) {
+    const ordered *p = a, *q = b;
+    for (int i = 0; i < 3; i++)
+        if (p->keys[i] < q->keys[i] || p->keys[i] > q->keys[i])
+            return p->keys[i] < q->keys[i] ? -1 : 1;
+    const camber_label_candidate *c = p->candidate, *d = q->candidate;
+    if (c->rank != d->rank)
+        return c->rank < d->rank ? -1 : 1;
+    if (c->x < d->x || c->x > d->x)
+        return c->x < d->x ? -1 : 1;
+    if (c->y < d->y || c->y > d->y)
+        return c->y < d->y ? -1 : 1;
+    return c < d ? -1 : c > d;
+}
+
+static double row_of(const camber_label_layout *layout, const camber_label_candidate *c) {
+    const double plane[2] = {c->x, c->y};
+    double seen[2];
+    return camber_lens_see(&layout->lens, plane, seen) > 0.0 ? seen[1] : 0.0;
+}
+
+static ordered *sort_layer(const camber_label_layout *layout, const camber_layout_layer *layer) {
+    ordered *list = camber_alloc(layout->context, layer->candidate_count, sizeof *list);
+    for (size_t i = 0; list && i < layer->candidate_count; i++) {
+        const camber_label_candidate *c = layout->candidates + layer->first_candidate + i;
+        const camber_symbol *s = &camber_label_rule_of(layout, c)->symbol;
+        double order = 0.0;
+        if (s->order == CAMBER_SYMBOL_ORDER_VIEWPORT_Y)
+            order = -row_of(layout, c);
+        else if (s->order == CAMBER_SYMBOL_ORDER_SOURCE)
+            order = c->feature;
+        const bool by_key = s->has_sort_key && s->order != CAMBER_SYMBOL_ORDER_VIEWPORT_Y;
+        const camber_label_form *form = layout->forms + c->form;
+        list[i] = (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}};
+    }
+    if (list)
+        qsort(list, layer->candidate_count, sizeof *list, compare);
+    return list;
+}
+
+/* ---- Words that were said near ---- */
+
+static uint64_t said_key(uint64_t words, double x, double y, double distance) {
+    const int64_t cell[2] = {(int64_t)floor(x / distance), (int64_t)floor(y / distance)};
+    return camber_mix(camber_mix(camber_mix(0, words), (uint64_t)cell[0]), (uint64_t)cell[1]);
+}
+
+static bool is_said_near(const placer *p, uint64_t words, const camber_label_candidate *c, double distance) {
+    for (int i = 0; i < 9 && p->said_slot_count; i++) {
+        const uint64_t key = said_key(words, c->x + (i % 3 - 1) * distance, c->y + (i / 3 - 1) * distance, distance);
+        for (uint32_t s = p->said_slots[key & (p->said_slot_count - 1)]; s; s = p->said[s - 1].next) {
+            const said *other = p->said + s - 1;
+            if (other->key == key && hypot(other->x - c->x, other->y - c->y) < distance)
+                return true;
+        }
+    }
+    return false;
+}
+
+static camber_status say(placer *p, uint64_t words, const camber_label_candidate *c, double distance) {
+    camber_context *context = p->layout->context;
+    if (!camber_grow(context, &p->said, &p->said_capacity, p->said_count + 1, sizeof *p->said))
+        return CAMBER_ERROR_MEMORY;
+    p->said[p->said_count++] = (said){said_key(words, c->x, c->y, distance), c->x, c->y, 0};
+    const bool wider = p->said_count > p->said_slot_count;
+    if (wider) {
+        uint32_t *slots = camber_alloc_zero(context, 2 * p->said_count, 2 * sizeof *slots);
+        if (!slots)
+            return CAMBER_ERROR_MEMORY;
+        camber_free(context, p->said_slots);
+        p->said_slots = slots;
+        for (p->said_slot_count = 1; p->said_slot_count < 2 * p->said_count;)
+            p->said_slot_count *= 2;
+    }
+    for (size_t i = wider ? 0 : p->said_count - 1; i < p->said_count; i++) {
+        uint32_t *slot = p->said_slots + (p->said[i].key & (p->said_slot_count - 1));
+        p->said[i].next = *slot;
+        *slot = (uint32_t)i + 1;
+    }
+    return CAMBER_OK;
+}
+
+/* ---- Shapes ---- */
+
+static camber_status add_shape(placer *p, camber_obstacle shape) {
+    if (!camber_grow(p->layout->context, &p->shapes, &p->shape_capacity, p->shape_count + 1, sizeof *p->shapes))
+        return CAMBER_ERROR_MEMORY;
+    p->shapes[p->shape_count++] = shape;
+    return CAMBER_OK;
+}
+
+/* A label that avoids edges does not cross those of the picture. */
+static bool crosses_edge(const camber_view *view, const camber_obstacle *shape) {
+    return shape->x0 < 0.0f || shape->y0 < 0.0f || shape->x1 > (float)view->width || shape->y1 > (float)view->height;
+}
+
+/* Whether the shapes from first on are free, and one of them is in the grid. */
+static bool is_free(const placer *p, size_t first, camber_symbol_overlap overlap, bool avoid_edges) {
+    bool held = false;
+    for (size_t i = first; i < p->shape_count; i++) {
+        if (avoid_edges && crosses_edge(p->layout->view, p->shapes + i))
+            return false;
+        held |= camber_collision_holds(&p->grid, p->shapes + i);
+        if (camber_collision_hits(&p->grid, p->shapes + i, overlap))
+            return false;
+    }
+    return held;
+}
+
+static camber_status add_box(placer *p, const camber_label_frame *frame, camber_box box, const double padding[4],
+                             bool *added) {
+    const double ratio = p->layout->view->ratio;
+    const camber_box padded = {box.x0 - padding[3] * ratio, box.y0 - padding[0] * ratio, box.x1 + padding[1] * ratio,
+                               box.y1 + padding[2] * ratio};
+    camber_box b;
+    *added = camber_label_bounds(p->layout, frame, &padded, &b);
+    if (!*added)
+        return CAMBER_OK;
+    return add_shape(p, (camber_obstacle){(float)b.x0, (float)b.y0, (float)b.x1, (float)b.y1, 0.0f});
+}
+
+/* ---- Text ---- */
+
+/* Circles along the line, as far from each other as makes them meet well. */
+static camber_status add_circles(placer *p, const camber_label_candidate *c, const camber_text *text) {
+    const camber_label_rule *rule = camber_label_rule_of(p->layout, c);
+    const camber_label_track *track = &p->track;
+    const double nearness = camber_label_nearness(p->layout, c);
+    const double height =
+        fmax((double)(text->vertical ? text->right - text->left : text->bottom - text->top), LEAST_HEIGHT_EM);
+    const double radius = 0.5 * height * rule->text_px * (p->layout->lens.pitched ? nearness : 1.0) +
+                          rule->symbol.text.padding_px[0] * p->layout->view->ratio;
+    const double first = fmax(track->first - 0.25 * radius, track->points[2]);
+    const double last = fmin(track->last + 0.25 * radius, track->points[3 * track->count - 1]);
+    const double length = last - first;
+    const double count = length <= 0.5 * radius ? 1.0 : ceil(fmin(length / (2.5 * radius), 65536.0)) + 1.0;
+    for (double i = 0.0; i < count; i += 1.0) {
+        const camber_track_point point =
+            camber_label_track_point(track, count > 1.0 ? first + length * i / (count - 1.0) : 0.5 * (first + last));
+        double at[2] = {point.x, point.y};
+        if (track->flat && !(camber_lens_see(&p->layout->lens, at, at) > 0.0))
+            continue;
+        const camber_obstacle circle = {(float)(at[0] - radius), (float)(at[1] - radius), (float)(at[0] + radius),
+                                        (float)(at[1] + radius), (float)radius};
+        if (add_shape(p, circle) != CAMBER_OK)
+            return CAMBER_ERROR_MEMORY;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status try_along(placer *p, const camber_label_candidate *c, tried *text) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_symbol *s = &p->layout->rules[form->rule].symbol;
+    bool fits;
+    camber_status status = camber_label_track_find(p->layout, c, &p->track, &fits);
+    if (status != CAMBER_OK || !fits)
+        return status;
+    text->vertical = p->track.vertical;
+    status = add_circles(p, c, text->vertical ? form->vertical : form->text);
+    text->placed = status == CAMBER_OK && is_free(p, text->first_shape, s->text.overlap, s->avoid_edges);
+    return status;
+}
+
+/* Tries one anchor. An icon that fits the text must be free with it. */
+static camber_status try_anchor(placer *p, const camber_label_candidate *c, camber_symbol_overlap overlap,
+                                tried *text) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_label_rule *rule = p->layout->rules + form->rule;
+    const camber_symbol *s = &rule->symbol;
+    const camber_label_frame frame = camber_label_text_frame(p->layout, c);
+    const size_t first = p->shape_count = text->first_shape;
+    bool added;
+    camber_status status = add_box(p, &frame, camber_label_text_box(p->layout, c, text->vertical, text->anchor),
+                                   s->text.padding_px, &added);
+    if (status != CAMBER_OK || !added)
+        return status;
+    text->placed = is_free(p, first, overlap, s->avoid_edges);
+    if (!text->placed || !rule->variable || !form->icon || s->text_fit == CAMBER_FIT_NONE ||
+        s->icon.overlap != CAMBER_OVERLAP_NEVER)
+        return CAMBER_OK;
+    const camber_label_frame about = camber_label_icon_frame(p->layout, c);
+    const camber_box icon = camber_label_icon_box(p->layout, c, text->vertical, text->anchor);
+    status = add_box(p, &about, icon, s->icon.padding_px, &added);
+    text->placed = status == CAMBER_OK && added && is_free(p, first + 1, overlap, s->avoid_edges);
+    p->shape_count = first + 1;
+    return status;
+}
+
+/* Tries the anchors of a writing mode: at first where nothing is, then where the style lets labels overlap. */
+static camber_status try_mode(placer *p, const camber_label_candidate *c, tried *text) {
+    const camber_label_rule *rule = camber_label_rule_of(p->layout, c);
+    const camber_symbol_overlap allowed = rule->symbol.text.overlap;
+    const size_t rounds = rule->variable && allowed != CAMBER_OVERLAP_NEVER ? 2 : 1;
+    camber_status status = CAMBER_OK;
+    for (size_t round = 0; round < rounds && !text->placed; round++)
+        for (size_t i = 0; i < rule->anchor_count && !text->placed && status == CAMBER_OK; i++) {
+            text->anchor = (uint8_t)i;
+            status = try_anchor(p, c, round + 1 < rounds ? CAMBER_OVERLAP_NEVER : allowed, text);
+        }
+    return status;
+}
+
+static camber_status try_text(placer *p, const camber_label_candidate *c, tried *text) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_label_rule *rule = p->layout->rules + form->rule;
+    const camber_symbol *s = &rule->symbol;
+    camber_status status = CAMBER_OK;
+    *text = (tried){.first_shape = p->shape_count};
+    if (!form->text)
+        return CAMBER_OK;
+    if (rule->text_along && c->line != CAMBER_NO_PATH) {
+        status = try_along(p, c, text);
+    } else {
+        const bool down_first = form->vertical && s->vertical_first;
+        for (int i = 0; i < 2 && status == CAMBER_OK && !text->placed; i++) {
+            text->vertical = down_first ? i == 0 : i == 1;
+            if (text->vertical ? form->vertical != NULL : s->horizontal || !form->vertical)
+                status = try_mode(p, c, text);
+        }
+    }
+    text->shape_count = text->placed ? p->shape_count - text->first_shape : 0;
+    p->shape_count = text->first_shape + text->shape_count;
+    return status;
+}
+
+/* ---- Icons ---- */
+
+static camber_status try_icon(placer *p, const camber_label_candidate *c, const tried *text, tried *icon) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_symbol *s = &p->layout->rules[form->rule].symbol;
+    *icon = (tried){.first_shape = p->shape_count};
+    if (!form->icon)
+        return CAMBER_OK;
+    const camber_label_frame frame = camber_label_icon_frame(p->layout, c);
+    const bool vertical = text->vertical && form->vertical;
+    bool added;
+    const camber_status status =
+        add_box(p, &frame, camber_label_icon_box(p->layout, c, vertical, text->anchor), s->icon.padding_px, &added);
+    icon->placed = status == CAMBER_OK && added && is_free(p, icon->first_shape, s->icon.overlap, s->avoid_edges);
+    icon->shape_count = icon->placed ? 1 : 0;
+    p->shape_count = icon->first_shape + icon->shape_count;
+    return status;
+}
+
+/* ---- Labels ---- */
+
+static camber_status take(placer *p, const tried *part, const camber_symbol_part *as, camber_label_candidate *c) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = part->first_shape; i < part->first_shape + part->shape_count && status == CAMBER_OK; i++) {
+        const camber_obstacle *shape = p->shapes + i;
+        camber_box_add(&c->box, (double)shape->x0, (double)shape->y0);
+        camber_box_add(&c->box, (double)shape->x1, (double)shape->y1);
+        if (!as->ignore_placement)
+            status = camber_collision_add(&p->grid, shape, as->overlap);
+    }
+    return status;
+}
+
+/* Parts that need each other are shown together or not at all. */
+static void agree(const camber_label_form *form, const camber_symbol *s, tried *text, tried *icon) {
+    const bool icon_needs_text = form->text && !s->text.optional, text_needs_icon = form->icon && !s->icon.optional;
+    if (icon_needs_text && text_needs_icon)
+        icon->placed = text->placed = icon->placed && text->placed;
+    else if (text_needs_icon)
+        text->placed = text->placed && icon->placed;
+    else if (icon_needs_text)
+        icon->placed = icon->placed && text->placed;
+}
+
+static bool is_seen(const camber_view *view, const camber_box *box) {
+    return box->x0 <= box->x1 && box->x1 > 0.0 && box->y1 > 0.0 && box->x0 < view->width && box->y0 < view->height;
+}
+
+static camber_status place_one(placer *p, camber_label_candidate *c) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_symbol *s = &p->layout->rules[form->rule].symbol;
+    const double near = 0.5 * s->spacing_px * p->layout->view->ratio;
+    const bool repeats = s->placement == CAMBER_SYMBOL_LINE && form->text && near > 0.0;
+    tried text, icon;
+    c->box = CAMBER_BOX_EMPTY;
+    p->shape_count = 0;
+    if (!(camber_label_nearness(p->layout, c) > 0.0) || (repeats && is_said_near(p, form->hash, c, near)))
+        return CAMBER_OK;
+    camber_status status = try_text(p, c, &text);
+    if (status == CAMBER_OK)
+        status = try_icon(p, c, &text, &icon);
+    if (status != CAMBER_OK)
+        return status;
+    agree(form, s, &text, &icon);
+    if (text.placed)
+        status = take(p, &text, &s->text, c);
+    if (icon.placed && status == CAMBER_OK)
+        status = take(p, &icon, &s->icon, c);
+    if (status == CAMBER_OK && repeats && text.placed)
+        status = say(p, form->hash, c, near);
+    const bool seen = is_seen(p->layout->view, &c->box);
+    c->shows_text = text.placed && seen;
+    c->shows_icon = icon.placed && seen;
+    c->vertical = text.vertical && form->vertical;
+    c->anchor = text.placed ? text.anchor : 0;
+    return status;
+}
+
+static camber_status place_layer(placer *p, const camber_layout_layer *layer) {
+    ordered *list = sort_layer(p->layout, layer);
+    camber_status status = list ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    p->said_count = 0;
+    for (size_t i = 0; i < p->said_slot_count; i++)
+        p->said_slots[i] = 0;
+    for (size_t i = 0; i < layer->candidate_count && status == CAMBER_OK; i++)
+        status = place_one(p, p->layout->candidates + (list[i].candidate - p->layout->candidates));
+    camber_free(p->layout->context, list);
+    return status;
+}
+
+camber_status camber_label_place_all(camber_label_layout *layout) {
+    const camber_view *view = layout->view;
+    const double margin = CAMBER_LABEL_MARGIN_PX * view->ratio;
+    placer p = {.layout = layout, .track.context = layout->context};
+    camber_status status = camber_collision_make(
+        layout->context, (camber_box){-margin, -margin, view->width + margin, view->height + margin},
+        CELL_PX * view->ratio, &p.grid);
+    for (size_t i = layout->layer_count; i-- > 0 && status == CAMBER_OK;)
+        status = place_layer(&p, layout->layers + i);
+    camber_collision_free(&p.grid);
+    camber_free(layout->context, p.track.points);
+    camber_free(layout->context, p.shapes);
+    camber_free(layout->context, p.said);
+    camber_free(layout->context, p.said_slots);
+    return status;
+}

@@ -1,6 +1,6 @@
-/* Runs info --warm: compiles and saves every kernel before anybody waits for it. PoCL compiles one kernel at a time in
- * a process, so several processes compile a share each. If one fails, this process compiles its share: it goes through
- * all kernels at the end, and prints the result. */
+/* Runs info --warm: compiles and saves every kernel in advance. PoCL compiles one kernel at a time in a process, so
+ * several processes compile a share of the kernels each. If one of them fails, this process compiles its share: it goes
+ * through all kernels at the end, and prints the result. */
 #define _GNU_SOURCE /* sched_getaffinity */
 
 #include "cli/verbs.h"
@@ -36,7 +36,7 @@ static pid_t start_share(camber_session *session, unsigned share, unsigned share
     _exit(warm_share(session, share, shares, &warmed) == CAMBER_OK ? 0 : 1);
 }
 
-/* Must run before this process opens a device: a fork would not have the threads of its driver. */
+/* Must run before this process opens a device, because a forked process would not have the threads of its driver. */
 static void warm_side_by_side(camber_session *session) {
     pid_t processes[PROCESSES_MAX];
     const unsigned shares = count_processes(session->options);

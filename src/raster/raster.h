@@ -8,8 +8,7 @@
  * - 0: only brushes.
  * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
  *   float4s that it refers to. setup also writes arc lengths. A brush without features gets the same bytes as from the
- *   plain
- *   variant.
+ *   plain variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
  * In kernels #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED select a variant; the twin contains all of them, and

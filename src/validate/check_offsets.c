@@ -1,13 +1,14 @@
-/* Lines beside others: kernels and CPU twin share how they are made, so that only where their points lie can tell. */
+/* Checks offset lines. Kernels and CPU twin share the code that makes them, so a mistake shows only in the positions of
+ * their points. */
 #include "validate/checks.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* A line that bends, to a side and about a circle: a straight, a turn, a straight. */
+/* A line that bends to one side around a circle: a straight part, a turn, a straight part. */
 typedef struct bend {
     const char *name;
-    double radius, turn; /* px, radians: clockwise as seen */
+    double radius, turn; /* px, radians; clockwise as seen */
     double step;         /* px */
 } bend;
 
@@ -65,7 +66,7 @@ static void fail(camber_check *check, const camber_point_stages *at, const char 
              (double)at->y, field, got, expected);
 }
 
-/* Arcs may lie farther out by an eighth of a pixel, and rounding is told from less. */
+/* Arcs may be up to an eighth of a pixel too far out; rounding errors are smaller than that. */
 static void check_points(const bend *b, const path *p, double offset, const camber_stages *stages,
                          camber_check *check) {
     static const double OUTSIDE_PX = 0.13, INSIDE_PX = 0.04, ROUNDING_PX = 1e-3;

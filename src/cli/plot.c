@@ -156,7 +156,7 @@ static void put_panel(const camber_comparison *c, const panel *p, FILE *script) 
     fputs("$bars << END\n", script);
     for (int i = 0; i < CAMBER_METHODS; i++) {
         const double metric = c->average.metrics[i][p->metric], value = isnan(metric) ? 0 : metric;
-        char text[32] = "of GL alone";
+        char text[32] = "only in GL";
         if (!c->shown[i])
             continue;
         if (!isnan(metric))

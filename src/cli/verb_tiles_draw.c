@@ -392,9 +392,10 @@ static void warn_left_out(const job *j) {
     const uint64_t count = j->stats.left_out;
     if (count)
         camber_report_warn(j->session->report,
-                           "%s: %llu tile%s of the list lie%s outside its zooms and bounds, and left out (--min-zoom, "
-                           "--max-zoom and --bbox give others)",
-                           j->output, (unsigned long long)count, camber_plural((size_t)count), count == 1 ? "s" : "");
+                           "%s: %llu tile%s of the list %s outside its zooms and bounds, and left out; to include such "
+                           "tiles, give --min-zoom, --max-zoom or --bbox",
+                           j->output, (unsigned long long)count, camber_plural((size_t)count),
+                           count == 1 ? "is" : "are");
 }
 
 static void print_text(const job *j) {

@@ -189,7 +189,7 @@ static enum MHD_Result answer_stored(request *r, const camber_content_view *view
                .media_type = camber_route_get_media_type(r->route.type),
                .cache_control = "public, max-age=300"};
     memcpy(a.last_modified, view->last_modified, sizeof a.last_modified);
-    /* The encoding of the body depends on who made it; bodies from an archive have none recorded. */
+    /* Other requests share the stored body, whose encoding is not set. A copy has the encoding that is sent. */
     const bool takes = camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
     camber_body *sent =
         takes ? camber_body_create(body->bytes, body->size_bytes) : camber_body_gunzip(body, LARGEST_UNPACKED_BYTES);

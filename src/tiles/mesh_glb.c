@@ -36,7 +36,7 @@ typedef struct vertex {
     int16_t point[4];             /* x and y in units, row, flags */
     uint8_t color[4];             /* linear RGBA */
 } vertex;
-_Static_assert(sizeof(vertex) == 20, "vertices lie side by side");
+_Static_assert(sizeof(vertex) == 20, "vertices have no padding between them");
 
 typedef struct along {
     float along_px, total_px;

@@ -73,7 +73,7 @@ static bool is_seam(const camber_mesh_picture *picture, size_t point) {
     return picture->points[point].info & CAMBER_POINT_RING;
 }
 
-/* Connects the first and last pieces of rings that the picture has cut at the ring's start. */
+/* Links the first and last pieces of rings that the picture has cut, because these pieces meet at the ring's seam. */
 static void join_seams(camber_mesh_picture *picture) {
     for (size_t i = 0; i < picture->line_count; i++) {
         camber_mesh_line *begin = picture->lines + i, *end = begin;

@@ -92,7 +92,7 @@ static camber_status check_bend(camber_validation *v, const bend *b, double offs
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
     const camber_polylines_desc given = {
         .points = p.points, .point_count = p.count, .offsets = (const uint32_t[]){0, p.count}, .polyline_count = 1};
-    camber_check check = camber_check_start(NULL, NULL, "lines beside: %s %s: keep their distance",
+    camber_check check = camber_check_start(NULL, NULL, "offset lines: %s %s: keep their distance",
                                             b->turn * offset > 0 ? "inside" : "outside", b->name);
     camber_polylines *polylines = NULL;
     camber_stages stages = {0};

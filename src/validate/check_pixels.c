@@ -56,7 +56,7 @@ static camber_status check_truth(job *j, camber_check *check, camber_truth_kind 
     camber_status status = CAMBER_OK;
     camber_finding *finding = &check->finding;
     if (j->samples.count == 0) {
-        camber_results_skip(&j->v->results, *check, "no point lies in the picture");
+        camber_results_skip(&j->v->results, *check, "no point is in the picture");
         return status;
     }
     check->has_error = true;

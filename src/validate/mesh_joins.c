@@ -159,7 +159,7 @@ static bool end_segment(search *s) {
         join.y = (float)at.y;
         join.row = s->now.segment->row;
         join.seam = !s->mesh->info.strips && is_again(s->first, s->now.segment);
-        if (s->joined) /* then a continuation is not a seam */
+        if (s->joined) /* the join before was not a seam, because the line continues */
             s->found.items[s->found.count - 1].seam = false;
         if (!append(s, &join))
             return false;

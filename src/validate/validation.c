@@ -89,7 +89,7 @@ camber_status camber_validation_run(camber_validation *v, const camber_validatio
             desc->host.progress(desc->host.user, (double)i / (double)count);
         status = input ? check_input(v, input) : check_scene(v, i);
     }
-    if (status == CAMBER_OK && !input && camber_results_group(&v->results, "lines beside others"))
+    if (status == CAMBER_OK && !input && camber_results_group(&v->results, "offset lines"))
         status = camber_check_offsets(v);
     if (status == CAMBER_OK && !input)
         status = camber_check_along(v);

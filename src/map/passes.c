@@ -9,15 +9,15 @@
 /* 2.4 GB. */
 static const size_t MOST_PAINTS = (size_t)1 << 26;
 
-static size_t first_of(const camber_numbering *n, const camber_plan_set *set) {
+static size_t first_of(const camber_row_order *n, const camber_plan_set *set) {
     return n->by_pair ? set->first_pair : set->first_row;
 }
 
-static size_t end_of(const camber_numbering *n, const camber_plan_set *set) {
+static size_t end_of(const camber_row_order *n, const camber_plan_set *set) {
     return n->by_pair ? set->first_pair + set->pair_count : set->first_row + set->row_count;
 }
 
-static camber_paint paint_of(const camber_numbering *n, const camber_plan_layer *layer, size_t number) {
+static camber_paint paint_of(const camber_row_order *n, const camber_plan_layer *layer, size_t number) {
     const size_t row = n->by_pair ? n->plan->pair_rows[number] : number;
     return camber_plan_paint(n->plan, n->plan->sets + layer->set, row, layer->slot);
 }
@@ -38,7 +38,7 @@ static bool draws(const camber_paint *paint) {
 }
 
 /* Whether the layer draws anything, and only opaque lines, of what polylines have. */
-static bool layer_draws(const camber_numbering *n, const camber_plan_layer *layer, bool *opaque) {
+static bool layer_draws(const camber_row_order *n, const camber_plan_layer *layer, bool *opaque) {
     const camber_plan_set *set = n->plan->sets + layer->set;
     bool drawn = false;
     *opaque = true;
@@ -55,7 +55,7 @@ static bool layer_draws(const camber_numbering *n, const camber_plan_layer *laye
 /* Opaque layers whose polylines follow each other are drawn by one pass. A translucent layer has a pass of its own,
  * since it is flattened by itself; so has one of areas, since like fills of two layers would become one path. A layer
  * of areas with an opacity takes its outline along. Fills of the picture come between. */
-static size_t find_runs(const camber_numbering *n, layer_run *runs, size_t *layer_count) {
+static size_t find_runs(const camber_row_order *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
     size_t count = 0, fill = 0, counted = plan->layer_count;
     *layer_count = 0;
@@ -104,7 +104,7 @@ static void forget_progress(camber_paint *paint) {
 }
 
 /* Writes the paints of a pass: one for each row below its end, of width 0 where the pass does not draw the row. */
-static void put_paints(const camber_numbering *n, const layer_run *run, camber_paint *paints) {
+static void put_paints(const camber_row_order *n, const layer_run *run, camber_paint *paints) {
     memset(paints, 0, run->end_paint * sizeof *paints);
     for (size_t i = run->first_layer; i < run->end_layer; i++) {
         const camber_plan_layer *layer = n->plan->layers + i;
@@ -120,7 +120,7 @@ static void put_paints(const camber_numbering *n, const layer_run *run, camber_p
     }
 }
 
-camber_status camber_passes_make(camber_context *context, const camber_numbering *n, size_t *layer_count,
+camber_status camber_passes_make(camber_context *context, const camber_row_order *n, size_t *layer_count,
                                  camber_pass_list *list) {
     camber_status status = CAMBER_ERROR_MEMORY;
     layer_run *runs = camber_alloc(context, n->plan->layer_count + n->plan->patterns.fill_count, sizeof *runs);

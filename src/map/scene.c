@@ -44,7 +44,7 @@ static camber_status make_pair_passes(camber_scene *scene) {
     const size_t count = scene->geometry.first_entries[plan->set_count];
     for (size_t i = 0; i < count; i++)
         used[scene->geometry.entries[i].row] = true;
-    const camber_numbering n = {plan, true, scene->geometry.first_entries, used};
+    const camber_row_order n = {plan, true, scene->geometry.first_entries, used};
     const camber_status status = camber_passes_make(scene->context, &n, &layer_count, &scene->pair_passes);
     camber_free(scene->context, used);
     return status;
@@ -88,7 +88,7 @@ static camber_status make_row_passes(camber_scene *scene) {
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < scene->seen.lines.polyline_count; i++)
         used[scene->seen.rows[i]] = true;
-    const camber_numbering n = {plan, false, scene->seen.first_polylines, used};
+    const camber_row_order n = {plan, false, scene->seen.first_polylines, used};
     const camber_status status = camber_passes_make(scene->context, &n, &scene->counts.layers, &scene->passes);
     camber_free(scene->context, used);
     return status;

@@ -18,12 +18,12 @@ typedef struct checker {
     char **texts;
     size_t text_count, text_capacity;
     bool out_of_memory;
-    camber_soft_log log; /* holds back messages once memory ran out */
+    camber_saved_log log; /* holds back messages once memory ran out */
 } checker;
 
 static void fail_memory(checker *k) {
     if (!k->out_of_memory)
-        camber_log_soften(k->context, &k->log);
+        camber_log_demote_errors(k->context, &k->log);
     k->out_of_memory = true;
 }
 

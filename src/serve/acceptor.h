@@ -7,8 +7,8 @@
 /* Both are called by the acceptor's thread. */
 typedef struct camber_acceptor_desc {
     int socket; /* a blocking socket that listens; the acceptor closes it */
-    bool (*has_room)(
-        void *user); /* while it returns false, connections wait in the system's queue. NULL: always true */
+    /* while it returns false, connections wait in the system's queue. NULL: always true */
+    bool (*has_room)(void *user);
     void (*take)(void *user, int connection); /* takes ownership of the connection */
     void *user;
 } camber_acceptor_desc;

@@ -17,11 +17,11 @@ enum { CAMBER_PATH_BYTES = 200 };
 
 typedef struct camber_client {
     int socket;
-    char
-        path[CAMBER_PATH_BYTES]; /* path of the incoming request, as it was received. "": it is longer than any route */
-    uintptr_t path_end;          /* address of the end of the received path */
-    double start_ms;             /* when its first line was received */
-    void *request;               /* the request that is being answered; NULL: none */
+    /* path of the incoming request, as it was received. "": it is longer than any route */
+    char path[CAMBER_PATH_BYTES];
+    uintptr_t path_end; /* address of the end of the received path */
+    double start_ms;    /* when its first line was received */
+    void *request;      /* the request that is being answered; NULL: none */
     atomic_int phase;
     _Atomic double since_ms;
     struct camber_client *next, *before;

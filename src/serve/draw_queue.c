@@ -29,7 +29,7 @@ typedef struct unit {
     unit_state state;
     camber_route_request request; /* of the first request */
     camber_tile_key key;          /* of the first tile of the metatile */
-    uint64_t order;               /* counts up when the unit is requested or used */
+    uint64_t order;               /* the queue's clock when it was last requested or used */
     uint64_t generation;          /* generation of the cache when drawing began */
     camber_tile_request *tile_requests;
     size_t users; /* threads that are encoding tiles of the unit */
@@ -39,8 +39,8 @@ typedef struct unit {
 struct camber_draw_queue {
     camber_draw_queue_desc desc;
     pthread_mutex_t mutex;
-    pthread_cond_t work,
-        picture; /* work: there is something to draw; picture: there is a tile to encode, or a free picture */
+    /* work: there is something to draw; picture: there is a tile to encode, or memory for a picture */
+    pthread_cond_t work, picture;
     unit *units;
     size_t unit_count, queued;
     uint64_t clock;
@@ -151,7 +151,7 @@ static void tell(camber_tile_request *tile_requests, camber_tile_request_result 
     }
 }
 
-/* Removes and returns the unit's requests for which `wanted` is true; all of them if it is NULL. */
+/* Removes and returns the unit's requests for which `wanted` returns true. */
 static camber_tile_request *take_requests(unit *u,
                                           bool (*wanted)(const camber_tile_request *tile_request, const void *by),
                                           const void *by) {

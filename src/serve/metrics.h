@@ -11,16 +11,16 @@ enum { CAMBER_HISTOGRAM_BUCKETS = 10, CAMBER_STATUS_KINDS = 13 };
 
 /* A histogram of durations, in seconds. */
 typedef struct camber_histogram {
-    _Atomic uint64_t
-        buckets[CAMBER_HISTOGRAM_BUCKETS + 1]; /* each counts only its own range; the last has no upper bound */
+    /* each counts only its own range; the last has no upper bound */
+    _Atomic uint64_t buckets[CAMBER_HISTOGRAM_BUCKETS + 1];
     _Atomic uint64_t microseconds;
 } camber_histogram;
 
 /* A zeroed struct is valid, and means that nothing has been counted. */
 typedef struct camber_metrics {
     _Atomic uint64_t requests[CAMBER_ROUTES][CAMBER_STATUS_KINDS];
-    _Atomic uint64_t sent_bytes, dropped,
-        refused; /* dropped: no client waited for the picture any more; refused: the queue was full */
+    /* dropped: no client waited for the picture any more; refused: the queue was full */
+    _Atomic uint64_t sent_bytes, dropped, refused;
     camber_histogram draw, encode;
     _Atomic int64_t connections, queued; /* current values */
 } camber_metrics;

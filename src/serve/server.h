@@ -16,14 +16,14 @@
 typedef struct camber_server_desc {
     const char *listen;  /* ADDRESS:PORT; port 0: the system chooses one. NULL: 127.0.0.1:8080 */
     const char *metrics; /* ADDRESS:PORT of /metrics. NULL: none */
-    const char
-        *public_url;  /* base URL in tiles.json and in the page, without a trailing slash. NULL: derived from listen */
-    const char *cors; /* origin whose pages may read answers. NULL: "*" */
+    /* base URL in tiles.json and in the page, without a trailing slash. NULL: derived from listen */
+    const char *public_url;
+    const char *cors;    /* origin whose pages may read answers. NULL: "*" */
     size_t cache_bytes;  /* 0: 256 MB */
     uint32_t most_px;    /* limit of a picture's width and height. 0: 2048 */
     uint32_t most_ratio; /* 1 to CAMBER_MAP_SOURCE_MOST_RATIO. 0: 4 */
-    uint32_t
-        side; /* largest number of tiles on a side of a metatile. 0: 1, which suits random access; 8 with renderd */
+    /* largest number of tiles on a side of a metatile. 0: 1, which suits random access; 8 with renderd */
+    uint32_t side;
     uint32_t threads;      /* number of threads that answer, and of threads that encode. 0: one per core */
     const char *renderd;   /* path of a socket for mod_tile's protocol. NULL: none */
     const char *cache_dir; /* folder for tiles; with renderd, for the metatiles drawn for it. NULL: none */

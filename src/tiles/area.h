@@ -8,8 +8,8 @@
 typedef struct camber_tiles_area {
     camber_context *context;
     int min_zoom, max_zoom;
-    camber_box
-        box; /* world coordinates; x1 is above 1 if it crosses the antimeridian. No tile outside of it is drawn */
+    /* world coordinates; x1 is above 1 if it crosses the antimeridian. No tile outside of it is drawn */
+    camber_box box;
     camber_box bounds; /* the part of the box that has data. If nothing restricts the tiles, empty tiles inside the
                           bounds are kept */
     const camber_features *region; /* outlines of polygons. NULL: no region */

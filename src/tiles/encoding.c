@@ -134,8 +134,8 @@ static void give_way(void) {
         return;
     if (policy == SCHED_OTHER) {
 #ifdef __linux__
-        (void)setpriority(PRIO_PROCESS, 0,
-                          getpriority(PRIO_PROCESS, 0) + 5); /* on Linux this applies only to the calling thread */
+        /* on Linux this applies only to the calling thread */
+        (void)setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 5);
 #endif
     } else if (param.sched_priority > sched_get_priority_min(policy)) {
         param.sched_priority--;

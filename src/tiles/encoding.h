@@ -16,10 +16,10 @@ typedef struct camber_encode_job {
     camber_tiles_picture picture;
     uint8_t *rgba; /* the picture's pixels, inside the block */
     uint8_t *block;
-    camber_mesh_picture
-        lines;       /* if tiles are meshes: the lines, instead of pixels. They are freed when the job is released */
-    double ratio;    /* device px per CSS px, if tiles are meshes */
-    uint64_t wanted; /* tiles to encode */
+    /* if tiles are meshes: the lines, instead of pixels. They are freed when the job is released */
+    camber_mesh_picture lines;
+    double ratio;          /* device px per CSS px, if tiles are meshes */
+    uint64_t wanted;       /* tiles to encode */
     bool drops_background; /* tiles that show only this colour are left out: */
     uint8_t background[4];
     uint64_t unit;

@@ -164,8 +164,8 @@ static void place_sentinels(encoder *e) {
         while (next < count && (records[next].flags & CAMBER_MESH_SENTINEL))
             next++;
         const vertex *before = i > 0 ? pair - 1 : e->vertices + 2 * next;
-        const bool is_last =
-            next == count || next > i + 1; /* of two sentinels in a row, the first belongs to the line before */
+        /* of two sentinels in a row, the first belongs to the line before */
+        const bool is_last = next == count || next > i + 1;
         const vertex *behind = is_last ? before : e->vertices + 2 * next;
         memcpy(pair[0].position, before->position, sizeof before->position);
         memcpy(pair[1].position, behind->position, sizeof behind->position);

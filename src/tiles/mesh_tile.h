@@ -77,8 +77,8 @@ typedef struct camber_mesh_corner {
 typedef struct camber_mesh_tile {
     camber_context *context;
     uint32_t units, tile_px;
-    camber_mesh_record
-        *records; /* record_count of them, with sentinels first and last; none if no line touches the tile */
+    /* record_count of them, with sentinels first and last; none if no line touches the tile */
+    camber_mesh_record *records;
     size_t record_count, record_capacity;
     uint32_t *rows; /* row_count of them: rows of the plan */
     size_t row_count, row_capacity;

@@ -23,8 +23,8 @@ typedef struct job {
     bool is_shared; /* also try other sharing paths, for which the style does not matter */
     camber_samples samples;
     camber_pixel_bounds bounds;
-    uint8_t *first, *own,
-        *other;     /* from the first back end; from this one; from it by another path or in another way */
+    /* from the first back end; from this one; from it by another path or in another way */
+    uint8_t *first, *own, *other;
     uint8_t *twice; /* drawn twice, translucent */
 } job;
 

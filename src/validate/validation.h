@@ -52,8 +52,8 @@ typedef struct camber_subject {
     const camber_stroke *drawn_strokes; /* stroke_count of them, for pictures */
     size_t stroke_count;
     bool fills; /* the lines are a user's rings, whose inside is drawn instead of lines; only for the check of pixels */
-    const char
-        *scene; /* name of a made-up scene. NULL: a user's lines, whose drawn strokes keep their joins and caps */
+    /* name of a made-up scene. NULL: a user's lines, whose drawn strokes keep their joins and caps */
+    const char *scene;
     uint32_t width, height; /* size of the picture, px */
     /* The network of which the polylines are a view, made by the CPU twin. NULL: none. */
     camber_network *network;
@@ -68,8 +68,8 @@ typedef struct camber_validation_input {
     camber_camera camera;    /* of the network */
     camber_tessellation_desc strokes;
     camber_subject map; /* the whole map: areas and lines */
-    camber_frame
-        frame; /* of the map, with its style; its meshes are set by the checks. No passes: there are no areas */
+    /* of the map, with its style; its meshes are set by the checks. No passes: there are no areas */
+    camber_frame frame;
 } camber_validation_input;
 
 typedef struct camber_drawing_path camber_drawing_path;

@@ -20,9 +20,9 @@ typedef struct camber_draw_source {
 
 /* Functions that GPU compilers must not inline everywhere, which takes them a minute. */
 #ifdef CAMBER_DEVICE
-#define CAMBER_APART static __attribute__((noinline))
+#define CAMBER_NOINLINE static __attribute__((noinline))
 #else
-#define CAMBER_APART CAMBER_FN
+#define CAMBER_NOINLINE CAMBER_FN
 #endif
 
 /* The tile being drawn. */
@@ -291,7 +291,7 @@ CAMBER_FN void camber_draw_segment(camber_tile_state *c, const camber_drawn_tile
 
 /* ---- Areas ---- */
 
-CAMBER_APART void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
+CAMBER_NOINLINE void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
     CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
     camber_ring_edges e;
     camber_tile_edges t;
@@ -301,7 +301,7 @@ CAMBER_APART void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_
 }
 
 /* Draws the polygon whose edges have been added. */
-CAMBER_APART void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
+CAMBER_NOINLINE void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
     if (!camber_brush_is_area(&c->now))
         return;
 #if CAMBER_HAS_MASKS
@@ -326,7 +326,7 @@ CAMBER_APART void camber_end_area(camber_tile_state *c, const camber_drawn_tile 
 
 /* ---- Tiles ---- */
 
-CAMBER_APART void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
+CAMBER_NOINLINE void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
     camber_end_area(c, d);
     camber_tile_change_brush(c, d->from.brushes[brush]);
 #if CAMBER_HAS_MASKS

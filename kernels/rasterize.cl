@@ -133,7 +133,7 @@ typedef struct tile_brushes {
 
 /* Adds the queued edges to the polygon. */
 static __attribute__((noinline)) void add_edges(camber_tile_state *c, global const float *edges, camber_tile_rows where,
-                                                sixteen *b) {
+                                                segment_batch *b) {
     const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     for (uint k = b->count; k < SIXTEEN; k++)
         b->which[k] = b->which[0];
@@ -158,11 +158,11 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
 
 /* Draws the queued segments, which all have the current brush. */
 static inline void draw_waiting(camber_tile_state *c, const positions *at, global const float *segments,
-                                global const float *edges, camber_tile_rows where, sixteen *b) {
+                                global const float *edges, camber_tile_rows where, segment_batch *b) {
     if (b->count != 0 && camber_brush_is_area(&c->now))
         add_edges(c, edges, where, b);
     else
-        draw_sixteen(c, at, segments, where, b);
+        draw_segment_batch(c, at, segments, where, b);
 }
 
 /* Draws the polygon whose edges have been added. */
@@ -250,7 +250,7 @@ CAMBER_KERNEL(1, rasterize,
                side_table, planes, crossings, ends)) {
     camber_tile_state c;
     positions at;
-    sixteen b;
+    segment_batch b;
     const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
     const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], spilled = jobs[CAMBER_JOB_WORDS * job + 2],
                      column = (camber_u32)tile % s.columns, row = (camber_u32)tile / s.columns;
@@ -338,7 +338,7 @@ CAMBER_KERNEL(1, rasterize,
             b.which[b.count++] = lists[k];
             if (b.count < SIXTEEN)
                 continue;
-            draw_sixteen(&c, &at, segments, where, &b);
+            draw_segment_batch(&c, &at, segments, where, &b);
 #endif
         }
         if (camber_tile_is_full(&c))

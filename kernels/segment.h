@@ -15,7 +15,7 @@
 #define CAMBER_CELL_PX 4
 #define CAMBER_TILE_CELLS 8               /* cells along each side of a tile */
 #define CAMBER_TILES_MAX 256              /* tiles along each side of an area: a box has a byte for each coordinate */
-#define CAMBER_LOOK_EVERY 16              /* after this many segments, a cell is checked for being full */
+#define CAMBER_FULL_CHECK_INTERVAL 16     /* after this many segments, a cell is checked for being full */
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* if less than this shows through, nothing below is drawn */
 /* A fill is a line along y = 0 that is this long to either side and has this half width; then the join word of its
  * ends. */

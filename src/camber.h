@@ -328,12 +328,12 @@ CAMBER_API camber_status camber_device_create(camber_context *context, const cam
 CAMBER_API void camber_device_destroy(camber_device *device);
 
 /* The work that a call of camber_device_warm did. */
-typedef struct camber_warmed {
+typedef struct camber_warm_result {
     size_t programs;   /* programs in the share */
     size_t built;      /* programs that were built; the others were in the cache */
     size_t kept;       /* programs that are in the folder now. 0 if the driver does not let its kernels be saved */
     char folder[1024]; /* where they are; "": nowhere, because no folder can be written */
-} camber_warmed;
+} camber_warm_result;
 
 /* Builds all kernels that the device can be asked for, and saves those that the cache lacks, so that later runs can
  * load them. They go to the folder camber-kernels next to the library, which all users of the machine can read, or, if
@@ -343,7 +343,7 @@ typedef struct camber_warmed {
  * everything. Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
  * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
-                                            camber_warmed *warmed);
+                                            camber_warm_result *result);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
 
 typedef struct camber_device_memory {

@@ -100,11 +100,11 @@ static camber_status open_locked(camber_archive_writer *writer) {
 
 /* A run that was killed just when its archive was whole has left its files, which go with the writer that sees that. */
 static void open_leftovers(camber_archive_writer *writer) {
-    camber_soft_log kept;
+    camber_saved_log kept;
     struct stat about;
     if (stat(writer->beside[BESIDE_TILES], &about) != 0 && stat(writer->beside[BESIDE_UNITS], &about) != 0)
         return;
-    camber_log_soften(writer->context, &kept);
+    camber_log_demote_errors(writer->context, &kept);
     (void)open_locked(writer); /* where another process writes them, they are not left over */
     camber_log_restore(writer->context, &kept);
     writer->keeps = false;
@@ -133,7 +133,7 @@ static camber_status look_at_existing(camber_archive_writer *writer) {
     struct stat about;
     const camber_archive_desc *desc = &writer->desc;
     camber_archive *there = NULL;
-    camber_soft_log kept;
+    camber_saved_log kept;
     if (lstat(writer->path, &about) != 0)
         return CAMBER_OK;
     camber_status status = look_at_folder(writer, &about);
@@ -142,7 +142,7 @@ static camber_status look_at_existing(camber_archive_writer *writer) {
     if (!desc->resume)
         return camber_fail(writer->context, CAMBER_ERROR_IO,
                            "%s: exists; name another file, or replace it with --force", writer->path);
-    camber_log_soften(writer->context, &kept);
+    camber_log_demote_errors(writer->context, &kept);
     status = camber_archive_open(writer->context, writer->path, &there);
     camber_log_restore(writer->context, &kept);
     if (status == CAMBER_OK)

@@ -224,7 +224,7 @@ static camber_status add_fill_input(camber_cl_tables *t, const camber_brush *bru
 }
 
 /* Removes everything below, which an opaque fill hides. */
-static void hide_runs(camber_cl_tables *t) {
+static void drop_hidden_inputs(camber_cl_tables *t) {
     t->input_count = 0;
     t->is_rich = false;
 }
@@ -249,7 +249,7 @@ static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list,
         put_over(color, t->sky);
     }
     if (is_opaque && c.a >= 1.0f)
-        hide_runs(t);
+        drop_hidden_inputs(t);
     if (fill->has_image || t->input_count > 0)
         return add_fill_input(t, &brush, &brush_ext);
     put_over(color, t->background);

@@ -13,12 +13,12 @@
 
 /* ---- cl_frame.c ---- */
 
-struct camber_place;
+struct camber_pixel_target;
 /* Draws a frame, whose list is in the renderer, and hands over its rows. */
 camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
-camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, struct camber_place *place,
-                                    camber_frame_stats *stats);
+camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame,
+                                    struct camber_pixel_target *place, camber_frame_stats *stats);
 /* Calls draw for each area of a frame, from the top down, instead of drawing it. */
 typedef camber_status camber_area_fn(camber_renderer *renderer, const camber_raster_scene *scene,
                                      const camber_raster_area *area, void *user);

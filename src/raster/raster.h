@@ -8,8 +8,7 @@
  * - 0: only brushes.
  * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
  *   float4s that it refers to. setup also writes arc lengths. A brush without features gets the same bytes as from the
- *   plain
- *   variant.
+ *   plain variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
  * In kernels #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED select a variant; the twin contains all of them, and
@@ -26,8 +25,8 @@
 /* Polylines [first, end) of a mesh, drawn with a table of rows. At each change, the number of the brush goes up by one,
  * counted from the row's brush. So polygons with many fills are drawn in their order. */
 typedef struct camber_raster_input {
-    camber_mesh
-        *mesh; /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
+    /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
+    camber_mesh *mesh;
     size_t first, end;
     size_t first_row; /* where its table begins among all rows */
     bool is_area;     /* the polylines are rings to fill: rows that are drawn have a half width of CAMBER_EDGE_PX */

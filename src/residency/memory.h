@@ -23,10 +23,10 @@ void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);
 void camber_part_release_points(camber_mesh *mesh, camber_mesh_part *part);
 /* Moves the buffers of one part to another that has none. */
 void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from);
-/* Whether the input buffers are large enough, including those of arc lengths if they are needed. lent: points are
+/* Whether the input buffers are large enough, including those of arc lengths if they are needed. borrowed: points are
  * borrowed, and need no buffers of the part's own. */
-bool camber_part_has_input(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, bool lent);
-camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool lent);
+bool camber_part_has_input(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, bool borrowed);
+camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool borrowed);
 /* Makes the buffers of source lines. */
 camber_status camber_part_make_source_lines(const camber_mesh *mesh, camber_mesh_part *part, size_t slots);
 

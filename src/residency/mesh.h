@@ -45,7 +45,7 @@ typedef struct camber_mesh_part {
     uint32_t *chunk_bases; /* one for each chunk, and one after the last */
     size_t chunk_capacity;
     bool uploaded;
-    bool lent; /* x, y and info are borrowed (zero copy): kernels read the polylines' arrays in place */
+    bool borrowed; /* x, y and info are borrowed (zero copy): kernels read the polylines' arrays in place */
     camber_buffer *x, *y, *info, *joins, *offsets, *sums, *bases;
     /* only with arc lengths: sums of chunks, and one camber_arc_length per slot */
     camber_buffer *lengths, *arc_lengths;

@@ -30,8 +30,8 @@ static void release_polylines(camber_mesh *mesh) {
 }
 
 void camber_mesh_let_go(camber_mesh *mesh) {
-    const bool lent = mesh->part_count > 0 && mesh->parts[0].lent;
-    if (mesh->device->memory_bytes == 0 && !lent)
+    const bool borrowed = mesh->part_count > 0 && mesh->parts[0].borrowed;
+    if (mesh->device->memory_bytes == 0 && !borrowed)
         release_polylines(mesh);
 }
 

@@ -43,7 +43,6 @@ typedef struct camber_drawn_segment {
 #if CAMBER_HAS_MASKS
     camber_extras extras; /* all 0 if the brush has no features */
     camber_image_sampler image;
-    int is_fill;
 #endif
 } camber_drawn_segment;
 
@@ -215,12 +214,6 @@ CAMBER_FN void camber_draw_cell(camber_tile_state *c, const camber_drawn_segment
     camber_cell_pixels pixels;
     if (meets == CAMBER_CELL_OUTSIDE)
         return;
-#if CAMBER_HAS_MASKS
-    if (t->is_fill && t->extras.features & CAMBER_FEATURE_IMAGE) {
-        camber_put_images(c, t, one, 0);
-        return;
-    }
-#endif
     if (!has_colors)
         camber_tile_take_cells(c, (camber_u64)1 << one.number);
     if (!has_colors && meets == CAMBER_CELL_FULL) {
@@ -256,7 +249,6 @@ CAMBER_FN void camber_begin_segment(const camber_draw_source *from, const camber
 #if CAMBER_HAS_MASKS
     CAMBER_GLOBAL const float *arc_length = from->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * which;
     const camber_extras none = {0};
-    t->is_fill = t->edge.half_width >= CAMBER_FILL_PX;
     t->extras = none;
     if (c->brush_ext.features)
         camber_extras_of(&c->brush_ext, arc_length, from->side_table, &t->extras);
@@ -336,10 +328,11 @@ CAMBER_NOINLINE void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d
     d->brush = brush;
 }
 
-/* Draws the polygons above a brush that have no edges in the tile. */
+/* Draws the areas above a brush that have no edges in the tile. */
 CAMBER_FN void camber_draw_areas_above(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
-    for (camber_u32 next = camber_next_area(&d->left); next > brush; next = camber_next_area(&d->left)) {
-        const int winding = camber_take_winding(&d->left, next);
+    for (camber_u32 next = camber_next_area(&d->left, &c->now); next > brush;
+         next = camber_next_area(&d->left, &c->now)) {
+        const int winding = camber_take_winding(&d->left, next) + (next == c->now.fill);
         if (winding == 0)
             continue;
         camber_draw_with(c, d, next);

@@ -219,15 +219,15 @@ static inline camber_u32 brush_of(global const float *segments, global const flo
                                    : as_uint(segments[(size_t)CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
 }
 
-/* Draws the polygons above a brush that cover the tile completely, with none of their edges in it. Returns the last
- * brush that was drawn. */
+/* Draws the areas above a brush that cover the tile completely, with none of their edges in it. Returns the last brush
+ * that was drawn. */
 static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
                                                              tile_brushes *from, camber_tile_rows where,
                                                              camber_crossings_left *left, camber_u32 brush,
                                                              camber_u32 current) {
-    for (camber_u32 next = camber_next_area(left); next > brush && !camber_tile_is_full(c);
-         next = camber_next_area(left)) {
-        const int winding = camber_take_winding(left, next);
+    for (camber_u32 next = camber_next_area(left, &c->now); next > brush && !camber_tile_is_full(c);
+         next = camber_next_area(left, &c->now)) {
+        const int winding = camber_take_winding(left, next) + (next == c->now.fill);
         if (winding == 0)
             continue;
         change_brush(c, at, from, where, next);
@@ -345,7 +345,8 @@ CAMBER_KERNEL(1, rasterize,
             break;
     }
     draw_waiting(&c, &at, segments, edges, where, &b);
-    current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
+    current =
+        draw_areas_above(&c, &at, &from_brushes, where, &left_of, camber_areas_end(&left_of, slice.is_last), current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;

@@ -63,6 +63,7 @@ typedef struct camber_cl_tables {
     size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity,
         change_count, change_capacity;
     uint32_t *fill_images; /* position of each fill's image in the side table. 0: not there. NULL: there are none */
+    uint32_t fill;         /* brush of the last fill so far that is no part of the background. 0: none */
     bool is_rich;          /* a brush has features */
     camber_cl_images images;
     uint32_t layers;     /* so far */

@@ -1,19 +1,20 @@
-/* Archives of tiles: PMTiles 3, MBTiles 1.3, and folders of files. How they are written, read, and looked over.
+/* Archives of tiles: PMTiles 3, MBTiles 1.3, and folders of files; how they are written, read, and verified.
  *
  * Writing, from one thread:
  *
- *     camber_archive_writer_create            locks the archive; with resume, finds the units that are done
- *     for each unit that camber_archive_writer_has_unit does not have:
- *         camber_archive_writer_add ...       its tiles, in any order; by their numbers is fastest
- *         camber_archive_writer_end_unit      from here on the unit survives the end of the process
- *     camber_archive_writer_finish            the archive appears, whole
+ *     camber_archive_writer_create            locks the archive; with resume, finds the finished units
+ *     for each unit for which camber_archive_writer_has_unit is false:
+ *         camber_archive_writer_add ...       adds its tiles, in any order; ascending numbers are fastest
+ *         camber_archive_writer_end_unit      from now on the unit survives the end of the process
+ *     camber_archive_writer_finish            the complete archive appears
  *     camber_archive_writer_destroy
  *
- * The bytes of an archive depend on its description and its tiles alone: not on the order in which tiles were added,
- * not on units, and not on what was resumed or merged. Until it is whole, its tiles lie in two files beside it, which
- * camber_archive_beside names. They are appended to, unit by unit; checksums tell which units are whole.
+ * The bytes of an archive depend only on its description and its tiles, not on the order in which tiles were added, on
+ * units, or on what was resumed or merged. Until the archive is complete, its tiles are in two files next to it, whose
+ * names camber_archive_temporary_path returns. Units are appended to these files, with checksums that show which units
+ * are complete.
  *
- * Memory: 24 bytes a tile that was added, 32 bytes a different content, and 2 MB. */
+ * Memory: 24 bytes per added tile, 32 bytes per distinct content, and 2 MB. */
 #ifndef CAMBER_ARCHIVE_ARCHIVE_H
 #define CAMBER_ARCHIVE_ARCHIVE_H
 
@@ -25,7 +26,7 @@ typedef enum camber_archive_format {
     CAMBER_ARCHIVE_FOLDER, /* FOLDER/{z}/{x}/{y}.EXTENSION, rows from the north, and FOLDER/metadata.json */
 } camber_archive_format;
 
-/* The numbers up to MLT are PMTiles' own. */
+/* PMTiles defines the numbers up to MLT. */
 typedef enum camber_tile_type {
     CAMBER_TILE_OTHER = 0,
     CAMBER_TILE_MVT,
@@ -39,16 +40,17 @@ typedef enum camber_tile_type {
 
 enum { CAMBER_ARCHIVE_LARGEST_TILE_BYTES = 64 << 20 };
 
-/* The format of a path: by its ending; a folder is there already, or ends in a slash. false: it tells none. */
+/* Finds the format by the extension of a path. A folder is an existing one, or a path with a slash at the end. Returns
+ * false if the path shows no format. */
 bool camber_archive_get_format(const char *path, camber_archive_format *format);
-/* The name of a type, and the ending of its files: "png". "bin" is that of the type OTHER. */
+/* Returns the name of a type, such as "png", which is also the extension of its files. That of OTHER is "bin". */
 const char *camber_tile_type_get_name(camber_tile_type type);
-/* The format that metadata of MBTiles and folders say: the name, or a media type. */
+/* Returns the format for the metadata of MBTiles and folders: the name, or a media type. */
 const char *camber_tile_type_get_format(camber_tile_type type);
-/* Finds a type by its name, its format or another ending. OTHER: none has it. */
+/* Finds a type by its name, its format or another common extension. Returns OTHER if there is none. */
 camber_tile_type camber_tile_type_find(const char *name);
 
-/* A place and a zoom that a viewer may open at. Zeroed: the middle of the bounds, at the lowest zoom. */
+/* The place and zoom at which a viewer may open. If zeroed, it is the middle of the bounds at the lowest zoom. */
 typedef struct camber_archive_center {
     bool given;
     double longitude, latitude;
@@ -61,107 +63,108 @@ typedef struct camber_archive_desc {
     const char *path;
     camber_archive_format format;
     camber_tile_type type;
-    bool gzipped; /* the tiles' bytes are compressed with gzip */
-    bool force;   /* an archive that is there is replaced */
-    bool resume;  /* units that an earlier run has ended are kept */
-    bool unites;  /* merging: a tile that comes twice with different bytes is an error; else the later stays */
-    int min_zoom; /* these two count only where there are no tiles */
+    bool gzipped; /* the bytes of tiles are compressed with gzip */
+    bool force;   /* replace an existing archive */
+    bool resume;  /* keep the units that an earlier run finished */
+    bool unites;  /* merging: two tiles with the same number and different bytes are an error; otherwise the later one
+                     wins */
+    int min_zoom; /* min_zoom and max_zoom are only used if there are no tiles */
     int max_zoom;
     double bounds[4]; /* west, south, east, north in degrees; all 0: the whole world */
     camber_archive_center center;
     const json_t *metadata; /* an object: name, description, attribution, version and so on. NULL: none */
-    /* Says what the tiles are made of, as words name=value with blanks between: "input=... style=... options=...
-     * version=...". Parts of one archive have the same. NULL: not told. */
+    /* Identifies the origin of the tiles, as words name=value separated by blanks: "input=... style=... options=...
+     * version=...". All parts of an archive have the same. NULL: unknown. */
     const char *fingerprint;
-    uint32_t shard, shards; /* part shard of shards, from 1; 0: the whole archive */
+    uint32_t shard, shards; /* this is part shard, from 1, of this many shards; 0: the whole archive */
 } camber_archive_desc;
 
 typedef struct camber_archive_writer camber_archive_writer;
 typedef struct camber_archive camber_archive;
 
-/* Opens the files beside desc->path and locks them. The strings and metadata are copied.
- * Returns CAMBER_ERROR_IO (no such folder, another writer has it, it exists without force), CAMBER_ERROR_INPUT (resume:
- * the units there are of another fingerprint), CAMBER_ERROR_MEMORY. */
+/* Opens the files next to desc->path and locks them. The strings and metadata are copied.
+ * Returns CAMBER_ERROR_IO (the folder does not exist, another writer has it open, the archive exists and force is not
+ * set), CAMBER_ERROR_INPUT (resume: the existing units have another fingerprint), CAMBER_ERROR_MEMORY. */
 camber_status camber_archive_writer_create(camber_context *context, const camber_archive_desc *desc,
                                            camber_archive_writer **writer);
-/* Whether an archive with the same fingerprint and shard stands at the path already: there is nothing to do. Only with
- * resume. */
+/* Whether an archive with the same fingerprint and shard already exists at the path, so that nothing is left to do.
+ * Only with resume. */
 bool camber_archive_writer_is_done(const camber_archive_writer *writer);
-/* Whether an earlier run has ended this unit. */
+/* Whether an earlier run finished this unit. */
 bool camber_archive_writer_has_unit(const camber_archive_writer *writer, uint64_t unit);
-/* Adds a tile of the unit that is being written. The bytes are copied.
- * Returns CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (a tile of 0 bytes or more than the largest). */
+/* Adds a tile of the current unit. The bytes are copied.
+ * Returns CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (the tile is empty or larger than the limit). */
 camber_status camber_archive_writer_add(camber_archive_writer *writer, int zoom, camber_tile_index tile,
                                         const void *bytes, size_t size_bytes);
-/* Takes a tile out, which camber_archive_writer_take has brought. */
+/* Removes a tile that camber_archive_writer_take added. */
 camber_status camber_archive_writer_remove(camber_archive_writer *writer, int zoom, camber_tile_index tile);
-/* Ends the unit of this number: its tiles are written, and survive the process. */
+/* Ends the unit with this number: its tiles are written, and survive the process. */
 camber_status camber_archive_writer_end_unit(camber_archive_writer *writer, uint64_t unit);
-/* Takes all tiles of an archive: a part to merge, or the archive that some tiles are renewed of, whichever tiles were
- * or are added besides. The archive stays open until the writer is destroyed; its bytes are copied when the writer
- * finishes. */
+/* Adds all tiles of an archive, which is a part to merge, or an archive in which some tiles are replaced. Tiles added
+ * by camber_archive_writer_add, before or after, take precedence. The archive stays open until the writer is destroyed;
+ * its bytes are copied when the writer finishes. */
 camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_archive *archive);
-/* Writes the archive beside its path, syncs it and gives it its name; what is beside it is removed. Where that fails,
- * the path has what it had, and the units stay.
- * Returns CAMBER_ERROR_IO, CAMBER_ERROR_INPUT (unites: two tiles differ), CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Writes the archive to a temporary path, syncs it, renames it and removes the temporary files. On failure, the path is
+ * unchanged, and the units stay. Returns CAMBER_ERROR_IO, CAMBER_ERROR_INPUT (unites: two tiles differ),
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_archive_writer_finish(camber_archive_writer *writer);
-/* How many tiles that were taken the finished archive is without, as they were removed. */
+/* Returns how many of the taken tiles are missing from the finished archive because they were removed. */
 uint64_t camber_archive_writer_get_removed(const camber_archive_writer *writer);
-/* Closes the files. Those beside the archive stay where a unit has ended and the archive is not finished. */
+/* Closes the files. The temporary files stay if a unit was finished but the archive was not. */
 void camber_archive_writer_destroy(camber_archive_writer *writer);
 
-/* Writes the name of the n-th file beside an archive that is being written: its tiles, its finished units, the whole.
- * false: past the last, or too long. */
-bool camber_archive_beside(const char *path, size_t n, char *name, size_t size);
-/* Writes the names of what differs between two fingerprints: "style, version". */
+/* Writes the name of the n-th temporary file of an archive: its tiles, its finished units, the complete archive.
+ * Returns false after the last, or if the name is too long. */
+bool camber_archive_temporary_path(const char *path, size_t n, char *name, size_t size);
+/* Writes the names of the words that differ between two fingerprints: "style, version". */
 void camber_fingerprint_compare(const char *one, const char *other, char *names, size_t size);
 
 /* ---- Reading ---- */
 
 struct camber_archive {
     camber_context *context;
-    char *path; /* without a slash at its end */
+    char *path; /* without a final slash */
     camber_archive_format format;
     camber_tile_type type;
     bool gzipped;
-    bool sniffed;         /* the archive does not say the type, which is that of its first tile */
+    bool sniffed;         /* the archive does not state its type, so that of its first tile is used */
     camber_tile_set *set; /* NULL: a folder */
     int min_zoom, max_zoom;
     bool has_bounds;
     double bounds[4];
     camber_archive_center center;
-    int whole_center_zoom; /* that of the archive which this is a part of, or its own */
-    json_t *metadata;      /* an object, without what stands above and below */
-    char *fingerprint;     /* NULL: not told */
-    char checksum[17];     /* of its tiles, as camber_checksum_write has it. "": not told */
+    int whole_center_zoom; /* the center's zoom in the whole archive, if this is a part of one; otherwise its own */
+    json_t *metadata;      /* an object, without the values that other fields of this struct have */
+    char *fingerprint;     /* NULL: unknown */
+    char checksum[17];     /* of its tiles, as camber_checksum_write writes it. "": unknown */
     uint32_t shard, shards;
 };
 
-/* Opens an archive by its path. Returns what camber_tile_set_open does. */
+/* Opens the archive at a path. Returns the errors of camber_tile_set_open. */
 camber_status camber_archive_open(camber_context *context, const char *path, camber_archive **archive);
-/* Finds the type of the tiles by the first of them, where the archive does not say it. What is none that is known stays
- * OTHER. Returns what camber_archive_walk does. */
+/* If the archive does not state the type of its tiles, determines it from the first tile. If that is not known, it
+ * stays OTHER. Returns the errors of camber_archive_walk. */
 camber_status camber_archive_sniff(camber_archive *archive);
 void camber_archive_close(camber_archive *archive);
 
 typedef struct camber_archive_tile {
-    uint64_t number, run_length; /* the tiles number, number + 1, ... have the same bytes */
-    uint64_t offset;             /* PMTiles: within the tiles of the file */
+    uint64_t number, run_length; /* tiles number, number + 1, ... have the same bytes */
+    uint64_t offset;             /* PMTiles: within the file's section of tiles */
     uint64_t size_bytes;
     const unsigned char *bytes; /* valid during the call. NULL: PMTiles */
-    bool outside;               /* MBTiles, folders: there is no such tile; its number says nothing */
+    bool outside;               /* MBTiles, folders: no such tile can exist, so the number has no meaning */
     int zoom;
-    int64_t column, row; /* of the first, as they stand in the archive */
+    int64_t column, row; /* of the first tile, as stored in the archive */
 } camber_archive_tile;
 
-/* Calls take_tile for each tile, or run of tiles, in the order in which they are stored. */
+/* Calls take_tile for each tile or run of equal tiles, in the order in which they are stored. */
 camber_status camber_archive_walk(camber_archive *archive,
                                   camber_status (*take_tile)(void *user, const camber_archive_tile *tile), void *user);
-/* Reads a tile's bytes; those of PMTiles are read from the file. *why: NULL, or what is wrong with its place. */
+/* Reads a tile's bytes; for PMTiles from the file. *why: NULL, or what is wrong with its range. */
 camber_status camber_archive_read(camber_archive *archive, const camber_archive_tile *tile, camber_bytes *bytes,
                                   const char **why);
 
-/* The zoom of a tile's number, and the number of the first tile of a zoom. */
+/* Return the zoom of a tile's number, and the number of the first tile of a zoom. */
 int camber_archive_zoom(uint64_t number);
 uint64_t camber_archive_first(int zoom);
 

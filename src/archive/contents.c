@@ -1,7 +1,8 @@
 /* Contents: tiles with equal bytes share one content.
  *
- * A table finds a content by a 64-bit hash of its bytes; bytes with equal hashes are compared. Contents lie in stores:
- * store 0 is a file that the writer appends to, the others are archives whose tiles are taken as they are. */
+ * A table finds a content by a 64-bit hash of its bytes; if hashes are equal, the bytes are compared. Contents are in
+ * stores: store 0 is a file to which the writer appends, and the others are archives whose tiles are taken over
+ * unchanged. */
 #define _XOPEN_SOURCE 700 /* pread, pwrite */
 #define _FILE_OFFSET_BITS 64
 
@@ -14,14 +15,14 @@ enum { TAIL_BYTES = 1 << 20, FIRST_TABLE = 1024 };
 
 /* ---- Hash ---- */
 
-/* The same on every machine, since archives have sums of hashes. */
+/* The hash is the same on every machine, because archives contain sums of hashes. */
 static uint64_t load_word(const unsigned char *b) {
     const uint64_t low = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
     const uint64_t high = (uint32_t)b[4] | (uint32_t)b[5] << 8 | (uint32_t)b[6] << 16 | (uint32_t)b[7] << 24;
     return low | high << 32;
 }
 
-/* Four lanes, so that their multiplications overlap. */
+/* There are four lanes, so that their multiplications overlap. */
 uint64_t camber_content_hash(const void *bytes, size_t size_bytes) {
     const unsigned char *at = bytes;
     uint64_t lanes[4] = {size_bytes, 1, 2, 3};
@@ -119,8 +120,8 @@ static camber_status read_file(camber_contents *contents, const camber_content_s
     if (cause)
         return camber_file_fail(contents->context, from->name, cause);
     if (done < size_bytes)
-        return camber_fail(contents->context, CAMBER_ERROR_INPUT, "%s: became shorter while it was read; get it again",
-                           from->name);
+        return camber_fail(contents->context, CAMBER_ERROR_INPUT,
+                           "%s: was truncated while it was being read; get it again", from->name);
     return CAMBER_OK;
 }
 

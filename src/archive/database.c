@@ -7,15 +7,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whether a file with this suffix exists beside the database and is not empty. */
-static bool has_beside(const char *path, const char *ending) {
+/* Whether a file with this suffix exists next to the database and is not empty. */
+static bool has_companion(const char *path, const char *ending) {
     char name[4096];
     struct stat about;
     return snprintf(name, sizeof name, "%s%s", path, ending) < (int)sizeof name && stat(name, &about) == 0 &&
            about.st_size > 0;
 }
 
-/* Whether the header says that writers keep a log. */
+/* Whether the database is in WAL mode, according to its header. */
 static bool keeps_log(const char *path) {
     unsigned char head[20] = "";
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
@@ -28,9 +28,9 @@ static bool keeps_log(const char *path) {
 camber_database_kind camber_database_get_kind(const char *path) {
     if (!keeps_log(path))
         return CAMBER_DATABASE_PLAIN;
-    if (!has_beside(path, "-wal"))
+    if (!has_companion(path, "-wal"))
         return CAMBER_DATABASE_AT_REST;
-    return has_beside(path, "-shm") ? CAMBER_DATABASE_LOGGED : CAMBER_DATABASE_INTERRUPTED;
+    return has_companion(path, "-shm") ? CAMBER_DATABASE_LOGGED : CAMBER_DATABASE_INTERRUPTED;
 }
 
 bool camber_database_uri(const char *path, char *uri, size_t size) {

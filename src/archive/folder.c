@@ -32,7 +32,7 @@ static camber_status write_file(const camber_archive_plan *plan, const char *pat
     return status;
 }
 
-/* A tile whose folders are not there yet makes them. */
+/* Creates the tile's folders if they do not exist yet. */
 static camber_status write_tile(const camber_archive_plan *plan, uint64_t number, const camber_bytes *bytes) {
     char path[PATH_MAX];
     const int zoom = camber_archive_zoom(number);
@@ -79,7 +79,7 @@ static camber_status write_metadata(const camber_archive_plan *plan) {
     char *text = json_dumps(metadata, JSON_INDENT(2) | JSON_SORT_KEYS);
     json_decref(metadata);
     if (!text)
-        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
+        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: not enough memory for the metadata; allow more",
                            plan->desc->path);
     camber_status status = CAMBER_OK;
     if (snprintf(path, sizeof path, "%s/metadata.json", plan->whole) >= (int)sizeof path)
@@ -98,7 +98,7 @@ static camber_status write_beside(void *user, const char *name, const void *byte
     return write_file(plan, path, bytes, size_bytes);
 }
 
-/* Writes the tileset of mesh tiles. */
+/* Writes the tileset of 3D Tiles for mesh tiles. */
 static camber_status write_tileset(const camber_archive_plan *plan) {
     char path[PATH_MAX];
     camber_archive_plan own = *plan;
@@ -110,13 +110,13 @@ static camber_status write_tileset(const camber_archive_plan *plan) {
     return status == CAMBER_OK ? camber_tileset_write(plan, write_beside, &own) : status;
 }
 
-/* Files by the million are not synced one by one: a loss of power may lose some, the end of the process none. */
+/* Millions of files are not synced one by one: a power failure may lose some, but the end of the process does not. */
 camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
     enum { MOST_FILES = 1 << 26 };
     camber_bytes bytes = {.context = plan->context};
     if (plan->tile_count > MOST_FILES)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
-                           "%s: %" PRIu64 " tiles are too many files for a folder, which may have %d; write PMTiles",
+                           "%s: %" PRIu64 " tiles are more than the %d files that a folder may have; write PMTiles",
                            plan->desc->path, plan->tile_count, MOST_FILES);
     camber_status status = make_folder(plan, plan->whole);
     if (status == CAMBER_OK)
@@ -148,7 +148,7 @@ static int compare_names(const void *left, const void *right) {
     return strcmp(a->extension, b->extension);
 }
 
-/* A number as it is written: no sign, no 0 before others. */
+/* Parses a number in its canonical form: no sign, no leading zeros. */
 static bool parse_name(const char *text, bool file, name *made) {
     const size_t digits = strspn(text, "0123456789");
     if (digits == 0 || digits > 9 || (digits > 1 && text[0] == '0'))
@@ -161,8 +161,8 @@ static bool parse_name(const char *text, bool file, name *made) {
     return true;
 }
 
-/* Whether a name is that of a file beside the tiles. */
-static bool is_beside(const char *entry, bool has_tileset) {
+/* Whether a file with this name may be in the folder in addition to the tiles. */
+static bool is_companion(const char *entry, bool has_tileset) {
     return strcmp(entry, "metadata.json") == 0 ||
            (has_tileset && (strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0));
 }
@@ -173,7 +173,7 @@ static bool is_dots(const char *entry) {
 
 /* ---- Replacing ---- */
 
-/* Whether no other folder can take its name: it is the root, a mount, or "." or "..". */
+/* Whether no other folder can take its name, because it is the root, a mount point, "." or "..". */
 static bool is_fixed(const char *path) {
     const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
     char above[PATH_MAX];
@@ -193,7 +193,7 @@ camber_status camber_folder_may_go(camber_context *context, const char *path) {
         name zoom;
         is_empty = is_empty && is_dots(entry->d_name);
         has_metadata = has_metadata || strcmp(entry->d_name, "metadata.json") == 0;
-        if (!is_dots(entry->d_name) && !is_beside(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
+        if (!is_dots(entry->d_name) && !is_companion(entry->d_name, true) && !parse_name(entry->d_name, false, &zoom))
             status =
                 camber_fail(context, CAMBER_ERROR_IO,
                             "%s: has %s, which is not part of an archive of tiles, and would be lost; name another "
@@ -220,7 +220,7 @@ static camber_status tell_stranger(const camber_folder_visitor *visitor, const c
     return visitor->take_stranger(visitor->user, path);
 }
 
-/* The archive's own path may be a link. A folder within it may not. */
+/* The path of the archive itself may be a link. A folder inside it may not. */
 static DIR *open_folder(const char *path, bool top) {
     struct stat about;
     const int opened = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC | (top ? 0 : O_NOFOLLOW));
@@ -235,7 +235,7 @@ static DIR *open_folder(const char *path, bool top) {
     return NULL;
 }
 
-/* Lists what is named by a number in a folder, in ascending order. What is not goes to the visitor. */
+/* Lists the entries of a folder whose names are numbers, in ascending order. The visitor gets the other names. */
 static camber_status list(const camber_folder_visitor *visitor, const char *folder, bool files, bool top,
                           names *found) {
     camber_context *context = visitor->context;
@@ -244,7 +244,7 @@ static camber_status list(const camber_folder_visitor *visitor, const char *fold
     const struct dirent *entry;
     while (status == CAMBER_OK && (entry = readdir(opened)) != NULL) {
         name made;
-        if (is_dots(entry->d_name) || (top && is_beside(entry->d_name, visitor->has_tileset)))
+        if (is_dots(entry->d_name) || (top && is_companion(entry->d_name, visitor->has_tileset)))
             continue;
         if (!parse_name(entry->d_name, files, &made))
             status = tell_stranger(visitor, folder, entry->d_name);

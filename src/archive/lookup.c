@@ -1,8 +1,8 @@
 /* Looks tiles up in an archive, one at a time, as a server does.
  *
- * Input: a path, then places. Output: bytes as they are stored. PMTiles and MBTiles are asked through the reader of
- * vector tiles; a folder's file is found by its name. Each look-up has the whole budget of steps again, since a server
- * makes any number of them. */
+ * Input: a path, then tile addresses. Output: bytes as they are stored. PMTiles and MBTiles are read through the reader
+ * of vector tiles; a file in a folder is found by its name. Each look-up starts with the full budget of steps, because
+ * a server makes any number of them. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
@@ -19,7 +19,7 @@ struct camber_tiles_reader {
     camber_tiles_info info;
     char *metadata;
     camber_bytes bytes;
-    char *file_bytes; /* of a folder's tile */
+    char *file_bytes; /* the tile's file in a folder */
 };
 
 /* ---- The type of a folder without metadata ---- */
@@ -28,7 +28,7 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
     camber_archive *archive = user;
     archive->type = camber_tile_type_find(file->extension);
     archive->gzipped = archive->type == CAMBER_TILE_MVT;
-    return CAMBER_ERROR_LIMIT; /* one is enough */
+    return CAMBER_ERROR_LIMIT; /* stop, because one is enough */
 }
 
 static camber_status find_type(camber_tiles_reader *reader) {
@@ -50,7 +50,7 @@ static camber_status describe(camber_tiles_reader *reader) {
     static const char *const formats[] = {"pmtiles", "mbtiles", "folder"};
     const camber_archive *archive = reader->archive;
     if (!(reader->metadata = json_dumps(archive->metadata, JSON_SORT_KEYS | JSON_COMPACT)))
-        return camber_fail(reader->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
+        return camber_fail(reader->context, CAMBER_ERROR_MEMORY, "%s: not enough memory for the metadata; allow more",
                            archive->path);
     reader->info = (camber_tiles_info){
         .format = formats[archive->format],
@@ -114,7 +114,7 @@ static camber_status read_file(camber_tiles_reader *reader, const camber_tiles_p
              camber_tile_type_get_name(reader->archive->type));
     const camber_status status =
         camber_read_file_below(reader->context, reader->archive->path, name, &reader->file_bytes, size_bytes);
-    return status == CAMBER_ERROR_NOT_FOUND ? CAMBER_OK : status; /* no tile is there */
+    return status == CAMBER_ERROR_NOT_FOUND ? CAMBER_OK : status; /* the tile does not exist */
 }
 
 camber_status camber_tiles_reader_read(camber_tiles_reader *reader, const camber_tiles_place *place,
@@ -136,8 +136,9 @@ camber_status camber_tiles_reader_read(camber_tiles_reader *reader, const camber
         size = reader->bytes.size_bytes;
     }
     if (status == CAMBER_OK && why)
-        return camber_fail(reader->context, CAMBER_ERROR_INPUT, "%s: tile %d/%u/%u: %s; look at it with tiles verify",
-                           reader->archive->path, zoom, place->column, place->row, why);
+        return camber_fail(reader->context, CAMBER_ERROR_INPUT,
+                           "%s: tile %d/%u/%u: %s; check the archive with camber tiles verify", reader->archive->path,
+                           zoom, place->column, place->row, why);
     if (status != CAMBER_OK)
         return status;
     *bytes = set ? reader->bytes.data : (const uint8_t *)reader->file_bytes;

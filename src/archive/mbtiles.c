@@ -1,5 +1,5 @@
 /* MBTiles: a SQLite database with a table of tiles, whose rows count from the south, and a table of metadata. Either
- * may be a view, and a view is a program: only those that join and select are run, and only for a limited number of
+ * may be a view. A view is a program, so only views that join and select are run, and only for a limited number of
  * steps. */
 #include "archive/database.h"
 #include "archive/tile_set.h"
@@ -13,7 +13,7 @@ typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
     camber_context *context;
-    bool computes; /* a view of it asked for something that is not allowed */
+    bool computes; /* one of its views asked for something that is not allowed */
 } database;
 
 static int count_steps(void *user) {
@@ -21,7 +21,7 @@ static int count_steps(void *user) {
     return !camber_budget_take_steps(self->context, STEPS_A_CALL);
 }
 
-/* Refuses functions, which may take any time over their text, and recursion, which makes rows out of nothing. */
+/* Denies functions, which may take any amount of time for a text, and recursion, which generates rows without end. */
 static int authorize(void *user, int action, const char *first, const char *second, const char *base,
                      const char *view) {
     static const char *const functions[] = {"abs", "coalesce", "count", "ifnull", "iif",   "length", "max",
@@ -111,7 +111,7 @@ static void take_metadata_row(json_t *about, sqlite3_stmt *row) {
     json_decref(inner);
 }
 
-/* The first row of a name counts. */
+/* If a name occurs several times, the first row counts. */
 static void keep_metadata_row(json_t *about, sqlite3_stmt *row) {
     const char *name = about ? (const char *)sqlite3_column_text(row, 0) : NULL;
     const char *value = name ? (const char *)sqlite3_column_text(row, 1) : NULL;
@@ -119,7 +119,7 @@ static void keep_metadata_row(json_t *about, sqlite3_stmt *row) {
         json_object_set_new(about, name, json_string(value));
 }
 
-/* Sets without the table of metadata are read all the same. */
+/* Sets without a table of metadata are read, too. */
 static camber_status read_metadata(camber_tile_set *set) {
     database *self = set->self;
     sqlite3_stmt *rows = NULL;
@@ -200,7 +200,7 @@ static int compare_tiles(const void *left, const void *right) {
     return a->row > b->row ? -1 : a->row < b->row;
 }
 
-/* Sorts the tiles in the order of the table's own rows, from the south, each once: lines are drawn in the order in
+/* Sorts the tiles by rows in the table's order, from the south, and removes duplicates. Lines are drawn in the order in
  * which they are read. */
 static size_t sort_tiles(camber_tile_index *tiles, size_t count) {
     size_t kept = 0;
@@ -276,7 +276,7 @@ static const camber_tile_set_calls database_calls = {get_tile, list_tiles, close
 
 /* ---- Opening ---- */
 
-/* SQLite makes files beside a database whose writers keep a log, and leaves them there. */
+/* SQLite creates files next to a database in WAL mode, and leaves them there. */
 static camber_status open_handle(camber_tile_set *set, const char *path) {
     database *self = set->self;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;

@@ -1,7 +1,7 @@
-/* Merges parts into one archive: looks whether they fit together, and hands them to a writer.
+/* Merges parts into one archive: checks whether they fit together, and passes them to a writer.
  *
- * All that does not fit is told in one message, part by part: which parts of N are missing, which are given twice, and
- * which are of another input, style, options or version. */
+ * Everything that does not fit is reported in one message, part by part: which parts of N are missing, which are given
+ * twice, and which have another input, style, options or version. */
 #include "archive/archive.h"
 
 #include "camber_tiles.h"
@@ -28,22 +28,22 @@ CAMBER_PRINTF(2, 3) static void add_trouble(merging *m, const char *format, ...)
     va_end(list);
 }
 
-/* ---- Whether the parts fit ---- */
+/* ---- Checks of the parts ---- */
 
-/* A number of the metadata, which MBTiles has as a text; 0: none. */
+/* Reads a number from the metadata, which is a text in MBTiles. Returns 0 if there is none. */
 static double number_of(const camber_archive *archive, const char *name) {
     const json_t *value = json_object_get(archive->metadata, name);
     return json_is_string(value) ? strtod(json_string_value(value), NULL) : json_number_value(value);
 }
 
-/* Tiles of two sizes make no map. An archive of another tool's may not tell its own. before, behind: of a number in the
- * message. */
-static void compare_numbers(merging *m, const char *name, const char *before, const char *behind) {
+/* Tiles of two sizes do not make a map. Archives of other tools may not state their size. before and after surround the
+ * number in the message. */
+static void compare_numbers(merging *m, const char *name, const char *before, const char *after) {
     const camber_archive *first = NULL;
     for (size_t i = 0; i < m->desc->part_count; i++) {
         const double own = number_of(m->parts[i], name);
         if (own > 0 && first && own != number_of(first, name))
-            add_trouble(m, "%s has tiles of %s%g%s, not %g as %s", m->parts[i]->path, before, own, behind,
+            add_trouble(m, "%s has tiles of %s%g%s, not %g as %s", m->parts[i]->path, before, own, after,
                         number_of(first, name), first->path);
         first = own > 0 && !first ? m->parts[i] : first;
     }
@@ -64,9 +64,9 @@ static void compare_parts(merging *m, const camber_archive *first, const camber_
                     first->path);
     if (part->shards != first->shards) {
         add_trouble(m, "%s is %s, unlike %s", part->path,
-                    !part->shards    ? "no part of shards"
-                    : !first->shards ? "a part of shards"
-                                     : "a part of another number of shards",
+                    !part->shards    ? "not a shard"
+                    : !first->shards ? "a shard"
+                                     : "a shard of a run with another number of shards",
                     first->path);
         return;
     }
@@ -79,7 +79,7 @@ static void compare_parts(merging *m, const camber_archive *first, const camber_
     }
 }
 
-/* Every part from 1 to N, once. */
+/* Checks that every part from 1 to N is there once. */
 static void count_shards(merging *m) {
     const uint32_t shards = m->parts[0]->shards;
     char missing[512] = "";
@@ -97,7 +97,7 @@ static void count_shards(merging *m) {
         if (!found && used + 16 < sizeof missing)
             snprintf(missing + used, sizeof missing - used, "%s%u", count ? ", " : "", k);
         count += !found;
-        if (count > m->desc->part_count + 1000) /* a number that only a damaged file says */
+        if (count > m->desc->part_count + 1000) /* only damaged files announce more parts than this */
             break;
     }
     if (count)
@@ -123,7 +123,7 @@ static camber_status check_parts(merging *m) {
                        m->troubles, m->parts[0]->shards ? "all parts of one run" : "archives of one kind");
 }
 
-/* ---- The whole ---- */
+/* ---- The merged archive ---- */
 
 static void unite(camber_archive_desc *whole, const camber_archive *part) {
     double *bounds = whole->bounds;
@@ -137,8 +137,8 @@ static void unite(camber_archive_desc *whole, const camber_archive *part) {
     bounds[3] = part->bounds[3] > bounds[3] ? part->bounds[3] : bounds[3];
 }
 
-/* Parts of one run agree in all but their tiles. Of others the first part's words stay, and the boxes are united; a
- * centre of several is that of the united box. */
+/* Parts of one run are equal in everything but their tiles. For other archives, the texts of the first are used, and
+ * the bounds are united; if there are several centres, the middle of the united bounds is used. */
 static camber_archive_desc describe(const merging *m, camber_archive_format format) {
     const camber_archive *first = m->parts[0];
     camber_archive_desc whole = {.path = m->desc->output,
@@ -194,7 +194,7 @@ camber_status camber_tiles_merge(camber_context *context, const camber_tiles_mer
     merging m = {.context = context, .desc = desc};
     camber_archive_format format;
     if (desc->part_count == 0)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: no parts to merge; name them", desc->output);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: no archives to merge; name them", desc->output);
     if (!camber_archive_get_format(desc->output, &format))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "%s: unknown extension; name it .pmtiles, .mbtiles, or a folder with a slash", desc->output);
@@ -213,5 +213,5 @@ camber_status camber_tiles_merge(camber_context *context, const camber_tiles_mer
 }
 
 bool camber_tiles_beside(const char *path, size_t n, char *name, size_t size) {
-    return camber_archive_beside(path, n, name, size);
+    return camber_archive_temporary_path(path, n, name, size);
 }

@@ -1,7 +1,8 @@
-/* Writing files that appear whole or not at all: all bytes or an error, synced, renamed.
+/* Writes files that appear either complete or not at all: all bytes are written and synced, and then the file is
+ * renamed.
  *
- * Input: a context for messages, paths, bytes. A failure is one line with the cause and its cure, and leaves the old
- * file or folder under its name. */
+ * Input: a context for messages, paths, bytes. A failure is reported in one line with the cause and what to do, and
+ * leaves the old file or folder in place. */
 #define _XOPEN_SOURCE 700 /* nftw */
 #define _FILE_OFFSET_BITS 64
 
@@ -20,7 +21,7 @@ static const char *cure_of(int cause) {
     switch (cause) {
     case ENOENT:
     case ENOTDIR: return "make its folder first";
-    case ENAMETOOLONG: return "choose a shorter name: temporary files beside it add 16 letters";
+    case ENAMETOOLONG: return "choose a shorter name: temporary files next to it have up to 16 letters more";
     default: return camber_file_cure(cause, "write elsewhere");
     }
 }
@@ -62,7 +63,7 @@ void camber_remove_tree(camber_context *context, const char *path) {
         nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* The name itself lies in the folder, which is synced where that can be done. */
+/* The name itself is stored in the folder, which is synced if the file system supports it. */
 static void sync_folder(const char *path) {
     char folder[PATH_MAX];
     const char *slash = strrchr(path, '/');
@@ -78,7 +79,8 @@ static void sync_folder(const char *path) {
     close(opened);
 }
 
-/* A folder is no file that rename replaces: the old one is set aside first, and comes back where the new one fails. */
+/* rename cannot replace a folder by another one, so the old folder is moved aside first. It is moved back if the new
+ * one fails. */
 static int replace_folder(camber_context *context, const char *whole, const char *path) {
     char aside[PATH_MAX];
     if (snprintf(aside, sizeof aside, "%s.camber-old", path) >= (int)sizeof aside)

@@ -1,5 +1,5 @@
-/* PMTiles 3: a header of 127 bytes, a root directory, metadata, leaf directories, tiles. Directories are lists of tile
- * numbers along Hilbert curves, zoom by zoom, as varints; compressed. */
+/* PMTiles 3: a header of 127 bytes, a root directory, metadata, leaf directories, tiles. A directory is a compressed
+ * list of tile numbers, as varints. Tiles are numbered zoom by zoom, along a Hilbert curve in each. */
 #define _FILE_OFFSET_BITS 64
 
 #include "archive/pmtiles.h"
@@ -14,9 +14,9 @@ enum { DEEPEST = 4 };
 /* Types of tiles; those between are pictures. */
 enum { VECTOR_TILES = 1, MAPLIBRE_TILES = 6 };
 
-/* Real directories take some hundred kilobytes. */
+/* Directories of real files have some hundred kilobytes. */
 static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
-/* Steps of the budget that reading a directory counts for. */
+/* The number of budget steps for reading a directory. */
 static const uint64_t DIRECTORY_STEPS = 4096;
 
 typedef camber_pmtiles_range range;
@@ -27,7 +27,7 @@ typedef struct archive {
     uint64_t size_bytes;
     camber_pmtiles_header header;
     directory parsed_root;
-    directory leaf; /* the last one that was read */
+    directory leaf; /* the leaf that was read last */
     range leaf_range;
     camber_bytes packed, unpacked;
 } archive;
@@ -42,7 +42,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
     for (int z = zoom - 1; z >= 0; z--) {
         const uint32_t half = UINT32_C(1) << (z & 31), right = x & half ? 1 : 0, down = y & half ? 1 : 0;
         along += ((uint64_t)half * half) * ((3 * right) ^ down);
-        /* Turns the curve for a quarter of the square. */
+        /* Turns the curve for this quarter of the square. */
         if (!down) {
             if (right) {
                 x = half - 1 - (x & (half - 1));
@@ -98,7 +98,7 @@ static uint64_t take_varint(cursor *c) {
     return 0;
 }
 
-/* Says why the entries are not valid; NULL: they are. */
+/* Returns why the entries are not valid, or NULL if they are. */
 static const char *read_entries(cursor *c, camber_pmtiles_entry *made, size_t count) {
     const char *why = NULL;
     uint64_t number = 0;
@@ -115,7 +115,7 @@ static const char *read_entries(cursor *c, camber_pmtiles_entry *made, size_t co
     for (size_t i = 0; i < count; i++) {
         const uint64_t offset = take_varint(c);
         if (offset == 0 && i == 0)
-            why = "a directory's first tile follows none";
+            why = "the first entry of a directory continues another one";
         made[i].offset = offset ? offset - 1 : i ? made[i - 1].offset + made[i - 1].size : 0;
     }
     return c->failed ? "a directory is cut off" : why;
@@ -126,7 +126,7 @@ camber_status camber_pmtiles_parse(camber_context *context, const void *bytes, s
     cursor c = {bytes, (const unsigned char *)bytes + size_bytes, false};
     const uint64_t announced = take_varint(&c);
     if (c.failed || announced > size_bytes / CAMBER_PMTILES_LEAST_ENTRY_BYTES) {
-        *why = "a directory announces more entries than it holds";
+        *why = "a directory has fewer entries than it announces";
         return CAMBER_ERROR_INPUT;
     }
     directory made = {.count = (size_t)announced};
@@ -146,12 +146,12 @@ static camber_status fail(const camber_tile_set *set, const char *why) {
                        why);
 }
 
-/* Reads a range of the file. *why: it lies past the end. */
+/* Reads a range of the file. *why is set if it ends past the end of the file. */
 static camber_status read_range(camber_tile_set *set, range at, size_t limit_bytes, camber_bytes *bytes,
                                 const char **why) {
     const archive *self = set->self;
     if (at.offset > self->size_bytes || at.size > self->size_bytes - at.offset) {
-        *why = "it lies past the end of the file";
+        *why = "it ends past the end of the file";
         return CAMBER_OK;
     }
     if (at.size > limit_bytes) {
@@ -168,7 +168,7 @@ static camber_status read_range(camber_tile_set *set, range at, size_t limit_byt
             return camber_fail(set->context, CAMBER_ERROR_IO, "%s: cannot be read: %s; get the file again", set->name,
                                strerror(errno));
         if (got == 0) {
-            *why = "it lies past the end of the file";
+            *why = "it ends past the end of the file";
             return CAMBER_OK;
         }
         done += (size_t)got;
@@ -176,7 +176,7 @@ static camber_status read_range(camber_tile_set *set, range at, size_t limit_byt
     return CAMBER_OK;
 }
 
-/* Reads a range that is compressed as directories are, and decompresses it to *bytes. */
+/* Reads a compressed range, such as a directory, and decompresses it to *bytes. */
 static camber_status read_packed(camber_tile_set *set, range at, const char *what, const camber_bytes **bytes) {
     archive *self = set->self;
     const char *why = NULL;
@@ -212,7 +212,7 @@ static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
     return (range){entry->offset <= room ? self->header.leaves.offset + entry->offset : UINT64_MAX, entry->size};
 }
 
-/* Finds the last entry that does not begin behind the number; NULL: all do. */
+/* Finds the last entry that begins at the number or before it, or NULL if there is none. */
 static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t number) {
     size_t low = 0, high = in->count;
     while (in->entries && low < high) {
@@ -267,7 +267,7 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index 
 typedef struct listing {
     camber_tile_set *set;
     int zoom;
-    uint64_t first, end; /* the tile numbers of the zoom */
+    uint64_t first, end; /* the first tile number of the zoom, and the one after the last */
     camber_tile_index *tiles;
     size_t count, capacity;
 } listing;
@@ -404,7 +404,7 @@ static camber_status check_compression(const camber_tile_set *set, int compressi
                        set->name, what, compressions[compression >= 0 && compression <= 4 ? compression : 0]);
 }
 
-/* Tiles of an unknown type may well be vector tiles. */
+/* Tiles of an unknown type may be vector tiles. */
 static camber_status check_type(const camber_tile_set *set) {
     const int type = ((const archive *)set->self)->header.tile_type;
     if (set->takes_any || type == VECTOR_TILES || type == 0)
@@ -432,7 +432,7 @@ static camber_status read_header(camber_tile_set *set) {
         return camber_fail(set->context, CAMBER_ERROR_INPUT,
                            "%s: not a PMTiles archive; check the path, or download it again", set->name);
     if (head[7] != 3)
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: has version %d of PMTiles; convert it to version 3",
                            set->name, head[7]);
     camber_pmtiles_parse_header(head, &self->header);
     set->min_zoom = self->header.min_zoom;
@@ -463,7 +463,7 @@ static camber_status read_metadata(camber_tile_set *set) {
     if (set->takes_any)
         set->about = json_loadb((const char *)bytes->data, bytes->size_bytes, 0, NULL);
     if (json_is_object(about)) {
-        /* The header's own zooms and bounds come last, since they are right. */
+        /* The zooms and bounds in the header are set last, because they are authoritative. */
         json_object_del(about, "minzoom");
         json_object_del(about, "maxzoom");
         json_object_del(about, "bounds");

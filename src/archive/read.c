@@ -1,7 +1,8 @@
-/* Reads archives of tiles: what they say of themselves, and their tiles one after the other.
+/* Reads archives of tiles: their metadata, and their tiles one after the other.
  *
- * The readers of PMTiles and MBTiles are those of vector tiles (source/); this file asks them for tiles of any type.
- * Metadata are brought to one form: what the formats write differently (bounds, centre, zooms, format) leaves them. */
+ * The readers of PMTiles and MBTiles are those of vector tiles (tile_set.h); this file asks them for tiles of any type.
+ * Metadata are converted to one form: the values that each format stores differently (bounds, centre, zooms, format)
+ * are taken out of them. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
@@ -35,7 +36,7 @@ static const char *text_of(const json_t *about, const char *name) {
     return json_string_value(json_object_get(about, name));
 }
 
-/* Takes the texts that MBTiles and folders have in place of a header. */
+/* Reads the texts that MBTiles and folders have instead of a header. */
 static void take_texts(camber_archive *archive) {
     const json_t *about = archive->metadata;
     double center[3];
@@ -65,8 +66,8 @@ static void take_header(camber_archive *archive) {
         (camber_archive_center){true, header.center[0] * 1e-7, header.center[1] * 1e-7, header.center_zoom};
 }
 
-/* MBTiles has text only: what is JSON in it is unfolded. */
-static void unfold(json_t *about, const char *name, bool into_itself) {
+/* MBTiles stores only texts; texts that contain JSON are parsed. */
+static void parse_member(json_t *about, const char *name, bool into_itself) {
     const char *text = text_of(about, name);
     json_t *inner = text ? json_loads(text, 0, NULL) : NULL;
     if (json_is_object(inner) && into_itself) {
@@ -101,8 +102,8 @@ static camber_status take_origin(camber_archive *archive) {
 static camber_status take_metadata(camber_archive *archive) {
     static const char *const told[] = {"format", "bounds", "center", "minzoom", "maxzoom", "camber"};
     if (archive->format == CAMBER_ARCHIVE_MBTILES) {
-        unfold(archive->metadata, "json", true);
-        unfold(archive->metadata, "camber", false);
+        parse_member(archive->metadata, "json", true);
+        parse_member(archive->metadata, "camber", false);
     }
     if (archive->format == CAMBER_ARCHIVE_PMTILES)
         take_header(archive);
@@ -201,7 +202,7 @@ static camber_status take_entry(void *user, const camber_pmtiles_entry *entry) {
     return walk->take_tile(walk->user, &tile);
 }
 
-/* The place as it stands there becomes the tile's number. */
+/* Computes the tile's number from the address as it is stored. */
 static void number_tile(camber_archive_tile *tile, bool south_first) {
     const int64_t side = tile->zoom >= 0 && tile->zoom <= CAMBER_LARGEST_TILE_ZOOM ? INT64_C(1) << tile->zoom : 0;
     tile->run_length = 1;
@@ -242,7 +243,7 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
                                 .bytes = (const unsigned char *)bytes,
                                 .size_bytes = size_bytes};
     number_tile(&tile, false);
-    /* A folder without metadata tells the type by the names of its files. */
+    /* If a folder has no metadata, the extension of its files shows the type. */
     if (walk->archive->type == CAMBER_TILE_OTHER)
         walk->archive->type = camber_tile_type_find(file->extension);
     status = walk->take_tile(walk->user, &tile);
@@ -270,7 +271,7 @@ typedef struct sniffing {
     bool done;
 } sniffing;
 
-/* One is enough: the walk ends as if it had failed. */
+/* One tile is enough, so the walk is ended by a failure. */
 static camber_status sniff_tile(void *user, const camber_archive_tile *tile) {
     sniffing *self = user;
     camber_archive *archive = self->archive;
@@ -295,7 +296,8 @@ camber_status camber_archive_sniff(camber_archive *archive) {
         return CAMBER_OK;
     const camber_status status = camber_archive_walk(archive, sniff_tile, &self);
     archive->sniffed = archive->type != CAMBER_TILE_OTHER;
-    if (archive->format != CAMBER_ARCHIVE_PMTILES) /* there they are packed where they are not */
+    if (archive->format !=
+        CAMBER_ARCHIVE_PMTILES) /* MBTiles and folders: uncompressed tiles are compressed while they are taken */
         archive->gzipped = archive->type == CAMBER_TILE_MVT;
     return self.done ? CAMBER_OK : status;
 }

@@ -1,7 +1,8 @@
-/* One ascending list of runs, made of the tiles that were added and of those that other archives have.
+/* Makes one ascending list of runs from the tiles that were added and from those that other archives contain.
  *
- * Input: both lists, in the order in which they came. Output: disjoint runs whose neighbours differ, or the first
- * number that two archives give different contents. Runs stay runs: a sea of a million tiles is one item. */
+ * Input: both lists, in the order in which they arrived. Output: disjoint runs, of which neighbours have different
+ * contents, or the first number for which two archives have different contents. Runs are never expanded, so that a sea
+ * of a million tiles stays one item. */
 #include "archive/writer.h"
 
 #include <stdlib.h>
@@ -21,7 +22,7 @@ static void sort(camber_archive_runs *runs) {
         }
 }
 
-/* Tiles that were added are runs of one. */
+/* Added tiles are runs of length 1. */
 static void keep_last(camber_archive_runs *runs) {
     size_t kept = 0;
     for (size_t i = 0; i < runs->count; i++) {
@@ -32,7 +33,8 @@ static void keep_last(camber_archive_runs *runs) {
     runs->count = kept;
 }
 
-/* Cuts runs that overlap with equal contents. The runs that reach beyond a number all have the content of the last. */
+/* Shortens overlapping runs with equal contents until they are disjoint. A run is only compared with the last one,
+ * because all earlier runs that reach beyond its start have the same content. */
 static void keep_disjoint(camber_archive_runs *runs, camber_archive_conflict *conflict) {
     size_t kept = 0;
     for (size_t i = 0; i < runs->count && !conflict->found; i++) {
@@ -44,18 +46,18 @@ static void keep_disjoint(camber_archive_runs *runs, camber_archive_conflict *co
                 *conflict = (camber_archive_conflict){true, run.number, {last->order, run.order}};
                 return;
             }
-            const uint64_t behind = run.number + run.length;
-            if (behind <= end)
+            const uint64_t range_end = run.number + run.length;
+            if (range_end <= end)
                 continue;
             run.number = end;
-            run.length = behind - end;
+            run.length = range_end - end;
         }
         runs->items[kept++] = run;
     }
     runs->count = kept;
 }
 
-/* Appends a run; it lengthens the last one where it goes on with the same content. */
+/* Appends a run, or lengthens the last run if this one continues it with the same content. */
 static bool append(camber_context *context, camber_archive_runs *made, const camber_archive_run *run) {
     camber_archive_run *last = made->count ? &made->items[made->count - 1] : NULL;
     if (run->length == 0 || run->content == CAMBER_NO_CONTENT)

@@ -1,7 +1,7 @@
-/* Counts what an archive has, and shows it: tiles and bytes by zoom, entries, different contents.
+/* Counts the contents of an archive and shows them: tiles and bytes by zoom, entries, distinct contents.
  *
- * Input: the tiles of a walk. In PMTiles a content is a place in the file, which several tiles may name; so the places
- * are kept and sorted. Memory: 24 bytes an entry. */
+ * Input: the tiles of a walk. In PMTiles a content is a range of the file that several tiles may share, so ranges are
+ * collected and sorted. Memory: 24 bytes per entry. */
 #include "archive/tally.h"
 
 #include "archive/tile_schema.h"
@@ -10,7 +10,8 @@
 #include <sqlite3.h>
 #include <stdlib.h>
 
-/* Adds the tiles of a run to their zooms. A damaged run may reach past the last zoom, and no tile is there. */
+/* Adds the tiles of a run to the counts of their zooms. A damaged run may extend past the last zoom, where there are no
+ * tiles. */
 static void count_run(camber_tally *tally, uint64_t number, uint64_t length) {
     for (int zoom = camber_archive_zoom(number); length && zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {
         const uint64_t room = camber_archive_first(zoom + 1) - number, taken = length < room ? length : room;
@@ -74,7 +75,7 @@ void camber_tally_free(camber_tally *tally) {
 /* ---- Showing ---- */
 
 typedef struct shown {
-    camber_tiles_info info; /* what the caller has */
+    camber_tiles_info info; /* the part that the caller sees */
     camber_context *context;
     camber_archive *archive;
     char *metadata;
@@ -91,7 +92,7 @@ static camber_status count_row(void *user, sqlite3_stmt *row) {
     return CAMBER_OK;
 }
 
-/* Normalised MBTiles have each content once. */
+/* Normalised MBTiles store each content once. */
 static camber_status count_images(camber_archive *archive, uint64_t *contents) {
     uint64_t count = 0;
     bool missing = false;
@@ -137,7 +138,8 @@ static camber_status fill(shown *s) {
             s->zooms[s->info.zoom_count++] = (camber_tiles_zoom){zoom, tally.zoom_tiles[zoom], tally.zoom_bytes[zoom]};
     camber_tally_free(&tally);
     if (status == CAMBER_OK && !s->metadata)
-        return camber_fail(s->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more", archive->path);
+        return camber_fail(s->context, CAMBER_ERROR_MEMORY, "%s: not enough memory for the metadata; allow more",
+                           archive->path);
     return status;
 }
 
@@ -159,7 +161,7 @@ camber_status camber_tiles_show(camber_context *context, const char *path, cambe
 }
 
 void camber_tiles_info_destroy(camber_tiles_info *info) {
-    shown *s = (shown *)(void *)info; /* its first member */
+    shown *s = (shown *)(void *)info; /* info is its first member */
     if (!s)
         return;
     camber_archive_close(s->archive);

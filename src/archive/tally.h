@@ -1,12 +1,12 @@
-/* Counting an archive, tile by tile. */
+/* Counts the tiles and contents of an archive, tile by tile. */
 #ifndef CAMBER_ARCHIVE_TALLY_H
 #define CAMBER_ARCHIVE_TALLY_H
 
 #include "archive/archive.h"
 
-/* A content of PMTiles, by its place; or a tile of another format. */
+/* The range of a content in PMTiles; in other formats a tile. */
 typedef struct camber_tally_place {
-    uint64_t offset; /* PMTiles: in the tiles. Else 0 */
+    uint64_t offset; /* PMTiles: in the section of tiles. Otherwise 0 */
     uint64_t size_bytes, number;
 } camber_tally_place;
 
@@ -14,13 +14,13 @@ typedef struct camber_tally {
     camber_context *context;
     uint64_t tiles, entries, contents;
     uint64_t zoom_tiles[CAMBER_LARGEST_TILE_ZOOM + 1], zoom_bytes[CAMBER_LARGEST_TILE_ZOOM + 1];
-    camber_tally_place *places; /* PMTiles: by offset and size, each once; else by number */
+    camber_tally_place *places; /* PMTiles: distinct ranges, by offset and size; otherwise tiles by number */
     size_t place_count, place_capacity;
 } camber_tally;
 
-/* Counts a tile of a walk. Free the tally with camber_tally_free in any case. */
+/* Counts a tile of a walk. Free the tally with camber_tally_free even if this fails. */
 camber_status camber_tally_take(camber_tally *tally, const camber_archive_tile *tile);
-/* Sorts the places, and counts contents and bytes, when the walk is over. */
+/* Call it after the walk: sorts the ranges, and counts contents and bytes. */
 void camber_tally_sum(camber_tally *tally, camber_archive_format format);
 void camber_tally_free(camber_tally *tally);
 

@@ -1,4 +1,4 @@
-/* Serves the readers of all sets of tiles: growing bytes, decompression, and metadata of a set. */
+/* Used by the readers of all tile sets: growing buffers, decompression, and the metadata of a set. */
 #include "archive/tile_set.h"
 #include <errno.h>
 #include <math.h>
@@ -54,7 +54,7 @@ static const char *gunzip(const camber_bytes *packed, size_t limit_bytes, camber
     z_stream stream = {.next_in = packed->data, .avail_in = (uInt)packed->size_bytes};
     if (packed->size_bytes > UINT32_MAX / 2)
         return "it is larger than 2 GB";
-    /* 32: the header tells gzip from zlib. */
+    /* + 32: zlib detects gzip or zlib by the header. */
     if (inflateInit2(&stream, 15 + 32) != Z_OK)
         return "out of memory";
     out->size_bytes = 0;
@@ -78,7 +78,7 @@ camber_status camber_tile_set_gunzip(camber_tile_set *set, const camber_bytes *p
 }
 
 static bool read_number(const json_t *json, double *number) {
-    /* MBTiles has text only. */
+    /* MBTiles stores only texts. */
     char *end = NULL;
     const char *text = json_string_value(json);
     *number = text ? strtod(text, &end) : json_number_value(json);
@@ -109,7 +109,7 @@ static bool read_bounds(const json_t *json, double bounds[4]) {
            bounds[1] < bounds[3];
 }
 
-/* A later description of the set replaces an earlier one. */
+/* A later description of a set replaces an earlier one. */
 static camber_status take_attribution(camber_tile_set *set, const json_t *about) {
     const char *text = json_string_value(json_object_get(about, "attribution"));
     char *copy = text ? camber_copy_string(set->context, text) : NULL;

@@ -1,5 +1,5 @@
-/* Checks tiles by their formats' own frames: signatures, lengths, checksums. Pixels are not decoded: in PNG a checksum
- * covers them, in WebP their length is that of the file. */
+/* Checks tiles by the structure of their formats: signatures, lengths, checksums. Pixels are not decoded: in PNG a
+ * checksum covers them, and in WebP their length must match that of the file. */
 #include "archive/tile_check.h"
 
 #include <zlib.h>
@@ -15,7 +15,7 @@ static uint32_t little_endian(const unsigned char *at, size_t size) {
     return number;
 }
 
-/* Chunks: a length, a name of four letters, so many bytes, and their CRC. */
+/* A PNG consists of chunks: a length, a name of four letters, that many bytes, and their CRC. */
 static const char *check_png(const unsigned char *bytes, size_t size, uint32_t *width, uint32_t *height) {
     bool has_pixels = false;
     if (size < 8 || memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) != 0)
@@ -26,7 +26,7 @@ static const char *check_png(const unsigned char *bytes, size_t size, uint32_t *
         if (length > size - at - 12)
             break;
         if (big_endian(name + 4 + length) != (uint32_t)crc32(crc32(0, NULL, 0), name, length + 4))
-            return "is a damaged PNG: a checksum does not fit";
+            return "is a damaged PNG: a checksum does not match";
         if (at == 8 && (memcmp(name, "IHDR", 4) != 0 || length != 13))
             return "is a PNG without a header";
         if (at == 8) {
@@ -44,7 +44,7 @@ static const char *check_png(const unsigned char *bytes, size_t size, uint32_t *
     return "is a PNG that is cut off";
 }
 
-/* RIFF: a length, WEBP, and a first chunk that tells the size in one of three ways. */
+/* A WebP is a RIFF file: a length, WEBP, and a first chunk that states the size in one of three ways. */
 static const char *check_webp(const unsigned char *bytes, size_t size, uint32_t *width, uint32_t *height) {
     if (size < 12 || memcmp(bytes, "RIFF", 4) != 0 || memcmp(bytes + 8, "WEBP", 4) != 0)
         return "is not a WebP";
@@ -81,7 +81,7 @@ static bool take_varint(const unsigned char **at, const unsigned char *end, uint
     return false;
 }
 
-/* A tile is a message whose fields are layers: number 3, with a length. */
+/* A vector tile is a message whose fields are layers: field 3, with a length. */
 static const char *check_vector(const unsigned char *bytes, size_t size) {
     const unsigned char *at = bytes, *end = bytes + size;
     while (at < end) {
@@ -124,7 +124,7 @@ const char *camber_tile_check(camber_tile_type type, const unsigned char *bytes,
 }
 
 camber_tile_type camber_tile_sniff(const unsigned char *bytes, size_t size_bytes) {
-    enum { LAYERS = 0x1a }; /* the key of a vector tile's layers */
+    enum { LAYERS = 0x1a }; /* the key of a layer */
     if (size_bytes < 12)
         return CAMBER_TILE_OTHER;
     if (memcmp(bytes, "\x89PNG", 4) == 0)

@@ -1,4 +1,4 @@
-/* The schemas that the style city draws (city.cmake), and what each is known by. */
+/* The schemas that the style city supports (city.cmake), and how to recognise them. */
 #include "archive/tile_schema.h"
 
 #include <stdbool.h>
@@ -6,8 +6,8 @@
 
 enum { LAYERS = 6 };
 
-/* Any of these layers, or this field in any layer, tells the schema. Names that anyone may give a layer, as roads or
- * water, tell nothing. Protomaps 3 has the layer of 4, so it comes first. */
+/* Any of these layers, or this field in any layer, identifies the schema. Names that anybody may use, such as roads or
+ * water, identify none. Protomaps 3 comes first, because it also has the layer of Protomaps 4. */
 static const struct {
     const char *name, *layers[LAYERS], *field;
 } schemas[] = {

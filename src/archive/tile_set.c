@@ -1,7 +1,7 @@
-/* Sets of vector tiles: what folders of files, MBTiles and PMTiles have in common, and the folders themselves.
+/* Sets of vector tiles: code that folders of files, MBTiles and PMTiles share, and the folders themselves.
  *
- * Input: a path or a template of paths. Output: the decompressed bytes of a tile, and what the set says of itself:
- * zooms, bounds, attribution, layers. How much a tile may take when decompressed is limited by the budget.
+ * Input: a path or a template of paths. Output: the decompressed bytes of a tile, and the metadata of the set: zooms,
+ * bounds, attribution, layers. The budget limits how much a tile may decompress to.
  */
 #include "archive/tile_set.h"
 
@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* The most that one tile may take decompressed: real maps stay below a few megabytes, a decompression bomb does not. */
+/* The limit for one decompressed tile: real tiles have at most a few megabytes, unlike decompression bombs. */
 static const size_t LARGEST_TILE_BYTES = (size_t)64 << 20;
 
 /* ---- Decompression ---- */
@@ -20,7 +20,7 @@ static bool is_compressed(const camber_bytes *bytes) {
     const unsigned char *b = bytes->data;
     if (bytes->size_bytes < 2)
         return false;
-    /* A zlib header; no tile begins with field 15 of wire type 0 as its first. */
+    /* A zlib header. No valid tile begins with these bytes, which would be field 15 with wire type 0. */
     return (b[0] == 0x1f && b[1] == 0x8b) || (b[0] == 0x78 && (b[0] * 256 + b[1]) % 31 == 0);
 }
 
@@ -37,7 +37,7 @@ static void put_quadkey(char *out, int zoom, camber_tile_index tile) {
     *out = 0;
 }
 
-/* Writes what {...} stands for. false: it is left as it is. */
+/* Writes the text that replaces {...}. Returns false if the token is unknown and stays as it is. */
 static bool expand_token(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
                          char out[40]) {
     const uint32_t turned = (UINT32_C(1) << zoom) - 1 - tile.row;
@@ -99,7 +99,7 @@ static camber_status read_tile(int file, camber_bytes *bytes, const char *name) 
     return CAMBER_OK;
 }
 
-/* A tile that is not there is empty. */
+/* A missing tile is empty. */
 static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     (void)why;
@@ -182,7 +182,7 @@ static const struct {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* KINDS: none. */
+/* Returns KINDS if there is none. */
 static size_t find_kind(const char *path) {
     size_t kind = 0;
     while (kind < KINDS && !ends_with(path, kinds[kind].ending))
@@ -205,7 +205,8 @@ static camber_status open_file(camber_context *context, const char *path, camber
         return CAMBER_ERROR_MEMORY;
     made->naming = naming;
     made->takes_any = takes_any;
-    const camber_status status = kinds[find_kind(path) % KINDS].open(made, path); /* another ending: the first */
+    const camber_status status =
+        kinds[find_kind(path) % KINDS].open(made, path); /* a file with another extension is opened as the first kind */
     if (status != CAMBER_OK) {
         camber_tile_set_close(made);
         return status;

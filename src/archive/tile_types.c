@@ -1,4 +1,4 @@
-/* Formats of archives, and types of tiles: their names. */
+/* The names of archive formats and of tile types. */
 #define _DEFAULT_SOURCE /* flock */
 #define _FILE_OFFSET_BITS 64
 #include "archive/checksum.h"
@@ -42,7 +42,7 @@ const char *camber_tile_type_get_name(camber_tile_type type) {
     return type_names[type];
 }
 
-/* MBTiles names other types than its own by their media types. */
+/* MBTiles uses media types for types that it does not define itself. */
 static const char *const media_types[] = {[CAMBER_TILE_OTHER] = "application/octet-stream",
                                           [CAMBER_TILE_AVIF] = "image/avif",
                                           [CAMBER_TILE_MLT] = "application/vnd.maplibre-vector-tile",

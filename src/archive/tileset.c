@@ -1,11 +1,11 @@
 /* Writes a tileset of 3D Tiles 1.1 with implicit tiling: a quadtree whose levels are zooms.
  *
- * Input: the runs of tiles of a folder. Output: tileset.json, and subtrees, which say with bits what there is: LEVELS
- * levels from a root on, level by level, in Morton order. Main idea: the tiles below a root are one stretch of the
- * Hilbert curve at each zoom, so runs are found by their numbers, and no table of all tiles is needed.
+ * Input: the runs of tiles of a folder. Output: tileset.json, and subtrees, which have one bit for each tile: LEVELS
+ * levels below a root, level by level, in Morton order. The main idea: at each zoom, the tiles below a root are
+ * consecutive along the Hilbert curve, so runs are found by their numbers, and no table of all tiles is needed.
  *
- * The square of Web Mercator is the root, x east, y north, in metres. Its second axis points south, so that rows count
- * from the north, as the folder has them. */
+ * The root is the square of Web Mercator, x east, y north, in metres. Its second axis points south, so that rows count
+ * from the north, as they do in the folder. */
 #include "archive/tileset.h"
 
 #include "archive/pmtiles.h"
@@ -16,10 +16,11 @@
 
 enum { MOST_LEVELS = 9 };
 static const double WORLD_M = 40075016.685578488;
-/* A viewer of 3D Tiles goes to the next zoom where an error is more than 16 px: so at twice the size of a tile. */
+/* A viewer of 3D Tiles switches to the next zoom if the error is more than 16 px, which is at twice the size of a tile.
+ */
 static const double ERROR_PX = 16.0;
 
-/* The roots of subtrees of a level, as places along the Hilbert curve, ascending. */
+/* The roots of subtrees of a level, as ascending positions along the Hilbert curve. */
 typedef struct roots {
     uint64_t *items;
     size_t count, capacity;
@@ -30,8 +31,8 @@ typedef struct tileset {
     camber_tileset_writer write;
     void *user;
     int levels;    /* of a subtree */
-    uint8_t *bits; /* of one: its tiles, its contents, its children, each at a multiple of 8 bytes */
-    size_t bytes;  /* of tiles, and of contents */
+    uint8_t *bits; /* the bits of one subtree: tiles, contents, children, each aligned to 8 bytes */
+    size_t bytes;  /* for the tiles, and again for the contents */
     size_t child_bytes;
 } tileset;
 
@@ -50,7 +51,7 @@ static int compare(const void *left, const void *right) {
 
 /* ---- Roots ---- */
 
-/* Lists the ancestors at a level of all tiles at it and below. */
+/* Lists the ancestors on a level of all tiles on that level and below. */
 static camber_status list_roots(const tileset *t, int level, roots *list) {
     list->count = 0;
     for (size_t i = 0; i < t->plan->run_count; i++) {
@@ -94,7 +95,8 @@ static void set_bit(uint8_t *bits, uint64_t at) {
     bits[at / 8] |= (uint8_t)(1u << (at % 8));
 }
 
-/* Sets the bits of a tile and of those above it, up to the root; place: along the Hilbert curve of its zoom. */
+/* Sets the bits of a tile and of its ancestors up to the root. place: its position along the Hilbert curve of its zoom.
+ */
 static void set_tile(const tileset *t, int level, int zoom, uint64_t place, bool content) {
     uint32_t column, row;
     camber_pmtiles_locate(place, zoom, &column, &row);
@@ -104,12 +106,12 @@ static void set_tile(const tileset *t, int level, int zoom, uint64_t place, bool
     if (content)
         set_bit(t->bits + t->bytes, (((uint64_t)1 << (2 * depth)) - 1) / 3 + own);
     else
-        set_bit(t->bits + 2 * t->bytes, own); /* a child: the root of another subtree */
+        set_bit(t->bits + 2 * t->bytes, own); /* a child, which is the root of another subtree */
     for (unsigned k = content ? depth + 1 : depth; k-- > 0;)
         set_bit(t->bits, (((uint64_t)1 << (2 * k)) - 1) / 3 + (own >> (2 * (depth - k))));
 }
 
-/* The first run that ends behind a number. */
+/* Returns the first run that ends after a number. */
 static size_t find_run(const tileset *t, uint64_t number) {
     size_t low = 0, high = t->plan->run_count;
     while (low < high) {
@@ -157,7 +159,7 @@ static void put(uint8_t *to, uint64_t value, int bytes) {
         to[i] = (uint8_t)(value >> (8 * i));
 }
 
-/* Writes a subtree of the bits that are set: a head of 24 bytes, JSON, and the bits. */
+/* Writes a subtree from its bits: a header of 24 bytes, JSON, and the bits. */
 static camber_status write_subtree(const tileset *t, int level, uint64_t root) {
     char json[1024], path[96], children[64] = "{\"constant\":0}";
     uint32_t column, row;

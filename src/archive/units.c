@@ -1,8 +1,8 @@
-/* The journal: a header with the key of what is written, then records of 32 bytes.
+/* The journal: a header with a key that identifies the archive, then records of 32 bytes.
  *
- * A unit's records are written when it ends, behind its contents, and a last record closes it with a hash of all that
- * came before. A process that dies leaves a journal whose end is torn at worst. Reading it believes a unit only if the
- * hash of its records fits, and the hash of each of its contents. */
+ * The records of a unit are written when it ends, after its contents. A last record closes the unit with a hash of all
+ * records before it. If a process dies, only the end of its journal can be torn. A reader accepts a unit only if the
+ * hash of its records and the hashes of all its contents match. */
 #define _XOPEN_SOURCE 700 /* pread, ftruncate */
 #define _FILE_OFFSET_BITS 64
 
@@ -61,7 +61,7 @@ camber_status camber_units_end(camber_units *units, uint64_t unit, uint64_t cont
     const size_t size = units->pending_count * sizeof *units->pending;
     status =
         camber_write_at(units->context, units->name, units->descriptor, units->pending, size, units->written_bytes);
-    units->pending_count--; /* where it failed, it may be ended again */
+    units->pending_count--; /* the caller may retry after a failure */
     if (status != CAMBER_OK)
         return status;
     units->written_bytes += size;
@@ -76,14 +76,14 @@ typedef struct reading {
     camber_units *units;
     camber_contents *contents;
     const camber_unit_taker *taker;
-    uint64_t contents_bytes; /* of the units that are whole */
+    uint64_t contents_bytes; /* of the units that are complete */
     unsigned char *bytes;
     size_t capacity;
     uint32_t *found; /* the contents of the pending records */
     size_t found_capacity;
 } reading;
 
-/* Reads up to count records behind what is read already. */
+/* Reads up to count records after those that were read already. */
 static size_t read_records(const camber_units *units, uint64_t offset, camber_unit_record *records, size_t count) {
     ssize_t got;
     do
@@ -92,12 +92,12 @@ static size_t read_records(const camber_units *units, uint64_t offset, camber_un
     return got > 0 ? (size_t)got / sizeof *records : 0;
 }
 
-/* Reads the content of a record, and finds or notes it. *whole: it is there, and its hash fits. */
+/* Reads the content of a record, and looks it up or registers it. *whole: it exists, and its hash matches. */
 static camber_status take_content(reading *r, const camber_unit_record *record, uint64_t *end, uint32_t *index,
                                   bool *whole) {
-    const uint64_t behind = record->offset + record->size_bytes;
-    if (record->size_bytes == 0 || behind < record->offset || record->offset > *end ||
-        (record->offset < *end && behind > *end))
+    const uint64_t range_end = record->offset + record->size_bytes;
+    if (record->size_bytes == 0 || range_end < record->offset || record->offset > *end ||
+        (record->offset < *end && range_end > *end))
         return CAMBER_OK;
     if (!camber_grow(r->units->context, &r->bytes, &r->capacity, record->size_bytes, 1))
         return CAMBER_ERROR_MEMORY;
@@ -108,13 +108,13 @@ static camber_status take_content(reading *r, const camber_unit_record *record, 
     if (status == CAMBER_OK && *index == CAMBER_NO_CONTENT && record->offset == *end) {
         const camber_content made = {record->hash, record->offset, record->size_bytes, 0};
         status = camber_contents_note(r->contents, &made, index);
-        *end = behind;
+        *end = range_end;
     }
     *whole = *index != CAMBER_NO_CONTENT;
     return status;
 }
 
-/* Believes the pending records, which last closes, or not. */
+/* Accepts the pending records, which last closes, if they are valid. */
 static camber_status take_unit(reading *r, const camber_unit_record *last, bool *whole) {
     camber_units *units = r->units;
     const size_t count = units->pending_count;
@@ -173,7 +173,7 @@ static int compare_units(const void *left, const void *right) {
 
 static camber_status cut(reading *r) {
     camber_units *units = r->units;
-    camber_contents_cut(r->contents, r->contents_bytes); /* what a unit has that was not believed goes */
+    camber_contents_cut(r->contents, r->contents_bytes); /* removes contents of units that were not accepted */
     if (ftruncate(units->descriptor, (off_t)units->written_bytes) != 0)
         return camber_output_fail(units->context, units->name, errno);
     const camber_content_store *own = &r->contents->stores[0];
@@ -188,7 +188,7 @@ static camber_status resume(reading *r) {
     camber_unit_record *records = camber_alloc(r->units->context, READ_AT_ONCE, sizeof *records);
     if (!records)
         return CAMBER_ERROR_MEMORY;
-    /* Contents are read from the file up to its end, whichever that is. */
+    /* The size of the file is not known yet, so contents are read up to its end. */
     camber_saved_log kept;
     r->contents->written_bytes = INT64_MAX;
     camber_log_demote_errors(r->units->context, &kept);

@@ -1,4 +1,4 @@
-/* The journal of an archive that is being written: which tiles its finished units have. */
+/* The journal of an archive that is being written. It lists the tiles of finished units. */
 #ifndef CAMBER_ARCHIVE_UNITS_H
 #define CAMBER_ARCHIVE_UNITS_H
 
@@ -6,11 +6,11 @@
 
 typedef enum camber_unit_kind {
     CAMBER_UNIT_TILE = 1,
-    CAMBER_UNIT_REMOVED, /* the archive has no such tile any more */
-    CAMBER_UNIT_END,     /* number is the unit's, offset the end of store 0, hash that of all records before */
+    CAMBER_UNIT_REMOVED, /* the archive no longer has this tile */
+    CAMBER_UNIT_END,     /* number is that of the unit, offset the end of store 0, hash covers all records before */
 } camber_unit_kind;
 
-/* As it stands in the file; one machine writes and reads it. */
+/* The record's layout in the file. The same machine writes and reads it. */
 typedef struct camber_unit_record {
     uint32_t kind, size_bytes;
     uint64_t number, offset, hash; /* the content's */
@@ -21,26 +21,26 @@ typedef struct camber_units {
     int descriptor;
     const char *name;
     uint64_t written_bytes, chain;
-    camber_unit_record *pending; /* of the unit that is being written */
+    camber_unit_record *pending; /* of the current unit */
     size_t pending_count, pending_capacity;
-    uint64_t *done; /* units that an earlier run has ended, ascending */
+    uint64_t *done; /* units that an earlier run finished, ascending */
     size_t done_count, done_capacity;
 } camber_units;
 
-/* Takes a tile that an earlier run has written; content: CAMBER_NO_CONTENT where it was removed. */
+/* Receives the tiles that an earlier run wrote. content: CAMBER_NO_CONTENT if the tile was removed. */
 typedef struct camber_unit_taker {
     camber_status (*take_tile)(void *user, uint64_t number, uint32_t content);
     void *user;
 } camber_unit_taker;
 
-/* Begins a journal of what key describes. */
+/* Starts a journal for the archive that key describes. */
 camber_status camber_units_begin(camber_units *units, const char *key);
-/* Reads a journal: tells the tiles of its finished units, notes their contents, and cuts both files behind the last
- * unit that is whole. Returns CAMBER_ERROR_INPUT where the journal is of another key. An empty file is begun. */
+/* Reads a journal: reports the tiles of its finished units, registers their contents, and truncates both files after
+ * the last complete unit. Returns CAMBER_ERROR_INPUT if the journal has another key. An empty file is started. */
 camber_status camber_units_resume(camber_units *units, const char *key, camber_contents *contents,
                                   const camber_unit_taker *taker);
 camber_status camber_units_add(camber_units *units, const camber_unit_record *record);
-/* Ends a unit; the contents are flushed already. */
+/* Ends a unit. Its contents must be flushed. */
 camber_status camber_units_end(camber_units *units, uint64_t unit, uint64_t contents_bytes);
 bool camber_units_has(const camber_units *units, uint64_t unit);
 void camber_units_free(camber_units *units);

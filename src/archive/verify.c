@@ -1,4 +1,5 @@
-/* Verifies archives: findings, and what the formats have in common: zooms, bounds, metadata and the bytes of tiles. */
+/* Verifies archives: collects findings, and checks what all formats have in common: zooms, bounds, metadata and the
+ * bytes of tiles. */
 #include "archive/verify.h"
 #include "archive/contents.h"
 #include "archive/pmtiles.h"
@@ -21,8 +22,8 @@ static void check_bounds(camber_verify *v) {
                            b[2], b[3]);
         v->archive->has_bounds = false;
     } else if (v->archive->has_bounds && !(b[0] >= -180.0000001 && b[2] <= 180.0000001 && b[1] >= -90 && b[3] <= 90)) {
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the bounds %.7g,%.7g,%.7g,%.7g leave the world", b[0], b[1],
-                           b[2], b[3]);
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the bounds %.7g,%.7g,%.7g,%.7g extend beyond the world",
+                           b[0], b[1], b[2], b[3]);
     }
     if (center->given && (center->zoom < low || center->zoom > high))
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre's zoom %d is not from %d to %d", center->zoom,
@@ -30,12 +31,12 @@ static void check_bounds(camber_verify *v) {
     if (center->given && v->archive->has_bounds &&
         (center->longitude < b[0] - 1e-6 || center->longitude > b[2] + 1e-6 || center->latitude < b[1] - 1e-6 ||
          center->latitude > b[3] + 1e-6))
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre %.7g,%.7g lies outside the bounds",
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the centre %.7g,%.7g is outside the bounds",
                            center->longitude, center->latitude);
     camber_verify_find_boxes(v);
 }
 
-/* The zooms that the archive says are those of its tiles. */
+/* Compares the stated zooms with those of the tiles. */
 static void check_zooms(camber_verify *v) {
     int low = -1, high = -1;
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {
@@ -55,7 +56,7 @@ static void check_zooms(camber_verify *v) {
                            v->archive->format == CAMBER_ARCHIVE_MBTILES ? "south" : "north");
 }
 
-/* ---- All of it ---- */
+/* ---- Verifying ---- */
 
 static void check_metadata(camber_verify *v) {
     const json_t *about = v->archive->metadata;
@@ -82,7 +83,7 @@ static void check_sum(camber_verify *v) {
 
 static camber_status verify(camber_verify *v) {
     camber_status status = CAMBER_ERROR_INPUT;
-    (void)camber_archive_sniff(v->archive); /* where it fails, the walk below fails too */
+    (void)camber_archive_sniff(v->archive); /* if it fails, the walk below fails, too */
     if (v->archive->sniffed && v->archive->format != CAMBER_ARCHIVE_FOLDER)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s, and its tiles look like %s",
                            v->archive->format == CAMBER_ARCHIVE_PMTILES ? "the header names no type of tiles"
@@ -102,7 +103,7 @@ static camber_status verify(camber_verify *v) {
     return status;
 }
 
-/* A log that keeps the last error: damage that ends reading is a finding. */
+/* A log that keeps the last error, because damage that prevents reading is also a finding. */
 typedef struct kept_log {
     char error[1024];
 } kept_log;
@@ -114,11 +115,11 @@ static void keep_error(void *user, camber_log_level level, const char *message) 
 }
 
 typedef struct found {
-    camber_tiles_findings findings; /* what the caller has */
+    camber_tiles_findings findings; /* the part that the caller sees */
     camber_context *context;
 } found;
 
-/* Opens and verifies, with messages kept. */
+/* Opens and verifies the archive, and turns error messages into findings. */
 static camber_status run(camber_verify *v, const char *path) {
     kept_log log = {""};
     const camber_saved_log before = {v->context->desc.log, v->context->desc.log_user};
@@ -167,7 +168,7 @@ camber_status camber_tiles_verify(camber_context *context, const char *path, cam
 }
 
 void camber_tiles_findings_destroy(camber_tiles_findings *findings) {
-    found *f = (found *)(void *)findings; /* its first member */
+    found *f = (found *)(void *)findings; /* findings is its first member */
     if (!f)
         return;
     for (size_t i = 0; i < f->findings.count; i++)

@@ -1,5 +1,5 @@
-/* Verifies PMTiles: every promise of the header and the directories, as the specification and its own tool have them,
- * and every content that a directory names. */
+/* Verifies PMTiles: all that the specification and its reference tool require of the header and the directories, and
+ * every content that a directory refers to. */
 #include "archive/pmtiles.h"
 #include "archive/verify.h"
 
@@ -9,9 +9,9 @@ typedef struct entry_walk {
     camber_verify *v;
     camber_pmtiles_header header;
     bool any;
-    uint64_t next;        /* the number behind the last entry's */
-    uint64_t placed;      /* the end of the contents that entries have named so far */
-    uint64_t leaf_number; /* the first number that the leaf may have */
+    uint64_t next;        /* the number after the last entry */
+    uint64_t placed;      /* the end of the contents of all entries so far */
+    uint64_t leaf_number; /* the lowest number that the leaf may contain */
     uint64_t leaf_bytes;
     bool in_leaf, unordered, deep;
 } entry_walk;
@@ -48,7 +48,8 @@ static void check_sections(camber_verify *v, const camber_pmtiles_file *file) {
     const uint64_t packed = CAMBER_PMTILES_HEADER_BYTES + sum, spaced = 16384 + sum - h->root.size;
     if (file->size_bytes != packed && file->size_bytes != spaced)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true,
-                           "the file has %" PRIu64 " bytes, and its sections make %" PRIu64, file->size_bytes, packed);
+                           "the file has %" PRIu64 " bytes, but its sections add up to %" PRIu64, file->size_bytes,
+                           packed);
     if (h->root.offset + h->root.size > 16384)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "the root directory ends past the first 16384 bytes");
     if (h->tile_type > CAMBER_TILE_MLT)
@@ -71,7 +72,7 @@ static camber_status take_leaf(void *user, const camber_pmtiles_entry *entry, in
     walk->in_leaf = true;
     walk->leaf_bytes += entry->size;
     if (entry->offset > leaves.size || entry->size > leaves.size - entry->offset)
-        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "a leaf directory lies outside the section of leaves");
+        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "a leaf directory is outside the section of leaf directories");
     if (depth > 1 && !walk->deep)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, false,
                            "leaf directories lead to others, which takes more requests");
@@ -79,13 +80,13 @@ static camber_status take_leaf(void *user, const camber_pmtiles_entry *entry, in
     return CAMBER_OK;
 }
 
-/* Clustered: each content lies behind those that came before, or is one of them. */
+/* Clustered: each content comes after all earlier ones, or is one of them. */
 static void check_order(entry_walk *walk, const camber_archive_tile *tile, const char *name) {
     if (tile->offset == walk->placed)
         walk->placed += tile->size_bytes;
     else if (tile->offset > walk->placed && walk->header.clustered == 1)
         camber_verify_tell(walk->v, CAMBER_VERIFY_ORDER, true,
-                           "tile %s is not at its place in the order of a clustered archive", name);
+                           "tile %s is out of order, although the archive says that it is clustered", name);
     if (tile->offset > walk->placed)
         walk->placed = tile->offset + tile->size_bytes;
 }
@@ -96,11 +97,11 @@ static camber_status take_tile(entry_walk *walk, const camber_archive_tile *tile
     camber_verify_name(tile->number, name);
     const uint64_t end = camber_archive_first(CAMBER_LARGEST_TILE_ZOOM + 1);
     if (tile->number >= end || tile->run_length > end - tile->number) {
-        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile number %" PRIu64 " lies beyond zoom 24", tile->number);
+        camber_verify_tell(v, CAMBER_VERIFY_PLACE, true, "tile number %" PRIu64 " is beyond zoom 24", tile->number);
         return CAMBER_OK;
     }
     if (walk->any && tile->number < walk->next)
-        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s comes twice, or after a later one", name);
+        camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s occurs twice, or after a later one", name);
     if (walk->in_leaf && tile->number < walk->leaf_number)
         camber_verify_tell(v, CAMBER_VERIFY_ORDER, true, "tile %s is in a leaf directory that begins after it", name);
     walk->any = true;
@@ -123,23 +124,23 @@ static camber_status take_entry(void *user, const camber_pmtiles_entry *entry) {
 
 /* ---- Contents ---- */
 
-/* 0 says that nobody has counted. */
+/* A count of 0 means that it is unknown. */
 static void check_count(camber_verify *v, const char *name, uint64_t told, uint64_t counted) {
     if (told && told != counted)
-        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s are said to be %" PRIu64 ", and are %" PRIu64, name,
-                           told, counted);
+        camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s: the header says %" PRIu64 ", but there are %" PRIu64,
+                           name, told, counted);
 }
 
-/* Contents, by their places, leave no gap and share no byte. */
+/* The ranges of contents must leave no gaps and must not overlap. */
 static void check_places(camber_verify *v, uint64_t tiles_bytes) {
     uint64_t end = 0, unused = 0;
     size_t overlaps = 0;
     for (size_t i = 0; i < v->tally.place_count; i++) {
         const camber_tally_place *place = &v->tally.places[i];
-        const uint64_t behind = place->offset + place->size_bytes;
+        const uint64_t range_end = place->offset + place->size_bytes;
         unused += place->offset > end ? place->offset - end : 0;
         overlaps += place->offset < end && place->size_bytes;
-        end = behind > end ? behind : end;
+        end = range_end > end ? range_end : end;
     }
     unused += tiles_bytes > end ? tiles_bytes - end : 0;
     if (overlaps)

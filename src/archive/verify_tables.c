@@ -51,8 +51,8 @@ static void check_twice(camber_verify *v) {
 typedef struct tables {
     camber_verify *v;
     bool has_index, has_format, has_name, has_bounds, has_zooms;
-    bool normal;   /* there are images and map */
-    uint64_t *ids; /* hashes of the ids in images, and then those in map */
+    bool normal;   /* it has the tables images and map */
+    uint64_t *ids; /* first the hashes of the ids in images, then of those in map */
     size_t count, capacity;
 } tables;
 
@@ -61,7 +61,7 @@ static const char *text_at(sqlite3_stmt *row, int column) {
     return text ? text : "";
 }
 
-/* An index over the three columns of tiles, or of the table behind the view. */
+/* Looks for an index on the three columns of tiles, or of the table on which the view is based. */
 static camber_status take_schema(void *user, sqlite3_stmt *row) {
     tables *t = user;
     const char *type = text_at(row, 0), *table = text_at(row, 1), *sql = text_at(row, 2);
@@ -69,7 +69,7 @@ static camber_status take_schema(void *user, sqlite3_stmt *row) {
     char upper[8];
     snprintf(upper, sizeof upper, "%.6s", strlen(sql) > 7 ? sql + 7 : "");
     if (strcmp(type, "index") == 0 && of_tiles && (!*sql || strcasecmp(upper, "UNIQUE") == 0))
-        t->has_index = true; /* without SQL: the index of a primary key or of UNIQUE */
+        t->has_index = true; /* an index without SQL belongs to a primary key or to UNIQUE */
     return CAMBER_OK;
 }
 
@@ -124,7 +124,7 @@ static bool has_id(const uint64_t *ids, size_t count, uint64_t id) {
     return count && bsearch(&id, ids, count, sizeof *ids, compare_ids) != NULL;
 }
 
-/* Normalised: each image is a tile's, and each tile has its image. */
+/* Normalised: each image must belong to a tile, and each tile must have its image. */
 static camber_status check_images(tables *t) {
     bool missing = false;
     camber_tile_set *set = t->v->archive->set;
@@ -199,12 +199,12 @@ camber_status camber_verify_mbtiles(camber_verify *v) {
 
 typedef struct tileset {
     camber_verify *v;
-    bool is_left;    /* tileset.json is missing, or is another's: subtrees are not looked at */
-    uint64_t *names; /* hashes of the subtrees' names */
+    bool is_left;    /* tileset.json is missing, or is not camber's, so subtrees are not checked */
+    uint64_t *names; /* hashes of the names of subtrees */
     size_t count, capacity;
 } tileset;
 
-/* tileset.json is camber's own, or says other things of the tiles. */
+/* Reports a tileset.json that is not the one that camber would write for these tiles. */
 static void check_root(tileset *t, const char *found, size_t size_bytes, bool same) {
     json_t *read = same ? NULL : json_loadb(found, size_bytes, JSON_REJECT_DUPLICATES, NULL);
     t->is_left = !same;
@@ -214,7 +214,7 @@ static void check_root(tileset *t, const char *found, size_t size_bytes, bool sa
     json_decref(read);
 }
 
-/* Compares a file beside the tiles with what they give. */
+/* Compares a file of the tileset with the one that the tiles require. */
 static camber_status compare_file(void *user, const char *name, const void *bytes, size_t size_bytes) {
     tileset *t = user;
     const bool is_root = t->count == 0 && strcmp(name, "tileset.json") == 0;
@@ -241,12 +241,12 @@ static camber_status compare_file(void *user, const char *name, const void *byte
     if (is_root)
         check_root(t, found, found_bytes, same);
     else if (!same)
-        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "%s lists other tiles than there are", name);
+        camber_verify_tell(t->v, CAMBER_VERIFY_TILESET, true, "%s does not list the tiles that exist", name);
     camber_free(t->v->context, found);
     return CAMBER_OK;
 }
 
-/* Subtrees that no tile is below. */
+/* Reports subtrees that have no tiles. */
 static camber_status check_others(tileset *t) {
     char path[PATH_MAX];
     if (snprintf(path, sizeof path, "%s/subtrees", t->v->archive->path) >= (int)sizeof path)
@@ -265,7 +265,7 @@ static camber_status check_others(tileset *t) {
     return CAMBER_OK;
 }
 
-/* The tileset that the tiles give, against the one that is there. The tally is sorted. */
+/* Compares the tileset with the one that the tiles require. The tally is sorted. */
 static camber_status check_tileset(camber_verify *v) {
     tileset t = {.v = v};
     const camber_tally_place *places = v->tally.places;
@@ -294,13 +294,14 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
     const char *extension = camber_tile_type_get_name(v->archive->type);
     if (v->archive->type != CAMBER_TILE_OTHER && strcmp(file->extension, extension) != 0 &&
         camber_tile_type_find(file->extension) != v->archive->type)
-        camber_verify_tell(v, CAMBER_VERIFY_NAME, true, "%s: is not named as a tile of type %s", file->path, extension);
+        camber_verify_tell(v, CAMBER_VERIFY_NAME, true, "%s: does not have the name of a tile of type %s", file->path,
+                           extension);
     return CAMBER_OK;
 }
 
 static camber_status take_stranger(void *user, const char *path) {
-    camber_verify_tell(user, CAMBER_VERIFY_NAME, true, "%s: is not a tile by its name, ZOOM/COLUMN/ROW.EXTENSION",
-                       path);
+    camber_verify_tell(user, CAMBER_VERIFY_NAME, true,
+                       "%s: does not have the name of a tile, ZOOM/COLUMN/ROW.EXTENSION", path);
     return CAMBER_OK;
 }
 

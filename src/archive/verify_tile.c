@@ -1,4 +1,4 @@
-/* Findings about archives, and what is checked of each tile: its place and its bytes. */
+/* Collects findings about archives, and checks each tile: its address and its bytes. */
 #include "archive/contents.h"
 #include "archive/pmtiles.h"
 #include "archive/tile_check.h"
@@ -54,17 +54,17 @@ static void check_place(camber_verify *v, uint64_t number) {
     uint32_t column, row;
     char name[40];
     if (zoom < v->archive->min_zoom || zoom > v->archive->max_zoom || zoom > CAMBER_LARGEST_TILE_ZOOM)
-        return; /* the zooms as a whole are told once */
+        return; /* zooms are reported once for the whole archive */
     camber_pmtiles_locate(number - camber_archive_first(zoom), zoom, &column, &row);
     if (is_within(&v->boxes[zoom], column, row))
         return;
     v->outside++;
     v->flipped += is_within(&v->boxes[zoom], column, ldexp(1, zoom) - 1 - row);
     camber_verify_name(number, name);
-    camber_verify_tell(v, CAMBER_VERIFY_BOUNDS, true, "tile %s lies outside the bounds", name);
+    camber_verify_tell(v, CAMBER_VERIFY_BOUNDS, true, "tile %s is outside the bounds", name);
 }
 
-/* Long runs are seas: their first tiles, and the last, stand for them. */
+/* Long runs are mostly seas, so only their first tiles and the last one are checked. */
 void camber_verify_bounds(camber_verify *v, const camber_archive_tile *tile) {
     if (!v->archive->has_bounds || tile->outside)
         return;

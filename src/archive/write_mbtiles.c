@@ -1,7 +1,8 @@
-/* Writes MBTiles 1.3, normalised: images has each content once, map has the tiles, the view tiles joins them.
+/* Writes normalised MBTiles 1.3: images has each content once, map has the tiles, and the view tiles joins the two.
  *
- * Rows go in by the tiles' numbers, so that equal tiles make equal files; a transaction takes many rows. The indices
- * are made at the end. SQLite keeps no journal of its own: the file has its name only when it is whole and synced. */
+ * Rows are inserted in the order of tile numbers, so that equal tiles make equal files; each transaction has many rows.
+ * Indices are created at the end. SQLite keeps no journal, because the file gets its name only after it is complete and
+ * synced. */
 #include "archive/output_file.h"
 #include "archive/pmtiles.h"
 #include "archive/writer.h"
@@ -20,7 +21,7 @@ typedef struct writing {
     const camber_archive_plan *plan;
     sqlite3 *handle;
     sqlite3_stmt *put_image, *put_tile;
-    uint32_t *ids; /* of the contents, in the order of their first tiles; 0: not written */
+    uint32_t *ids; /* by content: the id, in the order of their first tiles; 0: not written yet */
     uint32_t image_count;
     uint64_t row_count;
     camber_bytes bytes;
@@ -45,7 +46,7 @@ static camber_status fail(const writing *w) {
     const int code = w->handle ? sqlite3_extended_errcode(w->handle) : SQLITE_NOMEM;
     const int cause = w->handle ? sqlite3_system_errno(w->handle) : 0;
     if (code == SQLITE_NOMEM)
-        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: SQLite is out of memory; give it more",
+        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: SQLite ran out of memory; allow more",
                            plan->desc->path);
     if ((code & 0xff) == SQLITE_FULL)
         return camber_output_fail(plan->context, plan->whole, cause == EFBIG ? EFBIG : ENOSPC);
@@ -89,7 +90,7 @@ static camber_status put_row(const writing *w, sqlite3_stmt *put, const char *na
     return status;
 }
 
-/* MBTiles has layers and statistics of vector tiles in one text, which is JSON. */
+/* MBTiles puts the layers and statistics of vector tiles into one text with JSON. */
 static void fold_layers(json_t *metadata) {
     static const char *const names[] = {"vector_layers", "tilestats"};
     json_t *inner = json_object();
@@ -112,7 +113,7 @@ static camber_status put_metadata(const writing *w, json_t *metadata) {
         return fail(w);
     fold_layers(metadata);
     camber_archive_put_texts(w->plan, metadata);
-    /* Sorted names, so that equal metadata make equal files. */
+    /* Names are sorted, so that equal metadata make equal files. */
     char *text = json_dumps(metadata, JSON_SORT_KEYS);
     json_t *again = text ? json_loads(text, 0, NULL) : NULL;
     free(text);
@@ -200,7 +201,7 @@ static camber_status write_rows(writing *w) {
 
 camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan) {
     writing w = {.plan = plan, .bytes.context = plan->context};
-    /* Runs that files only claim would become rows without end. */
+    /* Runs of a malicious archive could expand to rows without end. */
     if (plan->tile_count > MOST_TILES)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
                            "%s: %" PRIu64 " tiles are too many rows for MBTiles, which may have %d; write PMTiles",

@@ -1,8 +1,8 @@
-/* Writes PMTiles 3: header, root directory, tiles from 16384 on, metadata, leaf directories; clustered.
+/* Writes clustered PMTiles 3: header, root directory, tiles from byte 16384 on, metadata, leaf directories.
  *
- * The contents come in the order in which tiles first name them. Where the writer's own file has them in that order, it
- * becomes the archive, and no tile is copied. Runs become entries. Where the root directory of all
- * entries does not fit into the first 16 KB, entries go to leaves, which grow until the root of the leaves fits. */
+ * Contents are stored in the order in which tiles first use them. If the writer's own file already has them in this
+ * order, it becomes the archive, and no tile is copied. Runs become entries. If a root directory with all entries does
+ * not fit into the first 16 KB, entries move to leaves, which grow until the root directory of the leaves fits. */
 #define _XOPEN_SOURCE 700 /* pread, pwrite */
 #define _FILE_OFFSET_BITS 64
 
@@ -27,8 +27,8 @@ enum {
 typedef struct packed {
     camber_bytes root, leaves, metadata;
     camber_bytes plain; /* a directory before it is compressed */
-    uint64_t *offsets;  /* of the contents */
-    uint32_t *order;    /* the contents, by offset */
+    uint64_t *offsets;  /* by content */
+    uint32_t *order;    /* the contents, sorted by offset */
     size_t content_count;
     uint64_t tiles_bytes;
     camber_pmtiles_entry *entries;
@@ -45,12 +45,12 @@ static unsigned char *put_varint(unsigned char *at, uint64_t value) {
     return at;
 }
 
-/* The header of zlib's gzip has no time: the same bytes give the same. */
+/* The gzip header that zlib writes contains no time, so equal input gives equal bytes. */
 camber_status camber_archive_gzip(const char *name, const void *bytes, size_t size_bytes, camber_bytes *to) {
     z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes, .avail_in = (uInt)size_bytes};
     const size_t before = to->size_bytes;
     if (deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-        return camber_fail(to->context, CAMBER_ERROR_MEMORY, "%s: compressing: out of memory; give it more", name);
+        return camber_fail(to->context, CAMBER_ERROR_MEMORY, "%s: not enough memory to compress it; allow more", name);
     if (!camber_bytes_resize(to, before + deflateBound(&stream, (uLong)size_bytes))) {
         deflateEnd(&stream);
         return CAMBER_ERROR_MEMORY;
@@ -96,7 +96,7 @@ static camber_status write_leaves(const camber_archive_plan *plan, packed *p, si
 }
 
 static camber_status write_directories(const camber_archive_plan *plan, packed *p) {
-    /* Readers unpack the root for every first tile, so that it stays small even where many entries would fit. */
+    /* Readers decompress the root for each first tile, so it is kept small even if many entries would fit. */
     if (plan->run_count <= ROOT_BYTES) {
         const camber_status status = append_directory(plan, p, p->entries, plan->run_count, &p->root);
         if (status != CAMBER_OK || p->root.size_bytes <= ROOT_BYTES)
@@ -113,7 +113,7 @@ static camber_status write_directories(const camber_archive_plan *plan, packed *
     }
 }
 
-/* Gives each content its place, in the order in which tiles first name it. */
+/* Assigns each content its offset, in the order in which tiles first use it. */
 static camber_status place(const camber_archive_plan *plan, packed *p) {
     const size_t count = plan->contents->count;
     p->offsets = camber_alloc(plan->context, count, sizeof *p->offsets);
@@ -149,10 +149,10 @@ static unsigned char *put_degrees(unsigned char *at, double degrees) {
 
 static void write_header(const camber_archive_plan *plan, const packed *p, unsigned char *header) {
     const camber_tile_type type = plan->desc->type <= CAMBER_TILE_MLT ? plan->desc->type : CAMBER_TILE_OTHER;
-    const uint64_t behind = CAMBER_STORE_BEGIN + p->tiles_bytes;
+    const uint64_t range_end = CAMBER_STORE_BEGIN + p->tiles_bytes;
     const camber_pmtiles_range sections[] = {{CAMBER_PMTILES_HEADER_BYTES, p->root.size_bytes},
-                                             {behind, p->metadata.size_bytes},
-                                             {behind + p->metadata.size_bytes, p->leaves.size_bytes},
+                                             {range_end, p->metadata.size_bytes},
+                                             {range_end + p->metadata.size_bytes, p->leaves.size_bytes},
                                              {CAMBER_STORE_BEGIN, p->tiles_bytes}};
     memcpy(header, "PMTiles\3", 8);
     unsigned char *at = header + 8;
@@ -178,13 +178,13 @@ static void write_header(const camber_archive_plan *plan, const packed *p, unsig
 
 /* ---- Tiles ---- */
 
-/* Copies a range of a store by way of a buffer, which fills up with ranges until it is written. */
+/* Copies ranges of a store through a buffer, which is written whenever it is full. */
 typedef struct copying {
     const camber_archive_plan *plan;
     int file;
     unsigned char *buffer;
     size_t held_bytes;
-    uint64_t offset; /* of the buffer in the file */
+    uint64_t offset; /* the buffer's offset in the file */
 } copying;
 
 static camber_status drain(copying *c) {
@@ -210,7 +210,7 @@ static camber_status copy_range(copying *c, uint32_t store, uint64_t offset, uin
     return CAMBER_OK;
 }
 
-/* Contents that lie one behind the other in a store are one range. */
+/* Contents that follow each other directly in a store are copied as one range. */
 static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p, int file) {
     copying c = {.plan = plan, .file = file, .offset = CAMBER_STORE_BEGIN};
     const camber_content *items = plan->contents->items;
@@ -235,7 +235,7 @@ static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p
     return status;
 }
 
-/* Whether the writer's own file has the contents, and nothing else, where the archive has them. */
+/* Whether the writer's own file contains exactly the contents of the archive, at the same offsets. */
 static bool has_order(const camber_archive_plan *plan, const packed *p) {
     const camber_contents *contents = plan->contents;
     for (size_t i = 0; i < p->content_count; i++) {
@@ -248,7 +248,7 @@ static bool has_order(const camber_archive_plan *plan, const packed *p) {
 
 /* ---- The file ---- */
 
-/* Writes all but the tiles, which lie between. */
+/* Writes everything but the tiles, which are in the middle. */
 static camber_status write_around(const camber_archive_plan *plan, const packed *p, int file) {
     unsigned char head[CAMBER_STORE_BEGIN] = {0};
     uint64_t offset = sizeof head + p->tiles_bytes;
@@ -278,8 +278,8 @@ static camber_status write_copy(const camber_archive_plan *plan, const packed *p
     return status;
 }
 
-/* Gives the file of the tiles a second name; by the first an interrupted run finds it. Some file systems know no second
- * names, and the first may be a link to another folder. */
+/* Gives the file of tiles a second name. The first name stays, so that an interrupted run finds the file by it. Some
+ * file systems do not support this, and the first name may be a link to another folder. */
 static bool give_second_name(const camber_archive_plan *plan) {
     const camber_content_store *own = &plan->contents->stores[0];
     struct stat first, second;
@@ -305,7 +305,7 @@ static camber_status write_file(const camber_archive_plan *plan, const packed *p
 static camber_status pack_metadata(const camber_archive_plan *plan, packed *p) {
     char *text = json_dumps(plan->metadata, JSON_COMPACT | JSON_SORT_KEYS);
     if (!text)
-        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
+        return camber_fail(plan->context, CAMBER_ERROR_MEMORY, "%s: not enough memory for the metadata; allow more",
                            plan->desc->path);
     const camber_status status = camber_archive_gzip(plan->desc->path, text, strlen(text), &p->metadata);
     free(text);

@@ -1,9 +1,10 @@
-/* The writer of archives: takes tiles in any order, and writes them in one.
+/* The writer of archives: accepts tiles in any order, and writes them in one order.
  *
- * Tiles go to two files beside the archive: their bytes, each content once, and a journal of finished units. When all
- * is there, the tiles are sorted by number (zoom, then the Hilbert curve), runs are joined, and a function for the
- * format writes the archive to a third path beside it, which then gets the archive's name. PMTiles whose tiles came in
- * order are not written: the first file becomes the archive, of which the third path is a second name. */
+ * Two files next to the archive collect the tiles: one has their bytes, each content once, and the other is a journal
+ * of finished units. When all tiles are there, they are sorted by number (zoom, then the Hilbert curve), and runs are
+ * joined. A function for the format then writes the archive to a third path next to it, which is renamed to the
+ * archive's path. PMTiles whose tiles arrived in order are not written again: the first file becomes the archive, and
+ * the third path is only a second name of it. */
 #define _DEFAULT_SOURCE /* flock */
 #define _FILE_OFFSET_BITS 64
 
@@ -24,7 +25,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { BESIDE_TILES = 0, BESIDE_UNITS, BESIDE_WHOLE, BESIDE_COUNT };
+enum { TEMPORARY_TILES = 0, TEMPORARY_UNITS, TEMPORARY_WHOLE, TEMPORARY_COUNT };
 
 typedef struct taken_archive {
     const char *path;
@@ -33,28 +34,28 @@ typedef struct taken_archive {
 
 struct camber_archive_writer {
     camber_context *context;
-    camber_archive_desc desc; /* its strings are the writer's */
+    camber_archive_desc desc; /* the writer owns its strings */
     char *path, *fingerprint;
     json_t *metadata;
-    char *beside[BESIDE_COUNT];
-    int tiles; /* a descriptor, which has the lock; negative: not open */
+    char *temporary_paths[TEMPORARY_COUNT];
+    int tiles; /* a descriptor, which holds the lock; negative: not open */
     camber_contents contents;
     camber_units units;
     camber_archive_runs added, taken;
     taken_archive *archives;
     size_t archive_count, archive_capacity;
-    uint64_t removed; /* tiles of the taken archives that the finished one is without */
-    bool done, keeps; /* keeps: a unit has ended, and the files beside stay */
+    uint64_t removed; /* tiles of the taken archives that are missing from the finished one */
+    bool done, keeps; /* keeps: a unit was finished, so the temporary files stay */
 };
 
 /* ---- Names ---- */
 
-bool camber_archive_beside(const char *path, size_t n, char *name, size_t size) {
-    static const char *const endings[BESIDE_COUNT] = {".camber-tiles", ".camber-units", ".camber-whole"};
+bool camber_archive_temporary_path(const char *path, size_t n, char *name, size_t size) {
+    static const char *const endings[TEMPORARY_COUNT] = {".camber-tiles", ".camber-units", ".camber-whole"};
     size_t length = strlen(path);
     while (length > 1 && path[length - 1] == '/')
         length--;
-    return n < BESIDE_COUNT && snprintf(name, size, "%.*s%s", (int)length, path, endings[n]) < (int)size;
+    return n < TEMPORARY_COUNT && snprintf(name, size, "%.*s%s", (int)length, path, endings[n]) < (int)size;
 }
 
 /* ---- Opening ---- */
@@ -65,17 +66,17 @@ static bool leads_to(const char *name, int file) {
            opened.st_dev == there.st_dev;
 }
 
-/* Whether a file of tiles, which is locked, has become the archive: a run that was killed at its end leaves it so. A
- * second name beside it goes. */
+/* Whether the locked file of tiles has already become the archive, which happens if a run is killed at its very end.
+ * Then removes its temporary name. */
 static bool is_archive(const camber_archive_writer *writer, int file) {
     struct stat opened;
-    (void)unlink(writer->beside[BESIDE_WHOLE]);
+    (void)unlink(writer->temporary_paths[TEMPORARY_WHOLE]);
     return fstat(file, &opened) != 0 || opened.st_nlink > 1 || leads_to(writer->path, file);
 }
 
-/* Opens and locks a file. It may have been removed between the two, by the writer that had it. */
+/* Opens and locks a file. The writer that had it may have removed it between the two steps. */
 static camber_status open_locked(camber_archive_writer *writer) {
-    const char *name = writer->beside[BESIDE_TILES];
+    const char *name = writer->temporary_paths[TEMPORARY_TILES];
     for (int attempt = 0; attempt < 100; attempt++) {
         const int file = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (file < 0)
@@ -88,7 +89,7 @@ static camber_status open_locked(camber_archive_writer *writer) {
         const bool same = leads_to(name, file);
         if (same && !is_archive(writer, file)) {
             writer->tiles = file;
-            writer->keeps = writer->desc.resume; /* until it is known what is there */
+            writer->keeps = writer->desc.resume; /* until the file has been examined */
             return CAMBER_OK;
         }
         close(file);
@@ -98,14 +99,16 @@ static camber_status open_locked(camber_archive_writer *writer) {
     return camber_output_fail(writer->context, name, EBUSY);
 }
 
-/* A run that was killed just when its archive was whole has left its files, which go with the writer that sees that. */
+/* A run that was killed just after it completed its archive has left its temporary files. The next writer that notices
+ * removes them. */
 static void open_leftovers(camber_archive_writer *writer) {
     camber_saved_log kept;
     struct stat about;
-    if (stat(writer->beside[BESIDE_TILES], &about) != 0 && stat(writer->beside[BESIDE_UNITS], &about) != 0)
+    if (stat(writer->temporary_paths[TEMPORARY_TILES], &about) != 0 &&
+        stat(writer->temporary_paths[TEMPORARY_UNITS], &about) != 0)
         return;
     camber_log_demote_errors(writer->context, &kept);
-    (void)open_locked(writer); /* where another process writes them, they are not left over */
+    (void)open_locked(writer); /* if another process is writing them, they are in use */
     camber_log_restore(writer->context, &kept);
     writer->keeps = false;
 }
@@ -119,7 +122,7 @@ static camber_status fail_existing(camber_archive_writer *writer, const camber_a
                        names);
 }
 
-/* A folder is replaced with all that is in it: there may be nothing but an archive of tiles. */
+/* A folder is replaced with everything in it, so it must not contain anything but an archive of tiles. */
 static camber_status look_at_folder(camber_archive_writer *writer, const struct stat *about) {
     struct stat leads_to;
     if (S_ISLNK(about->st_mode) && stat(writer->path, &leads_to) == 0 && S_ISDIR(leads_to.st_mode))
@@ -128,7 +131,7 @@ static camber_status look_at_folder(camber_archive_writer *writer, const struct 
     return S_ISDIR(about->st_mode) ? camber_folder_may_go(writer->context, writer->path) : CAMBER_OK;
 }
 
-/* Decides about an archive that stands at the path. */
+/* Decides what to do about an archive that exists at the path. */
 static camber_status look_at_existing(camber_archive_writer *writer) {
     struct stat about;
     const camber_archive_desc *desc = &writer->desc;
@@ -184,7 +187,7 @@ static camber_status open_units(camber_archive_writer *writer) {
     snprintf(key, sizeof key, "%s type=%d.%d shard=%u/%u", writer->fingerprint ? writer->fingerprint : "",
              (int)desc->type, desc->gzipped, desc->shard, desc->shards);
     units->context = writer->context;
-    units->name = writer->beside[BESIDE_UNITS];
+    units->name = writer->temporary_paths[TEMPORARY_UNITS];
     units->descriptor = open(units->name, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (units->descriptor < 0)
         return camber_output_fail(writer->context, units->name, errno);
@@ -195,7 +198,7 @@ static camber_status open_units(camber_archive_writer *writer) {
         return status;
     }
     if (ftruncate(writer->tiles, 0) != 0)
-        return camber_output_fail(writer->context, writer->beside[BESIDE_TILES], errno);
+        return camber_output_fail(writer->context, writer->temporary_paths[TEMPORARY_TILES], errno);
     return camber_units_begin(units, key);
 }
 
@@ -210,11 +213,11 @@ static camber_status copy_desc(camber_archive_writer *writer, const camber_archi
         return CAMBER_ERROR_MEMORY;
     while (length > 1 && writer->path[length - 1] == '/')
         writer->path[--length] = 0;
-    for (size_t i = 0; i < BESIDE_COUNT; i++) {
+    for (size_t i = 0; i < TEMPORARY_COUNT; i++) {
         char name[4096];
-        if (!camber_archive_beside(writer->path, i, name, sizeof name))
+        if (!camber_archive_temporary_path(writer->path, i, name, sizeof name))
             return camber_output_fail(context, writer->path, ENAMETOOLONG);
-        if (!(writer->beside[i] = camber_copy_string(context, name)))
+        if (!(writer->temporary_paths[i] = camber_copy_string(context, name)))
             return CAMBER_ERROR_MEMORY;
     }
     writer->desc.path = writer->path;
@@ -238,7 +241,7 @@ camber_status camber_archive_writer_create(camber_context *context, const camber
     else if (status == CAMBER_OK)
         status = open_locked(made);
     if (status == CAMBER_OK && !made->done)
-        status = camber_contents_init(&made->contents, context, made->tiles, made->beside[BESIDE_TILES]);
+        status = camber_contents_init(&made->contents, context, made->tiles, made->temporary_paths[TEMPORARY_TILES]);
     if (status == CAMBER_OK && !made->done)
         status = open_units(made);
     if (status != CAMBER_OK) {
@@ -254,20 +257,20 @@ void camber_archive_writer_destroy(camber_archive_writer *writer) {
         return;
     camber_context *context = writer->context;
     if (writer->tiles >= 0 && !writer->keeps) {
-        unlink(writer->beside[BESIDE_UNITS]);
-        unlink(writer->beside[BESIDE_TILES]);
+        unlink(writer->temporary_paths[TEMPORARY_UNITS]);
+        unlink(writer->temporary_paths[TEMPORARY_TILES]);
     }
     if (writer->units.descriptor >= 0)
         close(writer->units.descriptor);
     if (writer->tiles >= 0)
-        close(writer->tiles); /* ends the lock */
+        close(writer->tiles); /* releases the lock */
     camber_units_free(&writer->units);
     camber_contents_free(&writer->contents);
     camber_free(context, writer->added.items);
     camber_free(context, writer->taken.items);
     camber_free(context, writer->archives);
-    for (size_t i = 0; i < BESIDE_COUNT; i++)
-        camber_free(context, writer->beside[i]);
+    for (size_t i = 0; i < TEMPORARY_COUNT; i++)
+        camber_free(context, writer->temporary_paths[i]);
     json_decref(writer->metadata);
     camber_free(context, writer->fingerprint);
     camber_free(context, writer->path);
@@ -289,8 +292,9 @@ camber_status camber_archive_writer_add(camber_archive_writer *writer, int zoom,
     uint32_t content = CAMBER_NO_CONTENT;
     const uint64_t number = camber_pmtiles_number(zoom, tile.column, tile.row);
     if (size_bytes == 0 || size_bytes > CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
-        return camber_fail(writer->context, CAMBER_ERROR_LIMIT, "%s: tile %d/%u/%u takes %zu bytes; a tile has 1 to %d",
-                           writer->path, zoom, tile.column, tile.row, size_bytes, CAMBER_ARCHIVE_LARGEST_TILE_BYTES);
+        return camber_fail(writer->context, CAMBER_ERROR_LIMIT,
+                           "%s: tile %d/%u/%u has %zu bytes; a tile must have 1 to %d", writer->path, zoom, tile.column,
+                           tile.row, size_bytes, CAMBER_ARCHIVE_LARGEST_TILE_BYTES);
     camber_status status = camber_contents_put(&writer->contents, bytes, size_bytes, &content);
     if (status == CAMBER_OK)
         status = put_tile(writer, number, content);
@@ -318,7 +322,7 @@ camber_status camber_archive_writer_end_unit(camber_archive_writer *writer, uint
 
 /* ---- Other archives ---- */
 
-/* An entry of PMTiles that is taken: sorted by its place, so that the file is read from its begin to its end. */
+/* An entry of PMTiles to be taken. Entries are sorted by offset, so that the file is read from start to end. */
 typedef struct taken_entry {
     uint64_t offset, number, run_length;
     uint32_t size_bytes;
@@ -330,9 +334,9 @@ typedef struct taking {
     taken_entry *entries;
     size_t count, capacity;
     uint32_t store;
-    camber_bytes plain, packed; /* a tile that has another compression than the archive */
+    camber_bytes plain, packed; /* a tile whose compression differs from the archive's */
     camber_checksum checksum;   /* of a part */
-    camber_bytes window;        /* bytes of the file's tiles from window_offset on */
+    camber_bytes window;        /* bytes of the file's tiles, from window_offset on */
     uint64_t window_offset, tiles_bytes;
 } taking;
 
@@ -351,7 +355,8 @@ static camber_status take_run(taking *t, const taken_entry *entry, uint32_t cont
     return CAMBER_OK;
 }
 
-/* MBTiles and folders have vector tiles with gzip. Tools write plain ones as well, and some with zlib's header. */
+/* Compresses with gzip. MBTiles and folders should have vector tiles with gzip, but some tools write uncompressed tiles
+ * or use zlib's header. */
 static camber_status pack(taking *t, const camber_archive_tile *tile, camber_bytes *bytes) {
     const unsigned char *b = tile->bytes;
     const size_t size_bytes = (size_t)tile->size_bytes;
@@ -378,7 +383,7 @@ static camber_status take_bytes(taking *t, const camber_archive_tile *tile) {
     uint32_t content;
     camber_bytes bytes;
     if (tile->outside)
-        return fail_tile(t, tile, "lies outside its zoom");
+        return fail_tile(t, tile, "is outside its zoom");
     if (tile->size_bytes == 0 || tile->size_bytes > CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
         return fail_tile(t, tile, "is empty or larger than 64 MB");
     if (t->archive->shards &&
@@ -397,11 +402,11 @@ static camber_status take_tile(void *user, const camber_archive_tile *tile) {
         return take_bytes(t, tile);
     const uint64_t end = camber_archive_first(CAMBER_LARGEST_TILE_ZOOM + 1);
     if (tile->number >= end || tile->run_length > end - tile->number)
-        return fail_tile(t, tile, "lies beyond zoom 24");
+        return fail_tile(t, tile, "is beyond zoom 24");
     if (tile->size_bytes == 0 || tile->size_bytes > CAMBER_ARCHIVE_LARGEST_TILE_BYTES)
         return fail_tile(t, tile, "is empty or larger than 64 MB");
     if (tile->offset > t->tiles_bytes || tile->size_bytes > t->tiles_bytes - tile->offset)
-        return fail_tile(t, tile, "lies past the end of the tiles");
+        return fail_tile(t, tile, "ends past the end of the tiles");
     if (!camber_grow(t->writer->context, &t->entries, &t->capacity, t->count + 1, sizeof *t->entries))
         return CAMBER_ERROR_MEMORY;
     t->entries[t->count++] = (taken_entry){tile->offset, tile->number, tile->run_length, (uint32_t)tile->size_bytes};
@@ -415,7 +420,7 @@ static int compare_entries(const void *left, const void *right) {
     return a->size_bytes < b->size_bytes ? -1 : a->size_bytes > b->size_bytes;
 }
 
-/* Makes the window hold the entry's bytes, and what comes behind them. */
+/* Moves the window so that it contains the entry's bytes and those after them. */
 static camber_status move_window(taking *t, const taken_entry *entry) {
     enum { WINDOW = 1 << 20 };
     const uint64_t end = t->window_offset + t->window.size_bytes, left = t->tiles_bytes - entry->offset;
@@ -462,7 +467,7 @@ static camber_status take_entries(taking *t) {
     return status;
 }
 
-/* Checks the checksum of a shard: nobody but camber has reason to write one. */
+/* Checks the checksum of a shard. Only camber writes such checksums. */
 static camber_status check_part(taking *t) {
     const camber_archive *archive = t->archive;
     char text[17];
@@ -560,7 +565,8 @@ static camber_status sum_up(const camber_archive_plan *plan, char text[17]) {
     return added ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-/* Says what the tiles are made of. The zoom of the centre is the part's own in a part, and the whole's stays here. */
+/* Adds the origin of the tiles to the metadata. A part keeps the zoom of its own centre, and that of the whole archive
+ * is stored here. */
 static camber_status put_origin(camber_archive_plan *plan, const camber_archive_writer *writer) {
     const camber_archive_desc *desc = &writer->desc;
     char checksum[17];
@@ -579,7 +585,7 @@ static camber_status put_origin(camber_archive_plan *plan, const camber_archive_
     plan->metadata = json_copy(writer->metadata);
     if (!plan->metadata || !origin) {
         json_decref(origin);
-        return camber_fail(writer->context, CAMBER_ERROR_MEMORY, "%s: metadata: out of memory; give it more",
+        return camber_fail(writer->context, CAMBER_ERROR_MEMORY, "%s: not enough memory for the metadata; allow more",
                            writer->path);
     }
     json_object_set(plan->metadata, "camber", origin);
@@ -616,7 +622,7 @@ camber_status camber_archive_writer_finish(camber_archive_writer *writer) {
     writer->removed = runs.removed;
     camber_archive_plan plan = {.context = writer->context,
                                 .desc = &writer->desc,
-                                .whole = writer->beside[BESIDE_WHOLE],
+                                .whole = writer->temporary_paths[TEMPORARY_WHOLE],
                                 .contents = &writer->contents,
                                 .runs = runs.items,
                                 .run_count = runs.count};

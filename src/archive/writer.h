@@ -1,15 +1,15 @@
-/* A finished writer hands a plan to the function that writes a format. */
+/* The plan that a finished writer passes to the function that writes a format. */
 #ifndef CAMBER_ARCHIVE_WRITER_H
 #define CAMBER_ARCHIVE_WRITER_H
 
 #include "archive/archive.h"
 #include "archive/contents.h"
 
-/* Tiles number, number + 1, ... of one content. */
+/* Tiles number, number + 1, ... with the same content. */
 typedef struct camber_archive_run {
     uint64_t number, length;
     uint32_t content; /* CAMBER_NO_CONTENT: removed */
-    uint32_t order;   /* in which runs came */
+    uint32_t order;   /* the order in which runs arrived */
 } camber_archive_run;
 
 typedef struct camber_archive_plan {
@@ -17,31 +17,31 @@ typedef struct camber_archive_plan {
     const camber_archive_desc *desc;
     const char *whole; /* the path to write to */
     camber_contents *contents;
-    const camber_archive_run *runs; /* ascending, disjoint; neighbours differ */
+    const camber_archive_run *runs; /* ascending and disjoint; neighbours have different contents */
     size_t run_count;
     uint64_t tile_count;
     int min_zoom, max_zoom;
     double bounds[4];
     camber_archive_center center;
-    json_t *metadata; /* an object, with what camber adds */
+    json_t *metadata; /* an object that includes what camber adds */
 } camber_archive_plan;
 
 camber_status camber_archive_write_pmtiles(const camber_archive_plan *plan);
 camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan);
 camber_status camber_archive_write_folder(const camber_archive_plan *plan);
 
-/* Appends bytes to others, compressed with gzip. name is for messages. */
+/* Compresses bytes with gzip and appends them. name is for messages. */
 camber_status camber_archive_gzip(const char *name, const void *bytes, size_t size_bytes, camber_bytes *to);
 
-/* Puts bounds, centre, zooms and format as texts into metadata, as MBTiles has them. */
+/* Adds bounds, centre, zooms and format to metadata as texts, in the form of MBTiles. */
 void camber_archive_put_texts(const camber_archive_plan *plan, json_t *metadata);
 
-/* Makes one ascending list of added and taken runs. Of tiles added twice the last stays; taken ones give way to added
- * ones. Two taken tiles of the same number and different bytes are a conflict. */
+/* Makes one ascending list of added and taken runs. If a tile was added twice, the last one stays; added tiles replace
+ * taken ones. Two taken tiles with the same number and different bytes are a conflict. */
 typedef struct camber_archive_runs {
     camber_archive_run *items;
     size_t count, capacity;
-    size_t removed; /* made: taken tiles that removed ones have met */
+    size_t removed; /* set: how many taken tiles were removed */
 } camber_archive_runs;
 
 typedef struct camber_archive_conflict {

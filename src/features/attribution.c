@@ -1,5 +1,5 @@
-/* The attribution of a set of features: what its files say of themselves, each text once, as plain text. Nothing is
- * guessed from the data: any road may have a key of OpenStreetMap's. */
+/* The attribution of a set of features: the credits that its files contain, as plain text, each text once. Nothing is
+ * guessed from the data, because any road may have a key that OpenStreetMap also uses. */
 #include "features/features.h"
 
 #include <ctype.h>
@@ -20,7 +20,7 @@ static const entity *find_entity(const char *at) {
     return NULL;
 }
 
-/* Returns the text past a tag, or NULL where none begins. The tag's name tells it from a < that is text. */
+/* Returns the text after the tag that begins here, or NULL if none does. A tag has a name; a < without one is text. */
 static const char *skip_tag(const char *at) {
     if (*at != '<' || !(isalpha((unsigned char)at[1]) || at[1] == '/' || at[1] == '!'))
         return NULL;
@@ -33,17 +33,17 @@ static const char *skip_tag(const char *at) {
     return NULL;
 }
 
-/* Copies the text without tags, entities, control characters and blanks that separate no words. plain has as much
- * room as text. Returns its length. */
+/* Copies the text without tags, entities, control characters and superfluous blanks. plain has room for as many bytes
+ * as text. Returns the length of the copy. */
 static size_t make_plain(const char *text, char *plain) {
     size_t size = 0;
     while (*text) {
-        const char *behind = skip_tag(text);
+        const char *after_tag = skip_tag(text);
         const entity *named = find_entity(text);
         const char *put = named ? named->text : text;
         size_t count = named ? strlen(named->text) : 1;
-        if (behind) {
-            text = behind;
+        if (after_tag) {
+            text = after_tag;
             continue;
         }
         text += named ? strlen(named->name) : 1;

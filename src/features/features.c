@@ -1,7 +1,7 @@
-/* A set of features in memory: how it grows, and how equal things are kept once.
+/* A set of features in memory: how it grows, and how equal values are stored only once.
  *
- * Input: the lines and attributes that a reader gives, one feature after the other. Output: camber_features. Texts and
- * values are interned, so equal ones have one pointer; features that agree in all attributes form one class.
+ * Input: the lines and attributes from a reader, one feature after the other. Output: camber_features. Texts and values
+ * are interned, so that equal ones have the same pointer; features with equal attributes form one class.
  */
 #include "features/features.h"
 #include "features/mercator.h"
@@ -12,9 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Open addressing with linear probing; at most half of the slots are in use, so that probes stay short. */
+/* Hash tables use open addressing with linear probing. At most half of the slots are in use, so that probes stay short.
+ */
 typedef struct interned {
-    camber_value value; /* the value that the text means as JSON, once it was asked for: an array or an object */
+    camber_value value; /* the array or object that the text means as JSON, once somebody has asked for it */
     char text[];
 } interned;
 
@@ -23,14 +24,14 @@ typedef struct interner {
     size_t string_slots, string_count;
     uint32_t *classes; /* index + 1; 0: free */
     size_t class_slots;
-    camber_value *read; /* the values of a class while it is looked for. NULL: none was */
-    uint32_t layer;     /* the last one that a class was looked for in, and whether layers of the style name it */
+    camber_value *read; /* scratch: the values of a class that is looked up. NULL: none was yet */
+    uint32_t layer;     /* the layer of the last lookup, and whether the style's layers name it */
     bool layer_is_named;
 } interner;
 
 enum { FIRST_SLOTS = 256 };
 
-/* Frees a value whose items and members are the set's own memory. */
+/* Frees a value whose items and members are memory of the set. */
 static void free_value(camber_context *context, camber_value *value) {
     if (value->type == CAMBER_VALUE_ARRAY) {
         camber_value *items = (camber_value *)(uintptr_t)value->items;
@@ -183,7 +184,7 @@ static bool is_taken(const camber_features *features, const camber_schema *schem
     return schema->takes && schema->takes(style, one->geometry, features->layer_names[one->layer], &feature);
 }
 
-/* Whether the same classes are plain in it. */
+/* Whether the other style leaves the same classes to plain layers. */
 static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
@@ -220,7 +221,7 @@ void camber_features_reset(camber_features *features, const camber_features_mark
     features->source = mark->source;
 }
 
-/* FNV's low bits are weak for short keys; fold the high ones in. */
+/* The low bits of FNV are weak for short keys, so the high bits are folded into them. */
 static size_t slot_of(uint64_t hash, size_t slots) {
     return (size_t)(hash ^ hash >> 32) & (slots - 1);
 }
@@ -373,14 +374,14 @@ camber_status camber_features_find_layer(camber_features *features, const char *
 
 /* ---- Classes ---- */
 
-/* Whether the value is interned: it is then known by its pointer. */
+/* Whether the value is interned, so that its pointer identifies it. */
 static bool is_pointer(const camber_value *value) {
     return value->type == CAMBER_VALUE_STRING || value->type == CAMBER_VALUE_ARRAY ||
            value->type == CAMBER_VALUE_OBJECT;
 }
 
-/* Interned values are equal where their pointers are. Numbers compare by their bits: a class is a key, and NaN
- * must equal itself. */
+/* Interned values are equal if their pointers are. Numbers are compared by their bits, because a class is a key, and
+ * NaN must equal itself. */
 static bool equal_values(const camber_value *a, const camber_value *b, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (a[i].type != b[i].type)
@@ -441,8 +442,9 @@ static bool grow_classes(camber_features *features) {
 static camber_status add_class(camber_features *features, const camber_feature_class *one, const camber_value *values) {
     const size_t count = features->schema->property_count;
     if (features->class_count >= UINT32_MAX - 1)
-        return camber_fail(features->context, CAMBER_ERROR_LIMIT,
-                           "more than 4294967294 different features; read fewer attributes");
+        return camber_fail(
+            features->context, CAMBER_ERROR_LIMIT,
+            "more than 4294967294 different sets of attributes; use a style that reads fewer attributes");
     if (!camber_grow(features->context, &features->classes, &features->class_capacity, features->class_count + 1,
                      sizeof *features->classes) ||
         !camber_grow(features->context, &features->values, &features->value_capacity, features->value_count + count,
@@ -461,7 +463,7 @@ static bool equal_classes(const camber_feature_class *a, const camber_feature_cl
            a->unsorted == b->unsorted && equal_values(&a->id, &b->id, 1);
 }
 
-/* Whether layers of the style name the source layer of a class: the last answer is kept. */
+/* Whether layers of the style name the source layer of a class. The last answer is remembered. */
 static bool layer_is_named(camber_features *features, const camber_feature_class *one) {
     interner *set = features->interned;
     if (!set->read || set->layer != one->layer)
@@ -471,8 +473,8 @@ static bool layer_is_named(camber_features *features, const camber_feature_class
     return set->layer_is_named;
 }
 
-/* Leaves out the values that no layer reads of such features, so that they make no more classes than are drawn. NULL:
- * no memory. */
+/* Replaces the values that no layer reads for such features by null, so that they do not split classes needlessly.
+ * Returns NULL if there is no memory. */
 static const camber_value *read_values(camber_features *features, const camber_feature_class *one,
                                        const camber_value *values) {
     interner *set = features->interned;
@@ -549,7 +551,7 @@ camber_status camber_features_renumber_classes(camber_features *features) {
     const size_t count = features->schema->property_count, class_count = features->class_count;
     camber_status status = CAMBER_ERROR_MEMORY;
     size_t kept = 0;
-    uint32_t *numbers = camber_alloc_zero(context, class_count, sizeof *numbers); /* + 1; 0: none yet */
+    uint32_t *numbers = camber_alloc_zero(context, class_count, sizeof *numbers); /* new index + 1; 0: none yet */
     camber_feature_class *classes = camber_alloc(context, class_count, sizeof *classes);
     camber_value *values = camber_alloc(context, class_count * count, sizeof *values);
     if (!numbers || !classes || !values)
@@ -594,7 +596,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
-/* Makes room for this many polylines; the last of them has all of its line. */
+/* Makes room for this many polylines, and gives the last one the progress of a whole line, 0 to 1. */
 static bool grow_progress(camber_features *features, size_t polylines) {
     if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
                      2 * sizeof *features->progress))
@@ -609,7 +611,7 @@ camber_status camber_features_set_progress(camber_features *features, double fir
         for (size_t n = 1; n <= features->polyline_count; n++)
             if (!grow_progress(features, n))
                 return CAMBER_ERROR_MEMORY;
-    if (!features->progress) /* belongs to no polyline */
+    if (!features->progress) /* there is no polyline to set it for */
         return CAMBER_OK;
     features->progress[2 * features->polyline_count - 2] = (float)first;
     features->progress[2 * features->polyline_count - 1] = (float)last;
@@ -623,7 +625,7 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
         !camber_grow(context, &features->points, &features->point_capacity, features->point_count + point_count,
                      2 * sizeof *features->points))
         return CAMBER_ERROR_MEMORY;
-    /* The arrays grow together: one capacity counts the entries of each. */
+    /* The arrays grow together, so one capacity counts the entries of each. */
     if (!camber_grow(context, &features->feature_counts, &count_capacity, features->polyline_count + 2,
                      sizeof *features->feature_counts) ||
         !camber_grow(context, &features->offsets, &offset_capacity, features->polyline_count + 2,

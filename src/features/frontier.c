@@ -1,28 +1,29 @@
 /* Walks outwards from the lines that touch a region.
  *
- * Input: lines, some of which touch the region, and later those that were asked for. Output: points to ask for. Main
- * idea: three ranks of lines.
+ * Input: lines, some of which touch the region, and later the lines that were asked for. Output: points to ask for. The
+ * main idea is to rank lines:
  *
- *     rank 0    touches the region, or is merged with a line that does: it is drawn. So are all rings of an area, if
- *               anything of it lies in the region
- *     rank 1    has a point in common with a line of rank 0, or is merged with a line that does: its weight decides
- *               which points of the other stay
- *     others    were read along with them, and decide nothing
+ *     rank 0    touches the region, or is merged with a line that does, so it is drawn. If a part of an area is in the
+ *               region, all its rings have this rank
+ *     rank 1    shares a point with a line of rank 0, or is merged with such a line: it affects the importance of
+ *               points of the line of rank 0
+ *     others    were read along with these, and have no influence
  *
- * All lines must be known at each point of a line of rank 0, for its weight, and at the ends of a line of rank 1, for
- * what it is merged with. At points inside the region they are, and lines wholly inside need nothing. merge.c says when
- * lines are merged: where two ends of a class meet and no third. */
+ * All lines must be known at every point of a line of rank 0, because they affect its importance, and at the ends of a
+ * line of rank 1, because they decide how it is merged. At points inside the region they are known already, so lines
+ * that are wholly inside need nothing more. merge.c defines when lines are merged: if two ends of a class meet and no
+ * third does. */
 #include "features/frontier.h"
 
 static const uint32_t NONE = UINT32_MAX;
 
 typedef struct frontier_point {
-    size_t point;   /* of the set */
-    uint32_t line;  /* of the frontier */
+    size_t point;   /* index into the set's points */
+    uint32_t line;  /* index into the frontier's lines */
     uint32_t next;  /* another point at the same node */
-    uint32_t first; /* the first point at the node, which has its state */
-    bool end;       /* of a line that may be merged */
-    bool known;     /* of the node: it was asked for */
+    uint32_t first; /* the first point at the node; it has the node's state */
+    bool end;       /* an end of a line that may be merged */
+    bool known;     /* state of the node: it was asked for */
 } frontier_point;
 
 /* A line that has points outside the region. */
@@ -30,23 +31,24 @@ typedef struct frontier_line {
     uint32_t class_index;
     uint32_t first_point, point_count;
     uint8_t rank;
-    bool waits; /* in the queue */
+    bool waits; /* it is in the queue */
 } frontier_line;
 
 struct camber_frontier {
     camber_context *context;
     camber_features *features;
     bool merges;
-    size_t taken;    /* polylines of the set that were taken in */
-    size_t area_end; /* polyline behind the rings of the area that was looked at last */
+    size_t taken;    /* how many polylines of the set were taken in */
+    size_t area_end; /* the polyline after the rings of the area that was examined last */
     bool area_touches;
     frontier_line *lines;
     size_t line_count, line_capacity;
     frontier_point *points;
     size_t point_count, point_capacity;
-    uint32_t *slots; /* a hash table of nodes: their first points + 1; a power of two, at most half in use */
+    uint32_t *slots; /* a hash table of nodes: index of the first point + 1. Its size is a power of two, and at most
+                        half are in use */
     size_t slot_count;
-    uint32_t *queue; /* a ring of line_capacity */
+    uint32_t *queue; /* a ring buffer of line_capacity entries */
     size_t queue_capacity, queued, queue_head;
     double *asked;
     size_t asked_count, asked_capacity;
@@ -88,7 +90,7 @@ static const double *place_of(const camber_frontier *f, uint32_t point) {
     return f->features->points + 2 * f->points[point].point;
 }
 
-/* The slot of the node at a place, or a free one. */
+/* Returns the slot of the node at a place, or a free slot. */
 static size_t find_slot(const camber_frontier *f, const double *place) {
     size_t slot = (size_t)camber_mix_point(0, place) & (f->slot_count - 1);
     while (f->slots[slot] && memcmp(place_of(f, f->slots[slot] - 1), place, 2 * sizeof *place) != 0)
@@ -133,7 +135,7 @@ static bool add_point(camber_frontier *f, size_t point, bool end) {
 
 /* ---- Lines ---- */
 
-/* A line whose points are all one is a dot, which has no ends. */
+/* If all points of a line are equal, it is a dot, which has no ends. */
 static bool has_ends(const camber_features *features, size_t polyline, uint32_t class_index) {
     const size_t begin = features->offsets[polyline], end = features->offsets[polyline + 1];
     if (features->classes[class_index].geometry != CAMBER_GEOMETRY_LINE)
@@ -198,7 +200,7 @@ static void lower(camber_frontier *f, uint32_t line, uint8_t rank) {
     push(f, line);
 }
 
-/* The line that is merged with this one at its end; NONE: the end is alone, or more than two meet. */
+/* Returns the line that is merged with this one at its end. NONE: no other end meets it, or several do. */
 static uint32_t find_partner(const camber_frontier *f, uint32_t end) {
     const uint32_t line = f->points[end].line;
     uint32_t partner = NONE, count = 0;
@@ -211,7 +213,7 @@ static uint32_t find_partner(const camber_frontier *f, uint32_t end) {
     return count == 1 ? partner : NONE;
 }
 
-/* Ranks what hangs on a line. */
+/* Ranks the lines that are merged or share points with a line. */
 static void spread(camber_frontier *f, uint32_t line) {
     const frontier_line self = f->lines[line];
     for (uint32_t p = self.first_point; p < self.first_point + self.point_count; p++) {

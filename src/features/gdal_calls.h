@@ -1,4 +1,5 @@
-/* The functions of the gdal layer that the rest calls: a table, since the shared library loads that layer late. */
+/* The functions of the gdal layer that other layers call. They are in a table because the shared library loads that
+ * layer only when it is needed. */
 #ifndef CAMBER_FEATURES_GDAL_CALLS_H
 #define CAMBER_FEATURES_GDAL_CALLS_H
 
@@ -11,12 +12,12 @@ typedef struct camber_gdal_calls {
 } camber_gdal_calls;
 
 #ifdef __GNUC__
-__attribute__((visibility("default"))) /* the module exports it */
+__attribute__((visibility("default"))) /* the module exports the symbol */
 #endif
 extern const camber_gdal_calls camber_gdal;
 
-/* Finds the table: in the module, which it loads (src/load/), or where it is linked. NULL: the module is not there, and
- * *why says why, or is NULL. */
+/* Returns the table, either from the module, which it loads (src/load/), or as linked. Returns NULL if the module
+ * cannot be loaded; *why then says why, or is NULL. */
 const camber_gdal_calls *camber_gdal_find(const char **why);
 
 #endif

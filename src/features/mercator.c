@@ -7,13 +7,15 @@
 /* C11 has no M_PI. */
 static const double pi = 3.14159265358979323846;
 
-/* Four terms of a series, those of 1, w, w^2 and w^3, in a short chain: chains take longer here than operations. */
+/* Four terms of a series, for 1, w, w^2 and w^3, with short dependency chains, because latency costs more here than
+ * operations. */
 static inline double sum(double w, double a, double b, double c, double d) {
     return (a + b * w) + w * w * (c + d * w);
 }
 
-/* The natural logarithm of 1 or more: that of a power of two, and that of what is left, m from sqrt(1/2) to sqrt(2).
- * log(m) = 2 atanh(z), z = (m - 1) / (m + 1); a double does not see what its series has behind z^19. */
+/* The natural logarithm of a value of at least 1: that of a power of two plus that of the remaining factor m, which is
+ * between sqrt(1/2) and sqrt(2). log(m) = 2 atanh(z), z = (m - 1) / (m + 1). The terms of its series after z^19 are
+ * below a double's precision. */
 static inline double logarithm(double value) {
     const uint64_t root_half = UINT64_C(0x3fe6a09e667f3bcd), two_to_52 = UINT64_C(0x4330000000000000);
     uint64_t bits;
@@ -28,8 +30,8 @@ static inline double logarithm(double value) {
     return (power - 0x1p52) * 0.69314718055994530942 + (2.0 * z + 2.0 * z * w * tail);
 }
 
-/* asinh(tan(lat)) is log((cos + sin) / (cos - sin)) of half the latitude. Sine and cosine are their series, to the
- * 17th power; + - * / alone, so that a place has the same bits on all machines. */
+/* asinh(tan(lat)) = log((cos + sin) / (cos - sin)), with the sine and cosine of half the latitude. These are series up
+ * to the 17th power. Only + - * / are used, so that a place has the same bits on all machines. */
 static inline double project_latitude(double latitude) {
     const double half = fabs(latitude) * (pi / 360.0), w = half * half, w4 = w * w * (w * w);
     const double cosine =

@@ -1,9 +1,9 @@
-/* Merges lines of one class that meet end to end, as GEOS's LineMerge does: where exactly two ends of the class meet,
- * they become one line. Lines of one class are drawn alike at every zoom, so only the ends' caps go, and fewer lines
- * have fewer ends, which simplification has to keep.
+/* Merges lines of one class that meet end to end, as GEOS's LineMerge does: at points at which exactly two ends of the
+ * class meet, the two lines become one. Lines of one class are drawn alike at every zoom, so only the caps at these
+ * ends disappear. Fewer lines also have fewer ends, which simplification must keep.
  *
- * Lines of a style's own sources are merged only where they go on almost straight: two butt ends that meet there would
- * leave a light seam, as each covers a part of the same pixels. Where they bend they end as the style has it.
+ * Lines from a style's own sources are merged only if they continue almost straight: two butt ends would leave a light
+ * seam there, because each covers a part of the same pixels. If they bend, they keep their caps.
  */
 #include "features/chains.h"
 #include "features/features.h"
@@ -11,9 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-/* The cosine of a turn of 40 degrees. */
+/* The cosine of a turn by 40 degrees. */
 static const double STRAIGHT_COSINE = 0.766;
-/* The most ends at a node among which partners are sought that go on straight. */
+/* At a node with more ends than this, no partners that continue straight are looked for. */
 enum { NODE_ENDS_MAX = 16 };
 
 /* Merges the lines from first_polyline on. */
@@ -21,10 +21,11 @@ typedef struct merger {
     camber_features *features;
     size_t first_polyline;
     size_t line_count;
-    uint32_t *partner; /* by end: the end that it is joined with; CAMBER_NO_END: none */
-    uint32_t *next;    /* by the straight rule: another end at the same node; CAMBER_NO_END */
-    uint8_t *met;      /* ends at the node of which this end was the first, up to 3 */
-    uint32_t *slots;   /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
+    uint32_t *partner; /* by end: the end that it is joined to; CAMBER_NO_END: none */
+    uint32_t *next;    /* used by the straight rule: another end at the same node, or CAMBER_NO_END */
+    uint8_t *met;      /* the number of ends at the node whose first end this is, counted up to 3 */
+    uint32_t *slots; /* hash table: the first end at a node, + 1; 0: free. Its size is a power of two, and at most half
+                        are in use */
     size_t slot_count;
     bool *visited;
     camber_chain *chains;
@@ -47,7 +48,7 @@ static uint32_t class_of(const merger *m, uint32_t end) {
     return m->features->feature_class[m->features->polyline_feature[m->first_polyline + end / 2]];
 }
 
-/* Whether the line has ends that may be joined: a line whose points are all one is a dot and has none. */
+/* Whether the line has ends that can be joined. If all its points are equal, it is a dot and has none. */
 static bool has_ends(const merger *m, size_t line) {
     size_t count;
     const double *points = line_points(m, line, &count);
@@ -59,7 +60,7 @@ static bool has_ends(const merger *m, size_t line) {
     return false;
 }
 
-/* Returns the first end that was found at the end's node: this one where there was none. */
+/* Returns the end that was found first at this end's node, which is this end itself if it is the first. */
 static uint32_t find_node(merger *m, uint32_t end) {
     const double *at = end_point(m, end);
     const uint32_t class_index = class_of(m, end);
@@ -103,7 +104,7 @@ static void find_partners(merger *m, bool directed) {
     }
 }
 
-/* ---- Lines that go on straight ---- */
+/* ---- Lines that continue straight ---- */
 
 /* Computes the direction in which a line leaves its end. */
 static void find_direction(const merger *m, uint32_t end, double direction[2]) {
@@ -120,7 +121,7 @@ static void find_direction(const merger *m, uint32_t end, double direction[2]) {
     direction[1] /= length;
 }
 
-/* Makes partners of the ends at a node, where first is one of them; those that turn least come first. */
+/* Pairs the ends at a node, of which first is one. Pairs that turn least are made first. */
 static void pair_straight(merger *m, uint32_t first) {
     uint32_t ends[NODE_ENDS_MAX];
     double directions[NODE_ENDS_MAX][2];
@@ -169,11 +170,12 @@ static void find_straight_partners(merger *m) {
 
 /* ---- The merged lines ---- */
 
-/* The lines as they will be: chains of several lines are copied, and lines that stay alone move in their place. */
+/* The resulting lines: chains of several lines are copied, and lines that were not joined are moved within the arrays.
+ */
 typedef struct merged {
-    double *points; /* of chains of several lines, one after the other */
+    double *points; /* the points of chains of several lines, one chain after the other */
     size_t point_count, all_points;
-    size_t *counts; /* by chain: its points */
+    size_t *counts; /* by chain: its number of points */
     uint32_t *polyline_feature, *feature_counts;
 } merged;
 
@@ -191,7 +193,7 @@ static void copy_chain(const merger *m, size_t index, merged *made) {
     do {
         size_t count;
         const double *points = line_points(m, end / 2, &count);
-        /* Where lines meet one point is left; a ring has its seam twice. */
+        /* One point remains where two lines meet; a ring has the point at its seam twice. */
         for (size_t i = end != chain->start; i < count && made->points; i++) {
             const double *from = points + 2 * (end & 1 ? count - 1 - i : i);
             memcpy(made->points + 2 * made->point_count++, from, 2 * sizeof *from);
@@ -203,7 +205,8 @@ static void copy_chain(const merger *m, size_t index, merged *made) {
     made->counts[index] = sum;
 }
 
-/* Moves the points of lines that stay alone to the front, in their order. Returns how many. */
+/* Moves the points of lines that were not joined to the front and keeps their order. Returns how many points there are.
+ */
 static size_t gather_alone(const merger *m) {
     camber_features *features = m->features;
     size_t at = features->offsets[m->first_polyline];
@@ -218,7 +221,8 @@ static size_t gather_alone(const merger *m) {
     return at;
 }
 
-/* Puts lines and chains to their places, from the last to the first, so that no line that waits is written over. */
+/* Moves lines and chains to their final positions, from the last to the first, so that none is overwritten before it is
+ * moved. */
 static void spread(const merger *m, const merged *made, size_t alone_end) {
     camber_features *features = m->features;
     size_t at = features->offsets[m->first_polyline] + made->all_points, copied = made->point_count;
@@ -248,7 +252,7 @@ static void replace_lines(const merger *m, const merged *made) {
     features->stats.merged_polylines += m->line_count - m->chain_count;
 }
 
-/* Frees what finds partners once they are found. */
+/* Frees the tables that are only needed to find partners. */
 static void forget_nodes(merger *m) {
     camber_context *context = m->features->context;
     camber_free(context, m->next);
@@ -268,7 +272,7 @@ static camber_status write_chains(const merger *m) {
         !(made.feature_counts = camber_alloc(context, m->chain_count, sizeof *made.feature_counts)))
         goto done;
     for (size_t i = 0; i < m->chain_count; i++) {
-        copy_chain(m, i, &made); /* counts */
+        copy_chain(m, i, &made); /* frees counts */
         made.all_points += made.counts[i];
         copied += is_alone(m, &m->chains[i]) ? 0 : made.counts[i];
     }
@@ -296,8 +300,8 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
     if (m.line_count < 2)
         return CAMBER_OK;
     if (m.line_count >= (size_t)1 << 30)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu lines at once are more than 2^30; read fewer",
-                           m.line_count);
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "cannot merge %zu lines, because the limit is 2^30; read fewer features", m.line_count);
     while (m.slot_count < 4 * m.line_count)
         m.slot_count *= 2;
     camber_status status = CAMBER_ERROR_MEMORY;

@@ -2,28 +2,28 @@
 
 #include <string.h>
 
-/* For each thing, the things that stand right before it in the lists. */
-typedef struct befores {
+/* For each thing, the things that come directly before it in the lists. */
+typedef struct predecessors {
     size_t *first; /* count + 1 */
     uint32_t *things;
-} befores;
+} predecessors;
 
 typedef struct sorter {
-    befores before;
-    size_t *next;    /* by thing: the first of its befores that was not looked at */
+    predecessors before;
+    size_t *next;    /* by thing: the first of its predecessors that was not visited yet */
     bool *begun;     /* by thing */
-    uint32_t *stack; /* the stack of things that wait for others */
+    uint32_t *stack; /* the stack of things that wait for their predecessors */
     uint32_t *order;
     size_t done;
 } sorter;
 
-/* Whether the i-th item stands behind another thing. */
+/* Whether another thing comes before the i-th item in its list. */
 static bool follows_in_list(const camber_order_desc *desc, size_t i) {
     return i > 0 && desc->lists[i] != CAMBER_LIST_END && desc->lists[i - 1] != CAMBER_LIST_END &&
            desc->lists[i] != desc->lists[i - 1];
 }
 
-static void list_befores(const camber_order_desc *desc, befores *before) {
+static void list_predecessors(const camber_order_desc *desc, predecessors *before) {
     for (size_t i = 0; i < desc->item_count; i++)
         if (follows_in_list(desc, i))
             before->first[desc->lists[i] + 1]++;
@@ -36,8 +36,8 @@ static void list_befores(const camber_order_desc *desc, befores *before) {
     before->first[0] = 0;
 }
 
-/* Appends the thing, and before it all that it waits for. Where it waits for itself that way, the lists contradict
- * each other, and it is appended without waiting. */
+/* Appends the thing after everything that must come before it. If the lists contradict each other, so that it would
+ * wait for itself, it is appended without waiting. */
 static void append_thing(sorter *sort, uint32_t thing) {
     size_t depth = 0;
     sort->stack[depth++] = thing;
@@ -66,7 +66,7 @@ camber_status camber_order_merge(camber_context *context, const camber_order_des
         !(sort.begun = camber_alloc_zero(context, desc->count, sizeof *sort.begun)) ||
         !(sort.stack = camber_alloc(context, desc->count, sizeof *sort.stack)))
         goto done;
-    list_befores(desc, &sort.before);
+    list_predecessors(desc, &sort.before);
     memcpy(sort.next, sort.before.first, (desc->count + 1) * sizeof *sort.next);
     for (size_t i = 0; i < desc->count; i++)
         if (!sort.begun[i])

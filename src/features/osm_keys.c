@@ -3,7 +3,7 @@
 #include <ctype.h>
 #include <strings.h>
 
-/* "area" itself, and OGR's own list (its osmconf.ini, closed_ways_are_polygons). */
+/* "area" itself, and OGR's own list (closed_ways_are_polygons in its osmconf.ini). */
 const char *const camber_osm_area_keys[] = {"area",       "aeroway",  "amenity", "boundary", "building", "craft",
                                             "geological", "historic", "landuse", "leisure",  "military", "natural",
                                             "office",     "place",    "shop",    "sport",    "tourism",  NULL};

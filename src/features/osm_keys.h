@@ -1,20 +1,20 @@
-/* Keys of OpenStreetMap, for both readers of its files. */
+/* Keys of OpenStreetMap, for both readers of its files: ours and GDAL's. */
 #ifndef CAMBER_FEATURES_OSM_KEYS_H
 #define CAMBER_FEATURES_OSM_KEYS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Keys that make a closed way an area, unless their value is "no": the first, "area", also a highway. NULL at the
- * end. */
+/* Keys that make a closed way an area unless their value is "no". The first one, "area", does so for a highway, too.
+ * NULL ends the list. */
 extern const char *const camber_osm_area_keys[];
 bool camber_osm_is_no(const char *value);
 
-/* The characters of keys that can be read. */
+/* Whether a key may contain this character. */
 bool camber_osm_is_key_character(char c);
 bool camber_osm_is_key(const char *text, size_t length);
 
-/* Whom to name beside a picture of OpenStreetMap's data. */
+/* The credit for pictures of OpenStreetMap's data. */
 #define CAMBER_OSM_ATTRIBUTION "(c) OpenStreetMap contributors"
 
 #endif

@@ -1,21 +1,20 @@
-/* Readers of files: a format's own file exports one, and formats/readers.c has the table of them. */
+/* The interface of file readers. Each format's file exports one, and formats/readers.c has the table of them. */
 #ifndef CAMBER_FEATURES_READER_H
 #define CAMBER_FEATURES_READER_H
 
 #include "camber_map.h"
 
 typedef struct camber_reader {
-    /* Whether a file is of its format, by its name or its first bytes. */
+    /* Whether a file is of this reader's format, judged by its name or its first bytes. */
     bool (*knows)(const char *path);
-    /* Whether it reads of such a file what is asked for: the layer, the filter. */
+    /* Whether the reader supports what is asked for: the layer, the filter. */
     bool (*reads)(const camber_source_desc *desc);
-    /* Reads the file as camber_features_read does. *declined becomes true where the file has what this reader leaves to
-     * the next one that knows it; the set is then as before, and nothing is logged. */
+    /* Reads the file like camber_features_read. *declined becomes true if the file contains something that this reader
+     * leaves to the next one that knows the file. The set is then unchanged, and nothing is logged. */
     camber_status (*read)(camber_features *features, const camber_source_desc *desc, bool *declined);
-    /* Fails, with a cure, where the next reader would pass over something of the file without a word. NULL: it does
-     * not. */
+    /* Fails, and says what to do, if the next reader would silently skip a part of the file. NULL: it would not. */
     camber_status (*leave)(camber_context *context, const camber_source_desc *desc);
-    /* The name of the n-th format, counted from 0, as GDAL has it. NULL: past the last. */
+    /* Returns the name of the n-th format, counted from 0, as GDAL spells it, or NULL after the last. */
     const char *(*format)(size_t n);
 } camber_reader;
 

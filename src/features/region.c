@@ -1,8 +1,8 @@
-/* Says what touches a region, and leaves of a set of features what does.
+/* Tests what touches a region, and reduces a set of features to it.
  *
- * Input: a set with lines merged and weighed. Output: the same set without the lines that lie outside, and without the
- * classes that are gone. So the set does not tell how it was read: a file that was read by its index gives the same
- * set as one that was read whole. */
+ * Input: a set whose lines are merged and have importance. Output: the same set without lines outside the region, and
+ * without classes that are no longer used. The result does not depend on how the file was read: with an index or as a
+ * whole gives the same set. */
 #include "features/region.h"
 
 #include "features/features.h"
@@ -17,7 +17,7 @@ size_t camber_region_parts(const camber_region *region, camber_region parts[2]) 
     const double world = floor(region->x0);
     const double x0 = region->x0 - world, x1 = region->x1 - world;
     parts[0] = (camber_region){x0, region->y0, fmin(x1, 1.0), region->y1};
-    /* An edge of the world is both 0 and 1. */
+    /* x = 0 and x = 1 are the same edge of the world. */
     if (x1 >= 1.0) {
         parts[1] = (camber_region){0.0, region->y0, x1 - 1.0, region->y1};
         return 2;
@@ -34,7 +34,7 @@ bool camber_region_has_point(const camber_region *region, const double *point) {
     return has(&parts[0], point[0], point[1]) || (count > 1 && has(&parts[1], point[0], point[1]));
 }
 
-/* Cuts the segment's share from *first to *last where it leaves the half plane distance + share * slope >= 0. */
+/* Narrows the part of a segment from *first to *last to the half plane distance + share * slope >= 0. */
 static bool cut(double distance, double slope, double *first, double *last) {
     if (!(slope > 0.0 || slope < 0.0))
         return distance >= 0.0;
@@ -46,7 +46,7 @@ static bool cut(double distance, double slope, double *first, double *last) {
     return *first <= *last;
 }
 
-/* Liang and Barsky's clipping. */
+/* Liang-Barsky clipping. */
 static bool segment_touches(const camber_region *box, const double *from, const double *to) {
     const double dx = to[0] - from[0], dy = to[1] - from[1];
     double first = 0.0, last = 1.0;
@@ -56,7 +56,7 @@ static bool segment_touches(const camber_region *box, const double *from, const 
 
 static bool part_touches(const camber_region *box, const double *points, size_t count) {
     double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
-    for (size_t i = 0; i < count; i++) { /* as fmin and fmax would, which are calls */
+    for (size_t i = 0; i < count; i++) { /* like fmin and fmax, which would be function calls */
         const double x = points[2 * i], y = points[2 * i + 1];
         x0 = x < x0 ? x : x0;
         x1 = x > x1 ? x : x1;
@@ -80,10 +80,10 @@ bool camber_region_touches(const camber_region *region, const double *points, si
 
 /* ---- Areas ---- */
 
-/* Rings are at most two worlds wide, and regions less than one; wider ones are no place on Earth. */
+/* Rings are at most two worlds wide, and regions less than one. Anything wider is not on Earth. */
 static const double MOST_WORLDS = 4.0;
 
-/* How often a ring winds around a place that it does not touch. */
+/* Returns how often a ring winds around a place that it does not touch. */
 static int winding_of(const double *points, size_t count, double x, double y) {
     int winding = 0;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -129,13 +129,13 @@ bool camber_region_meets_area(const camber_region *region, const double *points,
 
 typedef struct confining {
     camber_features *features;
-    uint32_t *feature_class; /* of the features that stay */
+    uint32_t *feature_class; /* by feature that stays */
     size_t polylines, points, feature_count;
-    uint32_t last_old, last; /* the feature of the last polyline that stayed, by its former number and by its new one */
+    uint32_t last_old, last; /* the feature of the last polyline that stayed, by its old index and by its new one */
 } confining;
 
-/* Moves a polyline down to those that stay. A polyline counts for the features that were merged into it; the features
- * are numbered anew, each as often as it is counted. */
+/* Moves a polyline down to those that stay. It counts for all the features that were merged into it, so each of them
+ * gets a new index. */
 static void keep_polyline(confining *self, size_t polyline) {
     camber_features *f = self->features;
     const size_t begin = f->offsets[polyline], count = f->offsets[polyline + 1] - begin;
@@ -178,7 +178,8 @@ camber_status camber_features_confine(camber_features *features, size_t first_po
                       .points = features->offsets[first_polyline],
                       .feature_count = first_feature,
                       .last_old = UINT32_MAX};
-    /* A feature whose first line goes, or was merged into another's, is counted with the next of its lines. */
+    /* If the first line of a feature is dropped, or was merged into another feature's, the feature is counted with its
+     * next line. */
     const size_t most = features->feature_count + (end - first_polyline);
     if (!(self.feature_class = camber_alloc(features->context, most, sizeof *self.feature_class)))
         return CAMBER_ERROR_MEMORY;

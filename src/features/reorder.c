@@ -1,4 +1,5 @@
-/* Puts features that were read in another order into that of their file: it decides which line lies on top. */
+/* Restores the order of the file for features that were read in another order. This order decides which line is drawn
+ * on top. */
 #include "features/features.h"
 
 #include <stdlib.h>
@@ -15,10 +16,10 @@ static int compare(const void *left, const void *right) {
     return a->feature < b->feature ? -1 : a->feature > b->feature;
 }
 
-/* Features and lines as they were. */
+/* Features and lines before the sort. */
 typedef struct former {
     keyed_feature *features;
-    size_t *first_polylines; /* of each feature, and one more */
+    size_t *first_polylines; /* by feature, and one more */
     double *points;
     size_t *offsets;
     uint32_t *classes, *counts;

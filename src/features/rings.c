@@ -1,8 +1,8 @@
-/* Makes rings of areas what fill layers draw.
+/* Turns rings of areas into those that fill layers draw.
  *
- * Input: a ring as a format has it, open or closed, wound either way. Output: a closed ring, wound by its role, or
- * nothing where it has no area. All of it is counted. Rings that cross themselves or have spikes, and holes outside of
- * their area, are counted and stay as they are. */
+ * Input: a ring as in a file, open or closed, in either direction. Output: a closed ring whose direction shows
+ * whether it is outer or a hole, or nothing if it has no area. Every repair is counted. Rings that cross themselves or
+ * have spikes, and holes outside their area, are only counted and stay as they are. */
 #include "features/rings.h"
 
 #include <math.h>
@@ -63,7 +63,8 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
     count = drop_invalid(points, count);
     const bool flat = camber_ring_is_flat(points, count);
     const double area = camber_ring_area(points, count);
-    const bool keeps = flat && rings->any_winding && rings->outer_area != 0.0; /* holes may be of another outer ring */
+    const bool keeps =
+        flat && rings->any_winding && rings->outer_area != 0.0; /* a hole may belong to another outer ring */
     if (!hole && !keeps)
         rings->outer_area = flat ? 0.0 : area != 0.0 ? area : 1.0;
     if (flat || (hole && rings->outer_area == 0.0)) {
@@ -82,7 +83,7 @@ size_t camber_rings_take(camber_rings *rings, double *points, size_t count, bool
 
 /* ---- Rings that cross themselves ---- */
 
-/* The edges [first, end) of a ring; edge i goes from point i to the next. And the box around them. */
+/* The edges [first, end) of a ring and the box around them. Edge i goes from point i to the next. */
 typedef struct span {
     size_t first, end;
     double x0, y0, x1, y1;
@@ -107,7 +108,7 @@ static bool edges_cross(const double *a, const double *c) {
     return cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0;
 }
 
-/* Whether an edge of a crosses one of b. Halves the longer one until both are short. */
+/* Whether an edge of a crosses an edge of b. Halves the longer span until both are short. */
 static bool spans_cross(const double *points, span a, span b, size_t *looks) {
     const bool apart = a.x1 < b.x0 || b.x1 < a.x0 || a.y1 < b.y0 || b.y1 < a.y0;
     if (apart || *looks == 0)
@@ -148,7 +149,7 @@ bool camber_ring_crosses(const double *points, size_t count) {
 /* ---- Spikes, and holes outside ---- */
 
 bool camber_ring_has_spike(const double *points, size_t count) {
-    static const double thin = 1e-7; /* of its length */
+    static const double thin = 1e-7; /* as a fraction of its length */
     size_t last = count - 1;
     while (last > 0 && same(points + 2 * last, points))
         last--;
@@ -166,7 +167,7 @@ bool camber_ring_has_spike(const double *points, size_t count) {
     return false;
 }
 
-/* How often a closed ring winds around a point. *touches: an edge passes through it. */
+/* Returns how often a closed ring winds around a point. *touches: an edge passes through the point. */
 static int winding_around(const double *points, size_t count, const double *at, bool *touches) {
     int winding = 0;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -185,7 +186,7 @@ static int winding_around(const double *points, size_t count, const double *at, 
 typedef struct area_rings {
     const camber_features *features;
     size_t first, end;
-    size_t looks; /* at edges; none are left: enough has been looked at */
+    size_t looks; /* how many more edges may be examined; 0: give up */
 } area_rings;
 
 static size_t ring_of(const camber_features *features, size_t polyline, const double **points) {
@@ -193,7 +194,7 @@ static size_t ring_of(const camber_features *features, size_t polyline, const do
     return features->offsets[polyline + 1] - features->offsets[polyline];
 }
 
-/* Whether the first corner of a hole that none of the outer rings touches lies outside of them all. */
+/* Whether a hole is outside the area: it looks at the first corner of the hole that no outer ring touches. */
 static bool is_outside(area_rings *area, size_t hole) {
     const double *corners, *points;
     const size_t corner_count = ring_of(area->features, hole, &corners);
@@ -222,7 +223,7 @@ static void count_ring(camber_features_stats *stats, area_rings *area, size_t po
     stats->outside_holes += camber_ring_area(points, count) < 0.0 && is_outside(area, polyline);
 }
 
-/* Counts what is odd about rings, which stay as they are. */
+/* Counts defects of rings, which stay as they are. */
 static void count_odd(camber_features *features, size_t first_polyline) {
     size_t end = first_polyline;
     for (size_t first = first_polyline; first < features->polyline_count; first = end) {
@@ -239,13 +240,13 @@ static void count_odd(camber_features *features, size_t first_polyline) {
 
 /* ---- The antimeridian ---- */
 
-/* How far x moves from one point to the next, the short way. */
+/* Returns how far x moves from one point to the next along the short way. */
 static double short_way(double from, double to) {
     const bool along = (from == 0.0 && to == 1.0) || (from == 1.0 && to == 0.0);
     return fabs(to - from) <= 0.5 || along ? 0.0 : to < from ? 1.0 : -1.0;
 }
 
-/* Whether a ring goes beyond the world on one side of it, once around at most. */
+/* Whether a ring extends beyond the world on one side only, and at most once around. */
 static bool crosses_once(const double *points, size_t count) {
     double moved = 0.0, west = 0.0, east = 0.0;
     for (size_t i = 1; i < count; i++) {
@@ -272,7 +273,7 @@ size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
     const double first[2] = {points[0], points[1]};
     if (moved + short_way(before, first[0]) == 0.0)
         return count;
-    /* It goes around the Earth: the pole on its side of the equator lies inside. */
+    /* It goes around the Earth, so the pole on its side of the equator is inside. */
     const double pole = y / (double)count < 0.5 ? 0.0 : 1.0,
                  close[6] = {last[0], pole, first[0], pole, first[0], first[1]};
     memcpy(last + 2, close, sizeof close);
@@ -288,14 +289,17 @@ void camber_rings_report(camber_features *features, const char *name, size_t fir
     const struct {
         size_t count;
         const char *what;
-    } all[] = {{stats->closed_rings - before->closed_rings, "rings of areas do not end where they begin; closed"},
-               {stats->turned_rings - before->turned_rings, "rings of areas wind the wrong way; turned"},
-               {stats->empty_rings - before->empty_rings, "rings of areas have no area; left out"},
-               {stats->crossing_rings - before->crossing_rings, "rings of areas cross themselves; drawn as they wind"},
-               {stats->spiked_rings - before->spiked_rings, "rings of areas have a spike, which has no area"},
-               {stats->outside_holes - before->outside_holes, "holes begin outside of their area; filled there"},
-               {stats->open_relations - before->open_relations,
-                "multipolygons lack ways; left out their rings that do not close"}};
+    } all[] = {
+        {stats->closed_rings - before->closed_rings, "rings of areas were not closed; they are now"},
+        {stats->turned_rings - before->turned_rings, "rings of areas wound the wrong way; they were turned around"},
+        {stats->empty_rings - before->empty_rings, "rings have no area; they are left out"},
+        {stats->crossing_rings - before->crossing_rings,
+         "rings of areas cross themselves; they are drawn as they wind"},
+        {stats->spiked_rings - before->spiked_rings,
+         "rings of areas have a spike; it is not drawn, since it has no area"},
+        {stats->outside_holes - before->outside_holes, "holes are outside their area; they are filled there"},
+        {stats->open_relations - before->open_relations,
+         "multipolygons lack ways; those of their rings that do not close are left out"}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i].count)
             camber_log(features->context, i == 0 ? CAMBER_LOG_WARNING : CAMBER_LOG_INFO, "%s: %zu %s", name,

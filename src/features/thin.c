@@ -1,13 +1,14 @@
-/* Gives back memory that a set of features does not need any more.
+/* Frees memory that a set of features no longer needs.
  *
- * Input: a set whose lines are merged and weighed. Output: the same lines with fewer points, in less memory. Main idea:
- * a picture of a large country leaves out most points, since each of its pixels has many. Where no picture needs them
- * any more, they go: before the network of a single view is made, and between the zooms of a pyramid. */
+ * Input: a set whose lines are merged and have importance. Output: the same lines with fewer points, in less memory.
+ * The main idea: a picture of a large country leaves out most points, because many of them fall into each pixel. Points
+ * that no further picture needs are dropped: before the network of a single view is made, and between the zooms of a
+ * pyramid. */
 #include "features/features.h"
 
 #include <math.h>
 
-/* Resizes a block of which no more than this is used. false: it stays as it was. */
+/* Shrinks a block to its used size. Returns false if that fails; the block is then unchanged. */
 static bool fit(camber_context *context, void *block, size_t count, size_t size_bytes) {
     void *held;
     memcpy(&held, block, sizeof held);
@@ -24,7 +25,8 @@ void camber_features_shrink(camber_features *f) {
         f->point_capacity = f->point_count ? f->point_count : 1;
     if (f->point_count < f->importance_capacity && fit(context, &f->importance, f->point_count, sizeof *f->importance))
         f->importance_capacity = f->point_count ? f->point_count : 1;
-    /* One capacity counts the entries of each; a smaller one is true of all that did not shrink. */
+    /* One capacity counts the entries of all these arrays. The smaller value is also safe for arrays that could not be
+     * shrunk. */
     if (polylines < f->polyline_capacity) {
         f->polyline_capacity = polylines;
         (void)fit(context, &f->offsets, polylines, sizeof *f->offsets);
@@ -53,8 +55,8 @@ camber_status camber_features_thin(camber_features *features, float least_import
         return CAMBER_OK;
     if (count_whole(f) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
-    /* A network ends a line at what is no place, so the neighbours of such a point stay. before: the last point as it
-     * was, for another one may be in its place by now. */
+    /* A network ends a line at a point that is not finite, so the neighbours of such a point stay. before: the last
+     * point before thinning, because its memory may already have been overwritten. */
     double before[2] = {0.0, 0.0};
     size_t to = f->offsets[0], begin = to;
     for (size_t p = 0; p < f->polyline_count; p++) {

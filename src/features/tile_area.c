@@ -1,8 +1,9 @@
 /* Cuts rings of areas to their vector tiles.
  *
- * Input: a ring with the buffer around its tile. Output: what of it lies in the tile, closed along the tile's sides, as
- * Sutherland and Hodgman cut polygons. Main idea: the neighbour's piece ends on the same side and winds the other way
- * along it. So the edges along the side take each other away, and no seam is drawn, whatever the buffers overlap.
+ * Input: a ring that includes the buffer around its tile. Output: the part of it inside the tile, closed along the
+ * tile's sides, by Sutherland-Hodgman clipping. The main idea: the neighbour's piece ends on the same side of the tile
+ * and runs along it in the other direction. So the edges along the side cancel each other, and no seam is drawn,
+ * however the buffers overlap.
  *
  *         tile A    |    tile B
  *     a ----------->|------------> b
@@ -16,7 +17,7 @@
 
 enum { SIDES = 4 };
 
-/* Cutting by one side after the other: a point that passes a side goes on to the next. */
+/* The sides cut one after the other: a point that passes one side is handed to the next. */
 typedef struct side {
     double first[2], last[2];
     bool begun;
@@ -26,7 +27,7 @@ typedef struct clipper {
     camber_tile_stitcher *stitcher;
     const camber_tile_box *box;
     side sides[SIDES];
-    size_t first; /* the point of the stitcher that the ring begins with */
+    size_t first; /* index of the ring's first point in the stitcher */
 } clipper;
 
 static double edge_of(const camber_tile_box *box, int number) {
@@ -38,7 +39,8 @@ static bool lies_inside(const camber_tile_box *box, int number, const double *po
     return number & 1 ? at <= edge : at >= edge;
 }
 
-/* Where a segment crosses a side. The same from both of its ends, so that areas that share it go on sharing it. */
+/* Finds the point at which a segment crosses a side. The result does not depend on the segment's direction, so areas
+ * that share the segment also share the new point. */
 static void find_crossing(const camber_tile_box *box, int number, const double *p, const double *q, double at[2]) {
     const int axis = number / 2, other = 1 - axis;
     const double *low = p[axis] < q[axis] ? p : q, *high = p[axis] < q[axis] ? q : p;
@@ -48,7 +50,7 @@ static void find_crossing(const camber_tile_box *box, int number, const double *
     at[other] = fmin(fmax(along, fmin(p[other], q[other])), fmax(p[other], q[other]));
 }
 
-/* Gives a point to a side, or behind the last of them to the stitcher. false: memory is out. */
+/* Hands a point to a side, or to the stitcher after the last side. Returns false if there is no memory. */
 static bool give(clipper *self, int number, const double *point) {
     for (; number < SIDES; number++) {
         side *by = &self->sides[number];
@@ -73,7 +75,7 @@ static bool give(clipper *self, int number, const double *point) {
     return camber_tile_stitcher_add_point(stitcher, point);
 }
 
-/* Closes the ring that a side was given. */
+/* Closes the ring that a side received. */
 static bool close_ring(clipper *self, int number) {
     const side *by = &self->sides[number];
     double crossing[2];

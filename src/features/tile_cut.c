@@ -1,7 +1,7 @@
 /* Cuts the lines of features at the borders of their vector tiles; tile_join.c joins them again.
  *
- * A tile holds the points of a feature inside it and in a buffer around it, so neighbours hold the buffer's lines
- * twice. Each line is cut at its tile's border, where the neighbour's line continues it:
+ * A tile contains the points of a feature inside it and in a buffer around it, so neighbouring tiles both contain the
+ * lines in their buffers. Each line is cut at its tile's border, where the neighbour's line continues it:
  *
  *         tile A    |    tile B
  *     a ------------c - - -            A's line, with its buffer
@@ -12,10 +12,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Coordinates went through metres and back; those this close to a multiple of 1/16 unit are rounded to it. */
+/* Coordinates were converted to metres and back; those this close to a multiple of 1/16 unit are rounded to it. */
 static const double SNAP = 0.01 / 16;
 
-/* ---- Features: one record for all the lines with one id ---- */
+/* ---- Features: one record for all lines with the same id ---- */
 
 static size_t id_slot(const camber_tile_stitcher *stitcher, uint64_t id, uint32_t class_index) {
     return (size_t)camber_mix(camber_mix(0, id), class_index) & (stitcher->slot_count - 1);
@@ -72,10 +72,10 @@ static camber_status find_feature(camber_tile_stitcher *stitcher, const camber_t
 typedef struct tile_cut {
     camber_tile_stitcher *stitcher;
     camber_tile_box box;
-    camber_cut_line line; /* the line under construction while open; its tile and feature hold for all lines */
+    camber_cut_line line; /* the line being made, if open is set; its tile and feature are the same for all lines */
     bool open;
     const double *progress; /* NULL: none */
-    double length, done;    /* the line's length, and its length before the segment */
+    double length, done;    /* the line's length, and its length up to the current segment */
 } tile_cut;
 
 static bool on_border(const camber_tile_box *box, const double *point) {
@@ -93,8 +93,8 @@ static bool along_border(const camber_tile_box *box, const double *p, const doub
     return false;
 }
 
-/* Clips the segment p q to the box (Liang and Barsky) and puts cut ends exactly on the border. false: nothing of it
- * is inside, or one point only. */
+/* Clips the segment p q to the box (Liang-Barsky) and puts the new ends exactly on the border. Returns false if at most
+ * one point of it is inside. */
 static bool clip_segment(const camber_tile_box *box, const double *p, const double *q, double ends[4], bool cut[2]) {
     double t[2] = {0, 1};
     int axis_of[2] = {-1, -1};
@@ -188,7 +188,7 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
     return status;
 }
 
-/* A ring that the border cuts comes as two lines that meet where the ring happens to begin: makes them one. */
+/* A ring that is cut at the border becomes two lines that meet at the ring's first point. This makes them one line. */
 static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_line, const double *start) {
     if (stitcher->line_count < first_line + 2)
         return CAMBER_OK;
@@ -210,7 +210,7 @@ static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_lin
     return CAMBER_OK;
 }
 
-/* The distance to the next point. */
+/* Returns the distance to the next point. */
 static double segment_length(const double *point) {
     return hypot(point[2] - point[0], point[3] - point[1]);
 }
@@ -230,7 +230,7 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
         cut->done += cut->progress ? segment_length(points + 2 * (i - 1)) : 0;
     }
     if (!moves && inside(&cut->box, points)) {
-        /* A dot: all points are one. */
+        /* All points are equal: it is a dot. */
         status = open_line(cut, points, false, false);
         for (size_t i = 1; i < count && status == CAMBER_OK; i++)
             status = camber_tile_stitcher_add_point(stitcher, points) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
@@ -242,7 +242,8 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
     return status;
 }
 
-/* The box that lines are cut to: a whole tile more at open sides, where the buffer is kept. Areas lose theirs. */
+/* Returns the box to which lines are cut. At open sides, where the buffer is kept, it is one tile larger, but not for
+ * areas. */
 static camber_tile_box box_of(const camber_tile_feature *feature) {
     const double column = feature->column, row = feature->row;
     const unsigned open = feature->area ? 0 : feature->open_sides;

@@ -1,8 +1,8 @@
-/* Joins the lines of features that vector tiles cut.
+/* Joins the lines of features that were cut by vector tiles.
  *
- * Ends that lie on borders are hashed by feature and position; the nearest end in another tile is the partner. Where
- * both ends were made by cutting, they are not points of the feature and are dropped: the points before and behind
- * them were neighbours. Chains of partners become polylines. Time is linear in the number of points.
+ * Ends on borders are hashed by feature and position; the nearest end in another tile becomes the partner. If both ends
+ * were made by cutting, they are not points of the feature and are dropped, because the points before and after them
+ * were neighbours. Chains of partners become polylines. The time is linear in the number of points.
  */
 #include "features/chains.h"
 #include "features/order.h"
@@ -11,20 +11,20 @@
 #include <math.h>
 #include <string.h>
 
-/* How far partners may lie apart, in units. A tile's lines are rounded to its grid, mostly of 2048 or 4096 units. A
- * line that the buffer cuts is rounded once more, which moves where it crosses the border. */
+/* How far apart partners may be, in units. A tile's lines are rounded to its grid, mostly of 2048 or 4096 units. A line
+ * that is cut at the buffer's edge is rounded once more, which moves the point at which it crosses the border. */
 static const double REACH = 4;
 
-/* The same for lines with one id, which may cross the border at a flat angle: 1/128 of a tile. */
+/* The same for lines with an id, which may cross the border at a flat angle: 1/128 of a tile. */
 static const double ID_REACH = 32;
 
-/* No map uses a grid coarser than 1/64 of a tile. */
+/* No known map uses a grid coarser than 1/64 of a tile. */
 static const double MOST_REACH = 32;
 
-/* Partners that agree exactly are joined first, so that two lines that cross side by side stay apart. */
+/* Partners that match exactly are joined first, so that two lines that cross the border side by side stay apart. */
 static const double EXACT = 0.01;
 
-/* How many candidates are compared in a cell; more of them share one only in files that were made to slow us down. */
+/* How many candidates are compared in a cell. Only malicious files have more in one cell. */
 enum { MAX_CANDIDATES = 64 };
 
 #define NONE CAMBER_NO_END
@@ -38,7 +38,7 @@ typedef struct joiner {
 } joiner;
 
 typedef struct join_pass {
-    bool by_id; /* else by class: the lines that are left have no id, or one that its tile gave them */
+    bool by_id; /* false: match by class. The lines that are left have no id, or one that is valid in their tile only */
     double reach;
     bool directed;
 } join_pass;
@@ -76,7 +76,7 @@ static bool may_join(const joiner *join, uint32_t a, uint32_t b, const join_pass
         return false;
     if (pass->directed && ((a ^ b) & 1) == 0)
         return false;
-    /* Two features with ids of their own that end at one point of a border only meet there. */
+    /* Two features with different ids whose ends are at the same point of a border only touch there. */
     if (!by_id && stitcher->features[p->feature].has_id && stitcher->features[q->feature].has_id &&
         !(p->cut[a & 1] && q->cut[b & 1]))
         return false;
@@ -129,7 +129,8 @@ static void find_partners(joiner *join, const join_pass *pass) {
     }
 }
 
-/* Both neighbours have the lines that run along their border: keeps one of each. Uses the lists, by line. */
+/* Lines along a border are in both neighbouring tiles; keeps one of each pair. Reuses the lists, with lines as entries.
+ */
 static void drop_repeated_border_lines(joiner *join) {
     camber_tile_stitcher *stitcher = join->stitcher;
     memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
@@ -140,7 +141,7 @@ static void drop_repeated_border_lines(joiner *join) {
         const bool by_id = stitcher->features[line->feature].has_id;
         const uint32_t group = group_of(stitcher, 2 * i, by_id);
         const double *p = end_point(stitcher, 2 * i), *q = end_point(stitcher, 2 * i + 1);
-        /* The sums are the same from both ends; in sixteenths they are whole. */
+        /* The sums are the same in both directions. Counted in sixteenths, they are whole numbers. */
         const size_t head = head_of(join, group, (int64_t)((p[0] + q[0]) * 16), (int64_t)((p[1] + q[1]) * 16));
         uint32_t other = join->heads[head];
         bool repeated = false;
@@ -159,8 +160,8 @@ static void drop_repeated_border_lines(joiner *join) {
     }
 }
 
-/* Drops crumbs. Where a line passes the corner of four tiles, one tile may hold only a crumb between two cuts, whose
- * ends both lie within reach of the neighbours. Without the crumb the neighbours find each other. */
+/* Drops crumbs. If a line passes near the corner of four tiles, one tile may have only a tiny piece between two cuts,
+ * whose ends are both within reach of the neighbours. Without this crumb the neighbours find each other. */
 static void drop_crumbs(const joiner *join, double reach) {
     camber_tile_stitcher *stitcher = join->stitcher;
     for (uint32_t i = 0; i < stitcher->line_count; i++) {
@@ -173,15 +174,15 @@ static void drop_crumbs(const joiner *join, double reach) {
 
 /* ---- Chains ---- */
 
-/* Whether the point that a line is entered by is left out. At a joint one point stays, or none where cutting made
- * both. */
+/* Whether the point at which a line is entered is left out. At a joint one point remains, or none if cutting made both.
+ */
 static bool skips_entry(const joiner *join, uint32_t enter) {
     const camber_cut_line *lines = join->stitcher->lines;
     const uint32_t leave = join->partner[enter];
     return leave != NONE && (!lines[leave / 2].cut[leave & 1] || lines[enter / 2].cut[enter & 1]);
 }
 
-/* Copies the chain's points, in world coordinates, to scratch; last: the end that the chain ends with. */
+/* Copies the chain's points to scratch, in world coordinates. *last becomes the end at which the chain ends. */
 static bool gather_points(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
     camber_tile_stitcher *stitcher = join->stitcher;
     size_t points = 0;
@@ -212,9 +213,9 @@ static bool gather_points(const joiner *join, uint32_t start, size_t *count, uin
     return true;
 }
 
-/* ---- Order ---- */
+/* ---- Order of drawing ---- */
 
-/* Chains by key; order: the keys in the order of drawing. */
+/* Chains sorted by key. order: the keys in the order of drawing. */
 typedef struct chain_list {
     camber_chain *chains;
     size_t count;
@@ -222,7 +223,7 @@ typedef struct chain_list {
     size_t key_count;
 } chain_list;
 
-/* Each line of a chain gets the chain's key. */
+/* Gives each line the key of its chain. */
 static void key_lines(const joiner *join, const chain_list *list, uint32_t *keys) {
     for (size_t i = 0; i < list->count; i++) {
         uint32_t end = list->chains[i].start;
@@ -241,9 +242,9 @@ static bool same_list(const camber_tile_stitcher *stitcher, const camber_feature
            features->classes[classes[0]].layer == features->classes[classes[1]].layer;
 }
 
-/* Decides the order of drawing: lines that lie on top in one tile do so in all. A tile's order of features is its
- * author's, with roads of more weight last; a road that begins in the first tile must not lie below all of the
- * second. */
+/* Decides the order of drawing, so that a line that is on top in one tile is on top in all. The order of features
+ * within a tile is the author's, usually with important roads last. A road that begins in the first tile must not be
+ * drawn below everything in the second. */
 static camber_status find_order(const joiner *join, const camber_features *features, uint32_t *keys, chain_list *list) {
     const camber_tile_stitcher *stitcher = join->stitcher;
     camber_context *context = stitcher->context;
@@ -350,7 +351,7 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
         join.partner[i] = NONE;
     drop_repeated_border_lines(&join);
     const bool directed = features->schema->directed;
-    /* Tiles with a coarser grid than 2048 round correspondingly more. */
+    /* Tiles with a grid coarser than 2048 have correspondingly larger rounding errors. */
     const double reach = REACH * fmin(fmax(1, stitcher->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
     const join_pass passes[] = {{true, EXACT, directed},
                                 {true, reach, directed},

@@ -1,4 +1,4 @@
-/* Stitchers of tiles: the pieces of lines and rings that they hold. */
+/* Creates stitchers, and adds the pieces of lines and rings to them. */
 #include "features/tile_stitcher.h"
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,5 @@
-/* The stitcher joins features that vector tiles cut: tile_cut.c cuts their lines at the tiles' borders, exactly, and
- * tile_join.c joins them across the borders. Areas are cut by tile_area.c, and their pieces stay apart.
- */
+/* The stitcher joins features that were cut by vector tiles. tile_cut.c cuts their lines exactly at the tiles' borders,
+ * and tile_join.c joins them across the borders. tile_area.c cuts areas, whose pieces stay separate. */
 #ifndef CAMBER_FEATURES_TILE_STITCHER_H
 #define CAMBER_FEATURES_TILE_STITCHER_H
 
@@ -12,15 +11,15 @@ typedef struct camber_tile_stitcher camber_tile_stitcher;
 enum { CAMBER_SIDE_WEST = 1, CAMBER_SIDE_EAST = 2, CAMBER_SIDE_NORTH = 4, CAMBER_SIDE_SOUTH = 8 };
 
 typedef struct camber_tile_feature {
-    uint32_t column, row; /* tile, from the north-west; a column beyond the last is one of the next world */
+    uint32_t column, row; /* the tile, from the north-west; columns may be in the next copy of the world */
     uint32_t class_index;
-    bool outline; /* of a polygon: lines along the border were made by the tile and are left out */
-    bool area;    /* its lines are rings as rings.h has them: each is cut to the tile, at open sides too */
+    bool outline; /* it is a polygon's: lines along the border were made by the tile, and are left out */
+    bool area;    /* its lines are rings as described in rings.h; each is cut to the tile, at open sides, too */
     bool has_id;
-    uint64_t id; /* the same in every tile */
+    uint64_t id; /* equal in all tiles */
     bool has_progress;
-    double progress[2];  /* line-progress at the ends of each line; without has_progress none is kept */
-    unsigned open_sides; /* CAMBER_SIDE_*: the neighbour there is not read, and the tile's buffer is kept */
+    double progress[2];  /* line-progress at the ends of each line; ignored without has_progress */
+    unsigned open_sides; /* CAMBER_SIDE_*: sides whose neighbour is not read, so the tile's buffer is kept */
 } camber_tile_feature;
 
 /* Polylines in world coordinates: line i ends before point ends[i]. */
@@ -33,29 +32,29 @@ typedef struct camber_tile_lines {
 /* zoom: 0 to 30. */
 camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **stitcher);
 void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher);
-/* Cuts the lines at the tile's border and keeps what lies inside. */
+/* Cuts the lines at the tile's border and keeps the parts inside. */
 camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
                                        const camber_tile_lines *lines);
-/* Makes the points of areas that lie on the borders of tiles ones that always stay, so that pieces go on meeting there
- * when they are simplified. For the polylines of first_polyline and after it, once they are weighed. */
+/* Gives points of areas on the borders of tiles the highest importance, so that simplification keeps them and the
+ * pieces still meet. For the polylines from first_polyline on, after their importance was computed. */
 void camber_features_pin_borders(camber_features *features, size_t first_polyline, int zoom);
-/* Joins the lines and adds them to the set. Where the style is directed, an end is joined only to a start. */
+/* Joins the lines and adds them to the set. If the style depends on directions, an end is joined only to a start. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
 
-/* ---- Between the two ---- */
+/* ---- Shared by the files of the stitcher ---- */
 
-/* Coordinates of cut lines are units of 1/4096 of a tile, from the world's north-west corner. Tiles are quantised to
- * this or to half or double as much, and a double holds them exactly at all zooms. */
+/* Coordinates of cut lines are in units of 1/4096 of a tile, from the world's north-west corner. Tiles are quantised to
+ * this, or to half or double as much, and a double holds such numbers exactly at all zooms. */
 #define CAMBER_TILE_UNITS 4096.0
 
 /* A line, or a ring of an area. */
 typedef struct camber_cut_line {
-    size_t first, count; /* its points; count 0: the line is not there any more */
+    size_t first, count; /* its points; count 0: the line was removed */
     uint32_t feature;    /* index into features */
     uint32_t column, row;
-    bool cut[2];       /* the first and last point were cut, and are no points of the feature */
-    bool border[2];    /* they lie on the tile's border */
-    bool along_border; /* the whole line lies along the border: the neighbour has it too */
+    bool cut[2];       /* the first or last point was made by cutting, and is not a point of the feature */
+    bool border[2];    /* this end is on the tile's border */
+    bool along_border; /* the whole line is on the border, so the neighbour has it too */
     float progress[2];
 } camber_cut_line;
 
@@ -63,23 +62,23 @@ typedef struct camber_cut_feature {
     uint64_t id;
     uint32_t class_index;
     bool has_id;
-    uint32_t next; /* with the same hash, + 1 */
+    uint32_t next; /* the next one with the same hash, + 1 */
 } camber_cut_feature;
 
 struct camber_tile_stitcher {
     camber_context *context;
     double units;      /* the world's width in units */
     double grid;       /* the step of the coarsest tile's grid, in units */
-    bool has_progress; /* a line has progress */
+    bool has_progress; /* some line has progress */
     double *points;
     size_t point_count, point_capacity;
     camber_cut_line *lines; /* fewer than 2^31 */
     size_t line_count, line_capacity;
-    camber_cut_feature *features; /* one for all the lines with one id and class */
+    camber_cut_feature *features; /* one for all lines with the same id and class */
     size_t feature_count, feature_capacity;
     uint32_t *slots; /* hash table of features with an id, + 1; slot_count is a power of two */
     size_t slot_count;
-    double *scratch; /* one polyline */
+    double *scratch; /* the points of one polyline */
     size_t scratch_capacity;
 };
 
@@ -87,10 +86,11 @@ typedef struct camber_tile_box {
     double low[2], high[2];
 } camber_tile_box;
 
-/* Returns false where memory is out. */
+/* Returns false if there is no memory. */
 bool camber_tile_stitcher_add_point(camber_tile_stitcher *stitcher, const double *point);
 camber_status camber_tile_stitcher_add_line(camber_tile_stitcher *stitcher, const camber_cut_line *line);
-/* Cuts the ring of so many points in scratch to the box, and adds what is left as a line like this one. */
+/* Cuts the ring in scratch, which has count points, to the box, and adds the result as a line with the other properties
+ * of like. */
 camber_status camber_tile_stitcher_add_ring(camber_tile_stitcher *stitcher, const camber_cut_line *like,
                                             const camber_tile_box *box, size_t count);
 

@@ -5,11 +5,11 @@
 #include "base/base.h"
 
 typedef enum camber_value_type {
-    CAMBER_VALUE_NULL = 0, /* also: the feature does not have the property */
+    CAMBER_VALUE_NULL = 0, /* also if the feature does not have the property */
     CAMBER_VALUE_BOOL,
     CAMBER_VALUE_NUMBER,
     CAMBER_VALUE_STRING,
-    CAMBER_VALUE_COLOR, /* from expressions; never from features */
+    CAMBER_VALUE_COLOR, /* from expressions only, never from features */
     CAMBER_VALUE_ARRAY,
     CAMBER_VALUE_OBJECT,
 } camber_value_type;
@@ -17,30 +17,30 @@ typedef enum camber_value_type {
 typedef struct camber_value camber_value;
 typedef struct camber_member camber_member;
 
-/* A value of an expression or of a property. It does not own the memory that it points to: its maker does. */
+/* A value of an expression or of a property. It does not own the memory that it points to. */
 struct camber_value {
     camber_value_type type;
-    uint32_t count; /* number of an array's items or an object's members */
-    bool boolean;   /* for a null: the feature has the property, and it is null */
+    uint32_t count; /* number of items or members */
+    bool boolean;   /* for a null: the feature has the property, and its value is null */
     double number;
     union {
         const char *string; /* UTF-8 */
         const camber_value *items;
-        const camber_member *members; /* by key, as strcmp sorts them; each key once */
+        const camber_member *members; /* sorted by key, in the order of strcmp; each key once */
         camber_color color;
     };
 };
 
 struct camber_member {
     const char *key;
-    uint32_t position; /* position in the document, for the order in texts */
+    uint32_t position; /* position in the document, which texts keep */
     camber_value value;
 };
 
-/* Stands in data for infinities and numbers beyond a double, which JSON does not have. */
+/* Stands for infinities and for numbers too large for a double, which JSON cannot express. */
 #define CAMBER_JSON_INFINITE 1e308
 
-/* The object's value of the key, NULL where it has none. Cost: a binary search. */
+/* Returns the object's value for the key, or NULL if it has none. Cost: a binary search. */
 const camber_value *camber_object_get(const camber_value *object, const char *key);
 
 #endif

@@ -1,8 +1,9 @@
 /* Makes lines of points as they are read.
  *
- * Input: points in degrees or metres, and where lines end. Output: lines in world coordinates. Between two points a
- * line goes the short way round the Earth, so it is split where that way crosses the antimeridian. From the meridian's
- * one side to its other, as a parallel goes, there is no short way, and a line goes across the world as it is written.
+ * Input: points in degrees or metres, and the ends of lines. Output: lines in world coordinates. Between two points a
+ * line goes the short way around the Earth, so it is split if that way crosses the antimeridian. Between two points on
+ * opposite edges of the map, as on a parallel around the Earth, there is no short way, and the line crosses the map as
+ * written.
  */
 #include "features/world_lines.h"
 
@@ -10,7 +11,7 @@
 
 #include <math.h>
 
-/* Points as near to an edge of the world lie on it: 4 cm. */
+/* Points this close to an edge of the world count as on it: 4 cm. */
 static const double EDGE = 1e-9;
 
 void camber_world_lines_begin(camber_world_lines *lines) {
@@ -18,7 +19,7 @@ void camber_world_lines_begin(camber_world_lines *lines) {
     lines->open = lines->begun_by_cut = false;
 }
 
-/* A line adds its points, two more for each crossing of the antimeridian, and no more lines than points. */
+/* A line adds its own points, two more for each crossing of the antimeridian, and at most as many lines as points. */
 size_t camber_world_lines_most_points(size_t point_count) {
     return 3 * point_count;
 }
@@ -68,10 +69,10 @@ void camber_world_lines_end(camber_world_lines *lines) {
     lines->begun_by_cut = false;
 }
 
-/* Called where the short way from the last point to (x, y) crosses x = 0 or 1: ends the line there and begins one on
- * the other side. Linear in world coordinates, as the segment is drawn. */
+/* Called if the short way from the last point to (x, y) crosses x = 0 or 1. Ends the line there and begins one on the
+ * other side. Interpolates linearly in world coordinates, in which the segment is drawn. */
 static void cross_antimeridian(camber_world_lines *lines, double x, double y) {
-    const double out = x < lines->x ? 1.0 : 0.0; /* the edge it leaves by */
+    const double out = x < lines->x ? 1.0 : 0.0; /* the edge at which it leaves */
     const double beyond = x < lines->x ? x + 1.0 : x - 1.0;
     const double length = beyond - lines->x;
     const double crossing = length != 0 ? lines->y + (y - lines->y) * ((out - lines->x) / length) : y;
@@ -83,8 +84,8 @@ static void cross_antimeridian(camber_world_lines *lines, double x, double y) {
     lines->antimeridian_splits++;
 }
 
-/* Whether the way from the last point to x is as long as the world is wide. A line that comes to the antimeridian from
- * inside the world, as a ship's track, goes on beyond it: then both points are one. */
+/* Whether the way from the last point to x is as long as the world is wide. But a line that arrived at the antimeridian
+ * from inside the world, such as a ship's track, continues beyond it: then the two points are the same place. */
 static bool goes_across(const camber_world_lines *lines, double x) {
     const double before = lines->point_count - lines->first > 1 ? lines->points[2 * lines->point_count - 4] : lines->x;
     const double came = fabs(lines->x - before);
@@ -116,7 +117,7 @@ void camber_world_lines_add_degrees(camber_world_lines *lines, double longitude,
         latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
     }
     camber_mercator_project(longitude, latitude, &x, &y);
-    /* The limit itself may come out a rounding error beyond the world. */
+    /* At the latitude's limit, y may be outside the world by a rounding error. */
     add(lines, camber_mercator_wrap(x), fmin(fmax(y, 0), 1));
 }
 

@@ -1,10 +1,11 @@
-/* Hands files to GDAL, which is loaded with the first of them: it comes with a hundred libraries. Linking them takes
- * longer than drawing a small map, and every driver that is loaded after them looks through their names for its own. */
+/* Passes files to GDAL, which is loaded when the first of them is read, because it brings a hundred libraries with it.
+ * Loading them takes longer than drawing a small map, and it slows down every driver that is loaded later, because the
+ * loader searches them for its symbols. */
 #include "formats/gdal.h"
 #include "features/features.h"
 #include "features/gdal_calls.h"
 
-/* The result is kept, since asking the loader again waits while another thread loads a driver. */
+/* The result is kept, because asking the loader again would block while another thread loads a driver. */
 camber_status camber_gdal_load(camber_context *context) {
     const char *why = NULL;
     if (!context->gdal)
@@ -14,7 +15,7 @@ camber_status camber_gdal_load(camber_context *context) {
     const camber_status status = camber_budget_check_drivers(context);
     if (status != CAMBER_OK)
         return status;
-    return camber_fail(context, CAMBER_ERROR_IO, "GDAL cannot be loaded: %s; install camber and GDAL again",
+    return camber_fail(context, CAMBER_ERROR_IO, "GDAL cannot be loaded: %s; reinstall camber and GDAL",
                        why ? why : "no reason given");
 }
 

@@ -1,7 +1,7 @@
 /* Reads a GeoJSON source of a style into a set of features.
  *
  * Input: a JSON document and the source's filter. Output: lines, outlines, areas, points, classes, ids. Damage is
- * counted, not fatal: a line is split where a point is not valid, and what can be read of a feature is kept.
+ * counted and is not fatal: a line is split at points that are not valid, and the readable parts of a feature are kept.
  */
 #include "formats/geojson.h"
 #include "features/mercator.h"
@@ -11,11 +11,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Collections in collections. */
+/* how deep collections may be nested */
 enum { DEEPEST = 32 };
 enum { POLYGONS = CAMBER_KIND_POLYGON | CAMBER_KIND_AREA };
 
-/* A line may go on over the antimeridian, but not round and round. */
+/* A line may continue beyond the antimeridian, but not circle the Earth. */
 static const double FARTHEST_DEG = 540.0;
 
 typedef struct reader {
@@ -28,14 +28,14 @@ typedef struct reader {
     unsigned kinds; /* CAMBER_KIND_*: those that are read */
     camber_rings rings;
     camber_value *values;
-    double *points; /* one line */
+    double *points; /* the points of one line */
     size_t capacity;
 
     /* The feature being read. */
     size_t index;
     bool in_collection;
     const char *damage;
-    bool left_out, added; /* added: of the kind being read */
+    bool left_out, added; /* added: of the kind that is being read */
     camber_geometry_kind kind;
     uint32_t class_index;
 } reader;
@@ -71,7 +71,7 @@ static camber_status read_value(reader *self, const json_t *json, camber_value *
     return CAMBER_OK;
 }
 
-/* Reads an id; a text that is a number counts as a number, as in other engines. */
+/* Reads an id. As in other engines, a text that is a number counts as a number. */
 static camber_status read_id(reader *self, const json_t *feature, const json_t *properties, camber_value *id) {
     const json_t *json = json_object_get(feature, "id");
     if (self->promote_id)
@@ -92,7 +92,7 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
     return read_value(self, json, id);
 }
 
-/* Finds the feature's class of the kind. *drawn: the source's filter lets it pass. */
+/* Finds the feature's class for this kind. *drawn: the source's filter accepts it. */
 static camber_status find_class(reader *self, const json_t *feature, bool *drawn) {
     const camber_schema *schema = self->features->schema;
     const json_t *properties = json_object_get(feature, "properties");
@@ -118,12 +118,14 @@ static camber_status find_class(reader *self, const json_t *feature, bool *drawn
 
 /* ---- Geometry ---- */
 
-/* Whether this stands for a number that JSON cannot write: null for NaN, or one beyond a double for an infinity. */
+/* Whether the value stands for a number that JSON cannot express: null for NaN, or a number beyond a double's range for
+ * an infinity. */
 static bool is_no_number(const json_t *json) {
     return json_is_null(json) || fabs(json_number_value(json)) >= CAMBER_JSON_INFINITE;
 }
 
-/* Reads a position; a point that is not valid, as in CAMBER_ERROR_INPUT, becomes a pair of NaN. false: no position. */
+/* Reads a position. A point that is not valid, as described at CAMBER_ERROR_INPUT, becomes a pair of NaN. Returns false
+ * if this is not a position. */
 static bool read_position(const json_t *json, double position[2]) {
     const json_t *longitude = json_array_get(json, 0), *latitude = json_array_get(json, 1);
     if (is_no_number(longitude) || is_no_number(latitude)) {
@@ -152,7 +154,7 @@ static void add_bounds(double bounds[4], const double *points, size_t count) {
     }
 }
 
-/* A feature with several lines is one feature. */
+/* A feature with several lines is added once. */
 static camber_status add_line(reader *self, const double *points, size_t count) {
     camber_status status = CAMBER_OK;
     if (!self->added)
@@ -162,7 +164,7 @@ static camber_status add_line(reader *self, const double *points, size_t count) 
     return status == CAMBER_OK ? camber_features_add_polyline(self->features, points, count) : status;
 }
 
-/* Adds the line that was read, split where points are not valid. */
+/* Adds the line that was read, split at points that are not valid. */
 static camber_status add_parts(reader *self, size_t count) {
     camber_status status = CAMBER_OK;
     size_t first = 0;
@@ -177,7 +179,8 @@ static camber_status add_parts(reader *self, size_t count) {
     return status;
 }
 
-/* Turns a ring so that an outline goes clockwise as seen, with its inside to the right, and a hole the other way. */
+/* Turns a ring so that an outline goes clockwise as seen, with its inside to the right, and a hole counter-clockwise.
+ */
 static void orient_ring(double *points, size_t count, bool hole) {
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -189,7 +192,7 @@ static void orient_ring(double *points, size_t count, bool hole) {
         camber_ring_turn(points, count);
 }
 
-/* Adds the ring that was read, whose inside is filled. Where outlines are read too, they count what is invalid. */
+/* Adds the ring that was read, to be filled. If outlines are read too, they already count its invalid points. */
 static camber_status add_ring(reader *self, size_t count, bool hole) {
     for (size_t i = 0; i < count && !(self->kinds & CAMBER_KIND_POLYGON); i++)
         self->stats->invalid_points += isnan(self->points[2 * i]) != 0;
@@ -214,7 +217,8 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
         return CAMBER_OK;
     }
     const double *last = self->points + 2 * (count - 1);
-    if (ring && (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both are valid */
+    if (ring &&
+        (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both points are valid */
         note_damage(self, "a ring that is not closed");
         if (!area)
             memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
@@ -226,7 +230,7 @@ static camber_status read_line(reader *self, const json_t *json, bool hole) {
     return add_parts(self, count);
 }
 
-/* A point is a line of one point. */
+/* A point becomes a line of one point. */
 static camber_status read_point(reader *self, const json_t *json) {
     double position[2];
     if (!read_position(json, position)) {
@@ -239,8 +243,8 @@ static camber_status read_point(reader *self, const json_t *json) {
     return CAMBER_OK;
 }
 
-/* depth: how deep the lines, or points, are in the coordinates. hole: all lines of a polygon but the first are holes.
- */
+/* depth: how deep the lines or points are nested in the coordinates. hole: lines after the first of a polygon are
+ * holes. */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool hole) {
     if (!json_is_array(json)) {
         note_damage(self, "coordinates that are not an array");
@@ -285,7 +289,7 @@ static camber_status read_geometry(reader *self, const json_t *geometry, int dep
     return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, false);
 }
 
-/* Whether a geometry has lines, polygons or points at all. */
+/* Whether a geometry contains lines, polygons or points at all. */
 static bool has_kind(const json_t *geometry, camber_geometry_kind kind, int depth) {
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (!type)
@@ -336,7 +340,7 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
     }
     self->kind = CAMBER_GEOMETRY_LINE;
     if (!any)
-        status = read_geometry(self, geometry, 0); /* of an unknown type */
+        status = read_geometry(self, geometry, 0); /* which reports the unknown type */
     self->left_out |= (unread & (CAMBER_KIND_LINE | CAMBER_KIND_POINT)) || (unread & POLYGONS) == POLYGONS;
     end_feature(self);
     return status;
@@ -351,8 +355,7 @@ static camber_status read_root(reader *self) {
         return read_feature(self, NULL, root);
     if (!type || strcmp(type, "FeatureCollection") != 0 || !json_is_array(list))
         return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                           "%s: no GeoJSON; it must be an object of type FeatureCollection with features, a Feature or "
-                           "a geometry",
+                           "%s: not GeoJSON; it must be a FeatureCollection with features, a Feature or a geometry",
                            self->desc->what);
     camber_status status = CAMBER_OK;
     self->in_collection = true;

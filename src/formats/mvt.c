@@ -1,7 +1,7 @@
 /* Reads vector tiles (Mapbox Vector Tile 2) into a set of features.
  *
- * Input: the decompressed bytes of one tile after the other. Output: features, whose lines and rings go to the
- * stitcher, which cuts them at the tiles' borders. Messages are unpacked by protobuf-c into a bounded pool. Damage is
+ * Input: the decompressed bytes of one tile after the other. Output: features. Their lines and rings go to the
+ * stitcher, which cuts them at the tiles' borders. protobuf-c unpacks messages into a pool of limited size. Damage is
  * counted.
  */
 #include "formats/mvt.h"
@@ -14,18 +14,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The most memory for the unpacked messages of a tile; the largest of real maps take a few megabytes. */
+/* The most memory for a tile's unpacked messages. The largest tiles of real maps need a few megabytes. */
 static const size_t LARGEST_TILE_BYTES = (size_t)256 << 20;
 
-/* How many features are examined to learn whether a layer has lines. */
+/* PEEKED_FEATURES: how many features are examined to find out whether a layer has lines. */
 enum { PEEKED_FEATURES = 32, MOST_LAYERS = 1024 };
 
-/* Names of properties by which one feature is recognised in several tiles, besides the format's own id: OSM's, a
- * common one, TIGER's. */
+/* Properties that identify a feature in several tiles, apart from the format's own id: OSM's, a common one, TIGER's. */
 static const char *const id_keys[] = {"osm_id", "id", "TLID"};
 enum { ID_KEYS = 3 };
 
-/* Properties of tiles that were made from GeoJSON with lineMetrics: where the line was clipped. */
+/* Properties of tiles that were made from GeoJSON with lineMetrics. They say where the line was clipped. */
 static const char *const clip_keys[] = {"mapbox_clip_start", "mapbox_clip_end"};
 
 typedef Camber__Tile__Layer tile_layer;
@@ -36,8 +35,8 @@ struct camber_mvt {
     camber_mvt_desc desc;
     camber_mvt_stats stats;
     camber_pool pool;
-    uint32_t *sorted;     /* the style's properties by name */
-    camber_value *values; /* one feature's */
+    uint32_t *sorted;     /* the style's properties, sorted by name */
+    camber_value *values; /* of one feature */
     camber_mvt_geometry geometry;
     camber_mvt_layer *layers;
     size_t layer_count, layer_capacity;
@@ -48,11 +47,11 @@ struct camber_mvt {
     unsigned kinds; /* CAMBER_KIND_* */
     char name[256];
     uint32_t layer_index;
-    uint32_t *key_properties; /* layer->n_keys; NONE: no property of the style */
+    uint32_t *key_properties; /* layer->n_keys: index of the style's property; NONE: the style does not read it */
     camber_value *known;      /* layer->n_values */
     bool *is_known;
-    uint32_t ids[ID_KEYS], promoted, clips[2]; /* keys */
-    bool unsorted;                             /* the layer is none that the style knows */
+    uint32_t ids[ID_KEYS], promoted, clips[2]; /* indices of keys */
+    bool unsorted;                             /* the layer has no schema that the style knows */
 };
 
 #define NONE UINT32_MAX
@@ -63,7 +62,7 @@ static void note_damage(camber_mvt *mvt, const char *cause) {
                  mvt->address.column, mvt->address.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
 }
 
-/* Says why a message did not unpack. */
+/* Returns the status for a message that could not be unpacked: it is damaged, or the pool is exhausted. */
 static camber_status judge_failure(camber_mvt *mvt, const char *cause) {
     if (mvt->pool.out_of_memory)
         return CAMBER_ERROR_MEMORY;
@@ -76,7 +75,7 @@ static bool is_text(ProtobufCBinaryData bytes, const char *text) {
     return bytes.len == length && (length == 0 || memcmp(bytes.data, text, length) == 0);
 }
 
-/* Copies the text into the pool with a 0 behind it. NULL: refused. */
+/* Copies the text into the pool and appends a 0. Returns NULL if the pool refuses. */
 static char *to_text(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     char *text = camber_pool_alloc(&mvt->pool, bytes.len + 1);
     if (!text)
@@ -121,7 +120,7 @@ static void sort_properties(camber_mvt *mvt) {
     }
 }
 
-/* The name of the property that is the id. */
+/* Returns the name of the property to use as id. */
 static const char *promoted_name(const camber_mvt *mvt) {
     const json_t *promote = mvt->desc.promote_id;
     if (json_is_object(promote))
@@ -156,7 +155,7 @@ static camber_value number_value(double number) {
     return isnan(number) ? (camber_value){0} : (camber_value){.type = CAMBER_VALUE_NUMBER, .number = number};
 }
 
-/* A text that is not UTF-8 counts as no value. */
+/* A text that is not UTF-8 counts as a missing value. */
 static camber_status text_value(camber_mvt *mvt, ProtobufCBinaryData bytes, camber_value *value) {
     json_t *checked = json_stringn((const char *)bytes.data, bytes.len);
     if (bytes.len && !checked)
@@ -220,7 +219,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
             continue;
         status = read_value(mvt, feature->tags[i + 1], &value);
         const ProtobufCBinaryData key = mvt->layer->keys[feature->tags[i]];
-        /* A name that is no UTF-8 is refused, and left out. */
+        /* jansson refuses a key that is not UTF-8, and it is left out. */
         if (status == CAMBER_OK)
             json_object_setn_new(object, (const char *)key.data, key.len, to_json(&value));
     }
@@ -230,7 +229,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
     return status;
 }
 
-/* Reads the values of the style's properties, and the id by which the feature is recognised in other tiles. */
+/* Reads the values of the style's properties, and the id that identifies the feature in other tiles. */
 static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, camber_value *id,
                                camber_tile_feature *stitched, const char **damage) {
     const camber_schema *schema = mvt->desc.features->schema;
@@ -278,7 +277,7 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     return CAMBER_OK;
 }
 
-/* Whether a point is the tile's own: those of its buffer are in the next one, too, unless that is not read. */
+/* Whether a point belongs to this tile. A point in its buffer is in the next tile, too, unless that is not read. */
 static bool is_own(const camber_tile_address *address, const double *point) {
     const double side = ldexp(1.0, address->zoom);
     const double column = floor(point[0] * side) - address->column, row = floor(point[1] * side) - address->row;
@@ -343,8 +342,8 @@ static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature,
     return camber_mvt_geometry_read(&mvt->geometry, &commands);
 }
 
-/* Makes areas of a feature's rings. Where the first of them winds the other way, as some makers of tiles have it, so do
- * all: then holes are those that go clockwise. */
+/* Turns a feature's rings into areas. If the first ring winds the other way, as in tiles of some programs, so do all of
+ * them, and the holes are the rings that go clockwise. */
 static void take_rings(camber_mvt *mvt) {
     camber_mvt_geometry *geometry = &mvt->geometry;
     camber_features_stats *stats = &mvt->desc.features->stats;
@@ -399,7 +398,7 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
 
 /* ---- A layer ---- */
 
-/* Finds out what of the layer is wanted. */
+/* Returns the kinds of geometry to read from the layer. */
 static unsigned wanted_kinds(const camber_mvt *mvt) {
     const camber_mvt_desc *desc = &mvt->desc;
     for (size_t i = 0; i < desc->layer_count; i++) {
@@ -415,7 +414,7 @@ static unsigned wanted_kinds(const camber_mvt *mvt) {
     return 0;
 }
 
-/* Lists a layer, where none is wanted and the question is which layers there are. */
+/* Adds the layer to the list of layers, if no layers are wanted and the caller asked which there are. */
 static camber_status list_layer(camber_mvt *mvt) {
     size_t i = 0;
     while (i < mvt->layer_count && strcmp(mvt->layers[i].name, mvt->name) != 0)
@@ -456,7 +455,7 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     if (!mvt->kinds)
         return CAMBER_OK;
     if (layer->extent == 0 || (layer->has_version && (layer->version < 1 || layer->version > 2))) {
-        note_damage(mvt, layer->extent ? "of a version that is neither 1 nor 2" : "its extent is 0");
+        note_damage(mvt, layer->extent ? "its version is neither 1 nor 2" : "its extent is 0");
         return CAMBER_OK;
     }
     mvt->desc.stitcher->grid = fmax(mvt->desc.stitcher->grid, CAMBER_TILE_UNITS / layer->extent);
@@ -481,7 +480,7 @@ camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *addres
     mvt->name[0] = 0;
     const Camber__Tile__Tile *tile = camber__tile__tile__unpack(&mvt->pool.allocator, size_bytes, bytes);
     if (!tile)
-        return judge_failure(mvt, "no vector tile");
+        return judge_failure(mvt, "it is not a vector tile");
     const camber_pool_mark mark = camber_pool_here(&mvt->pool);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < tile->n_layers && status == CAMBER_OK; i++) {
@@ -498,7 +497,7 @@ void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const
     note_damage(mvt, cause);
 }
 
-/* ---- All of it ---- */
+/* ---- Reader ---- */
 
 camber_status camber_mvt_create(camber_context *context, const camber_mvt_desc *desc, camber_mvt **mvt) {
     const size_t properties = desc->features->schema->property_count;

@@ -10,38 +10,38 @@
 /* The address of a tile. */
 typedef struct camber_tile_address {
     int zoom;
-    uint32_t column, row; /* column: may lie in the next world */
-    unsigned open_sides;  /* CAMBER_SIDE_* */
+    uint32_t column, row; /* column: may be in the next copy of the world */
+    unsigned open_sides;  /* CAMBER_SIDE_*: sides whose neighbour is not read */
 } camber_tile_address;
 
 typedef struct camber_mvt_desc {
     camber_features *features;
     camber_tile_stitcher *stitcher;
-    const char *const
-        *layers; /* the names of the wanted layers. NULL: none; the layers that the tiles hold are only listed */
+    const char *const *layers; /* names of the wanted layers. NULL: only list the layers of the tiles */
     size_t layer_count;
-    const unsigned *layer_kinds; /* layer_count: CAMBER_KIND_*, what is read of each. NULL: as the next two say */
+    const unsigned *layer_kinds; /* layer_count: CAMBER_KIND_*, the kinds to read from each. NULL: decided by unsorted
+                                    and no_schema */
     bool wants_polygons, wants_areas, wants_points;
-    json_t *promote_id;  /* the property that is the id, as a string, or by layer as an object. NULL: none */
-    bool wants_progress; /* mapbox_clip_start and mapbox_clip_end are line-progress at a feature's ends */
-    bool unsorted;       /* the tiles may have no schema that the style knows, unless it names their layers */
-    bool no_schema;      /* they have none, even if a layer has a name that the style knows */
+    json_t *promote_id;  /* the property to use as id: a string, or an object with one for each layer. NULL: none */
+    bool wants_progress; /* mapbox_clip_start and mapbox_clip_end give line-progress at a feature's ends */
+    bool unsorted;       /* the tiles have no schema that the style knows, unless it names their layers */
+    bool no_schema;      /* they have none, even if a layer's name is known to the style */
 } camber_mvt_desc;
 
-/* Counts of all tiles so far. */
+/* Counts over all tiles so far. */
 typedef struct camber_mvt_stats {
-    size_t skipped_features; /* their geometry is not wanted */
-    size_t
-        damaged_features; /* the readable part of them is kept; a tile or a layer that does not parse counts as one */
-    char damage[256];     /* the first: tile, layer, cause */
-    size_t features;      /* in the wanted layers */
-    size_t kept_features; /* those of them that gave any points */
+    size_t skipped_features; /* features whose geometry is not wanted */
+    size_t damaged_features; /* features of which only the readable parts are kept; a tile or layer that cannot be
+                                parsed counts as one */
+    char damage[256];        /* the first damage: tile, layer, cause */
+    size_t features;         /* in the wanted layers */
+    size_t kept_features;    /* those of them that had any points to keep */
 } camber_mvt_stats;
 
-/* A layer that some tile has. */
+/* A layer that occurs in some tile. */
 typedef struct camber_mvt_layer {
     char *name;
-    bool has_lines; /* among its first features */
+    bool has_lines; /* judged by its first features */
 } camber_mvt_layer;
 
 typedef struct camber_mvt camber_mvt;
@@ -49,12 +49,12 @@ typedef struct camber_mvt camber_mvt;
 camber_status camber_mvt_create(camber_context *context, const camber_mvt_desc *desc, camber_mvt **mvt);
 void camber_mvt_destroy(camber_mvt *mvt);
 const camber_mvt_stats *camber_mvt_get_stats(const camber_mvt *mvt);
-/* The layers in the order in which they were found, where no layers are wanted. */
+/* Returns the layers in the order in which they were found, if no layers were wanted. */
 const camber_mvt_layer *camber_mvt_layers(const camber_mvt *mvt, size_t *count);
-/* Reads a tile; bytes are decompressed. Damage is counted. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Reads a tile from its decompressed bytes. Damage is counted. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *address, const void *bytes,
                               size_t size_bytes);
-/* Counts a tile that cannot be had. */
+/* Counts a tile that could not be read. */
 void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const char *cause);
 
 #endif

@@ -1,7 +1,7 @@
-/* Turns the drawing commands of one feature of a vector tile into lines in world coordinates.
+/* Converts the drawing commands of one feature of a vector tile to lines in world coordinates.
  *
- * Input: 32-bit words of commands (move, line, close) and zigzag deltas. Output: points and where each line ends.
- * Commands that make no sense end the reading; the lines before them stay.
+ * Input: 32-bit words with commands (move, line, close) and zigzag-coded deltas. Output: points, and where each line
+ * ends. Reading stops at a command that makes no sense; the lines before it stay.
  */
 #include "formats/mvt_geometry.h"
 
@@ -10,7 +10,7 @@ enum { MOVE_TO = 1, LINE_TO = 2, CLOSE_PATH = 7 };
 typedef struct pen {
     camber_mvt_geometry *geometry;
     const camber_mvt_commands *commands;
-    int64_t x, y; /* 2^26 words of 2^31 each stay in range */
+    int64_t x, y; /* 2^26 words of at most 2^31 each cannot overflow */
     size_t first; /* the first point of the open line */
     bool closed;
 } pen;
@@ -25,7 +25,7 @@ static bool add_world_point(camber_mvt_geometry *geometry, double x, double y) {
     return true;
 }
 
-/* A tile's corner and what lies on a grid of a power of two are exact. */
+/* A tile's corner is exact, and so are points on a grid whose size is a power of two. */
 static bool add_point(const pen *p) {
     const camber_mvt_commands *c = p->commands;
     return add_world_point(p->geometry, (c->column + (double)p->x / c->extent) / c->side,
@@ -76,14 +76,14 @@ static bool close_ring(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
     const camber_geometry_kind kind = p->commands->kind;
     if (kind == CAMBER_GEOMETRY_LINE || kind == CAMBER_GEOMETRY_POINT || geometry->point_count == p->first) {
-        note_damage(geometry, "it closes what is not a ring");
+        note_damage(geometry, "a close command outside a ring");
         return true;
     }
     p->closed = true;
     return add_first_again(p) && end_line(p);
 }
 
-/* Reads this many points from words on. */
+/* Executes one command, which has count points from words on. */
 static bool run_command(pen *p, uint32_t command, const uint32_t *words, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (command == MOVE_TO) {
@@ -122,7 +122,7 @@ camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camb
         if (count == 0)
             note_damage(geometry, "a command without points");
         if (count > (commands->count - i) / 2) {
-            note_damage(geometry, "fewer points than it announces");
+            note_damage(geometry, "fewer points than the command announces");
             count = (commands->count - i) / 2;
             fits = run_command(&p, command, commands->words + i, count);
             break;

@@ -1,4 +1,4 @@
-/* The geometry of a vector tile's feature: drawing commands become lines. */
+/* The geometry of a vector tile's feature: converts drawing commands to lines. */
 #ifndef CAMBER_FORMATS_MVT_GEOMETRY_H
 #define CAMBER_FORMATS_MVT_GEOMETRY_H
 
@@ -7,11 +7,11 @@
 
 typedef struct camber_mvt_geometry {
     camber_context *context;
-    double *points; /* world coordinates */
+    double *points; /* in world coordinates */
     size_t *ends;
     size_t point_count, point_capacity, line_count, line_capacity;
-    size_t closed_rings; /* of areas, which were not closed */
-    const char *damage;  /* NULL: none. The lines are those that can be read */
+    size_t closed_rings; /* rings of areas that were not closed and were closed here */
+    const char *damage;  /* NULL: none. If there is damage, the lines are those that could be read */
 } camber_mvt_geometry;
 
 typedef struct camber_mvt_commands {
@@ -19,10 +19,10 @@ typedef struct camber_mvt_commands {
     size_t count;
     camber_geometry_kind kind;
     uint32_t column, row, extent;
-    double side; /* the world's width in tiles */
+    double side; /* the width of the world in tiles */
 } camber_mvt_commands;
 
-/* Replaces the lines. Returns CAMBER_ERROR_MEMORY. */
+/* Replaces the lines by those of the commands. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands);
 void camber_mvt_geometry_free(camber_mvt_geometry *geometry);
 

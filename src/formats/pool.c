@@ -33,7 +33,7 @@ void camber_pool_free(camber_pool *pool) {
     *pool = (camber_pool){0};
 }
 
-/* Adds a block behind the current one, with at least this many bytes. */
+/* Inserts a block with at least this many bytes after the current one. */
 static bool add_block(camber_pool *pool, size_t size_bytes) {
     size_t wanted = pool->total_bytes > FIRST_BYTES ? pool->total_bytes : FIRST_BYTES;
     wanted = wanted > size_bytes ? wanted : size_bytes;

@@ -1,5 +1,5 @@
-/* Memory for messages of vector tiles: freed all at once, and limited, since a few bytes of a hostile tile can ask
- * for megabytes. */
+/* Memory for the messages of vector tiles. All of it is freed at once, and its size is limited, because a few bytes of
+ * a malicious tile can ask for megabytes. */
 #ifndef CAMBER_FORMATS_POOL_H
 #define CAMBER_FORMATS_POOL_H
 
@@ -12,12 +12,12 @@ typedef struct camber_pool_block camber_pool_block;
 typedef struct camber_pool {
     camber_context *context;
     size_t limit_bytes;
-    camber_pool_block *blocks, *current; /* the first, and the one in use */
-    size_t used_bytes;                   /* used bytes of the current block */
-    size_t total_bytes;                  /* size of all blocks */
-    bool exhausted;                      /* something was refused since the last reset: the limit, or memory */
+    camber_pool_block *blocks, *current; /* the first block, and the one in use */
+    size_t used_bytes;                   /* of the current block */
+    size_t total_bytes;                  /* of all blocks */
+    bool exhausted; /* a request was refused since the last reset, by the limit or for lack of memory */
     bool out_of_memory;
-    ProtobufCAllocator allocator; /* allocates from this pool; freed memory stays until a reset */
+    ProtobufCAllocator allocator; /* allocates from this pool; freed memory stays in it until a reset */
 } camber_pool;
 
 /* A mark to reset the pool to. */
@@ -26,13 +26,13 @@ typedef struct camber_pool_mark {
     size_t used_bytes;
 } camber_pool_mark;
 
-/* The pool must not move. */
+/* The pool must not be moved afterwards. */
 void camber_pool_init(camber_pool *pool, camber_context *context, size_t limit_bytes);
 void camber_pool_free(camber_pool *pool);
-/* NULL where refused; memory that ran out is logged. */
+/* Returns NULL if the request is refused. Running out of memory is logged. */
 void *camber_pool_alloc(camber_pool *pool, size_t size_bytes);
 camber_pool_mark camber_pool_here(const camber_pool *pool);
-/* Frees all that was allocated since the mark; blocks stay for later use. */
+/* Frees everything that was allocated since the mark. The blocks stay for later use. */
 void camber_pool_reset(camber_pool *pool, camber_pool_mark mark);
 
 #endif

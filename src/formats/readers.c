@@ -1,5 +1,5 @@
-/* The table of readers: who reads a file. The first that knows it and reads what is asked of it does; it may leave the
- * file to those after it. */
+/* The table of readers, which decides who reads a file. The first reader that knows the format and supports what is
+ * asked for reads it, but may decline and leave the file to those after it. */
 #include "features/features.h"
 #include "formats/gdal.h"
 #include "formats/tile_reader.h"
@@ -12,7 +12,7 @@ static const camber_reader *const readers[] = {&camber_osm_reader, &camber_tile_
 
 enum { READERS = sizeof readers / sizeof *readers };
 
-/* GDAL knows all, so there is one. */
+/* GDAL takes any file, so there always is one. */
 static const camber_reader *find_reader(const camber_source_desc *desc) {
     size_t i = 0;
     while (i + 1 < READERS && !camber_reader_takes(readers[i], desc))
@@ -56,7 +56,7 @@ static bool has_format(const camber_reader *reader, const char *name, size_t *co
     return false;
 }
 
-/* GDAL's come first, then those that it does not read. */
+/* GDAL's formats come first, then those that it does not read. */
 const char *camber_format_list(size_t n) {
     const camber_reader *last = readers[READERS - 1];
     const char *name = last->format(n);

@@ -4,18 +4,19 @@
 
 static const double MOST_TILES = 65536;
 
-/* The tolerance, in tiles, at which a view that ends on a border does not see the tile behind it. */
+/* A view that ends on a tile's border, within this tolerance in tiles, does not see the tile beyond it. */
 static const double SLACK = 1e-6;
 
 typedef struct grid {
     const camber_tile_cover *cover;
-    double side;                       /* the world's width in tiles */
-    double west, north, columns, rows; /* the tiles that may be seen; west may be negative */
+    double side;                       /* the width of the world in tiles */
+    double west, north, columns, rows; /* the tiles that may be visible; west may be negative */
     double wanted[4];                  /* bounds in tiles */
 } grid;
 
-/* Whether a tile lies beyond a side of the quadrangle; the box of tiles looked at is the quadrangle's own. */
-static bool is_beside(const grid *g, double column, double row) {
+/* Whether a tile is wholly on the outer side of one of the quadrangle's sides. The quadrangle's bounding box was tested
+ * before. */
+static bool is_outside(const grid *g, double column, double row) {
     const double *c = g->cover->corners;
     double area = 0;
     for (int i = 0; i < 4; i++) {
@@ -36,13 +37,13 @@ static bool is_beside(const grid *g, double column, double row) {
     return false;
 }
 
-/* Whether the view sees the tile. Bounds have no copies of the world: a tile of the next world is compared in the
- * first. */
+/* Whether the view sees the tile. Bounds are not repeated with the world, so a tile in another copy of the world is
+ * compared by its place in the first. */
 static bool is_seen(const grid *g, double column, double row) {
     const double at = column - floor(column / g->side) * g->side;
     return column >= g->west && column < g->west + g->columns && row >= g->north && row < g->north + g->rows &&
            at < g->wanted[2] && at + 1 > g->wanted[0] && row < g->wanted[3] && row + 1 > g->wanted[1] &&
-           !is_beside(g, column, row);
+           !is_outside(g, column, row);
 }
 
 static unsigned open_sides(const grid *g, double column, double row) {
@@ -59,7 +60,8 @@ static void find_grid(grid *g) {
     }
     g->west = floor(low[0] + SLACK);
     g->columns = ceil(high[0] - SLACK) - g->west;
-    /* The view is as wide as the world or wider: each tile is listed once, in the world of the middle. */
+    /* The view is at least as wide as the world, so each tile is listed once, in the copy of the world around the
+     * view's middle. */
     if (high[0] - low[0] >= g->side) {
         g->west = floor((low[0] + high[0]) / 2 / g->side) * g->side;
         g->columns = g->side;
@@ -80,7 +82,7 @@ camber_status camber_tile_cover_list(camber_context *context, const camber_tile_
     camber_tile_address *made = camber_alloc(context, (size_t)(g.columns * g.rows) + 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    /* Columns west of the first world are those of a world further east. */
+    /* Columns west of the first world get the numbers of a copy further east. */
     const double worlds = fmax(ceil(-g.west / g.side), 0) * g.side;
     *count = 0;
     for (double row = g.north; row < g.north + g.rows; row++)

@@ -1,8 +1,8 @@
-/* Reads the tiles of a set into features, and a file of tiles as a whole.
+/* Reads tiles of a set into features, or a whole file of tiles.
  *
  * Input: an open set, and the addresses of the tiles to read. Output: features whose lines are joined across borders,
- * and counts of what was found, lost and damaged. For a file without a style of its own the layer with roads is
- * chosen by the names that common schemas give to it.
+ * and counts of tiles found, lost and damaged. If the style does not name the layers of a file, the layer with roads is
+ * chosen by the names that common schemas use for it.
  */
 #include "formats/tile_reader.h"
 #include "archive/tile_schema.h"
@@ -88,9 +88,9 @@ typedef struct input {
     int zoom;
     camber_tile_address *addresses;
     size_t address_count;
-    const char **layers; /* the layers to read */
+    const char **layers; /* the names of the layers to read */
     size_t layer_count;
-    char *layer; /* the one of them that the style does not name. NULL: it names all */
+    char *layer; /* the one of them that the style does not name. NULL: it names all of them */
 } input;
 
 /* Lists every tile of the highest zoom. */
@@ -125,7 +125,7 @@ static camber_status fail_damaged(const input *self, const camber_mvt_stats *sta
                        self->desc->path, stats->damage);
 }
 
-/* Lists the layers by looking through all tiles, where the set does not tell them. */
+/* Finds out which layers there are by examining all tiles, if the set does not list them. */
 static camber_status look_for_layers(input *self) {
     camber_context *context = self->context;
     reader look = {.context = context, .bytes.context = context};
@@ -156,7 +156,8 @@ static camber_status look_for_layers(input *self) {
     return status;
 }
 
-/* The names that the common schemas give to roads: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER. */
+/* Finds the layer with roads by the names in common schemas: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER.
+ */
 static const char *find_roads(const input *self) {
     static const char *const names[] = {"transportation", "roads",   "road",     "streets",
                                         "street",         "highway", "highways", "tiger"};
@@ -189,7 +190,7 @@ static camber_status fail_layer(const input *self) {
     if (self->desc->layer)
         return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no layer \"%s\"; choose one of: %s",
                            self->desc->path, self->desc->layer, used ? names : "(it has no layers)");
-    return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no layer with lines; its layers are: %s",
+    return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no layer has lines; its layers are: %s",
                        self->desc->path, used ? names : "(none)");
 }
 
@@ -203,7 +204,7 @@ static bool holds_drawn(const input *self, size_t i) {
            json_is_true(json_object_get(json_array_get(self->set->layers, i), "lines"));
 }
 
-/* Tiles of no schema: the first layer with lines, or all, where the style draws what it does not know. */
+/* Chooses layers of tiles without a schema: the first with lines, or all if the style draws unknown data. */
 static camber_status choose_all(input *self) {
     const size_t count = json_array_size(self->set->layers);
     camber_free(self->context, self->layers);
@@ -233,13 +234,13 @@ static camber_status choose_one(input *self) {
     return CAMBER_OK;
 }
 
-/* A style that draws what it does not know goes by the names of layers only where they are those of a schema: anyone
- * may call a layer roads. */
+/* A style that draws unknown data trusts the names of layers only if they belong to a known schema, because anyone may
+ * call a layer "roads". */
 static bool has_schema(const input *self) {
     return !self->features->schema->wants_plain || camber_tile_schema_of_layers(self->set->layers);
 }
 
-/* Lists the layers of the set that the style's layers name. */
+/* Lists the layers of the set that the style names. */
 static void list_named(input *self) {
     const camber_schema *schema = self->features->schema;
     for (size_t i = 0; i < schema->drawn_source_layer_count; i++) {
@@ -290,7 +291,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
     return camber_features_read_tiles(self->features, &reading, result);
 }
 
-/* Fails where the file as a whole gave nothing that can be drawn. */
+/* Fails if the whole file contained nothing that can be drawn. */
 static camber_status check_result(const input *self, const camber_mvt_stats *stats,
                                   const camber_features_mark *before) {
     if (self->features->feature_count > before->feature_count)
@@ -300,8 +301,8 @@ static camber_status check_result(const input *self, const camber_mvt_stats *sta
     if (stats->skipped_features == 0)
         return CAMBER_OK;
     return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                       "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
-                       "--layer, or a style that draws outlines of polygons",
+                       "%s: no lines; its %zu features are points, areas or empty; choose another --layer, or a style "
+                       "that draws outlines of polygons",
                        self->desc->path, stats->skipped_features);
 }
 
@@ -313,7 +314,7 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
     features->stats.damaged_features += stats->damaged_features;
 }
 
-/* Warns of losses. Points and areas are not mentioned as such: nobody asked for them. */
+/* Warns about losses. Points and areas are not mentioned, because nobody asked for them. */
 static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,

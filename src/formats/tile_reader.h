@@ -1,4 +1,4 @@
-/* Reads tiles of a set into features, whose lines are joined across the tiles' borders. */
+/* Reads tiles of a set into features and joins their lines across the tiles' borders. */
 #ifndef CAMBER_FORMATS_TILE_READER_H
 #define CAMBER_FORMATS_TILE_READER_H
 
@@ -11,20 +11,21 @@ typedef struct camber_tile_reading {
     int zoom;
     const camber_tile_address *addresses;
     size_t address_count;
-    camber_mvt_desc mvt; /* tiles are filled in here */
+    camber_mvt_desc mvt; /* camber_features_read_tiles sets its stitcher */
 } camber_tile_reading;
 
 typedef struct camber_tile_result {
     camber_mvt_stats stats;
-    size_t found; /* tiles that are there */
-    size_t lost;  /* those of them that are damaged and give nothing */
+    size_t found; /* tiles that exist */
+    size_t lost;  /* those of them that are damaged and give no features */
 } camber_tile_result;
 
-/* Adds features and their polylines to features->source. Where it fails, the caller resets the set. */
+/* Adds features and their polylines, with features->source as their source. If this fails, the caller resets the set.
+ */
 camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
                                          camber_tile_result *result);
-/* Reads files that have all their tiles in one: MBTiles, PMTiles. It leaves filters to GDAL, and folders, which it
- * opens tile by tile. */
+/* Reads files that contain all their tiles: MBTiles, PMTiles. Leaves filters to GDAL, and also folders, whose tiles
+ * GDAL opens one by one. */
 extern const camber_reader camber_tile_file_reader;
 
 #endif

@@ -1,10 +1,10 @@
-/* Reads a layer by its index, for a region.
+/* Reads a layer by its spatial index, for a region.
  *
- * Input: a layer whose format has a spatial index, and a set with a region. Output: the features that touch the region,
- * whole, and those outside that decide how they are drawn (source/frontier.c), in the order of the file.
+ * Input: a layer whose format has a spatial index, and a set with a region. Output: the complete features that touch
+ * the region, and those outside that affect how they are drawn (features/frontier.c), in the order of the file.
  *
- *     1  the region's box in the layer's own coordinates, from edges with points between their ends
- *     2  lines that jump over the antimeridian lie elsewhere in the index: they cross the middle of the world there
+ *     1  the region's box in the layer's own coordinates, found from points along its edges
+ *     2  boxes in the middle of the world, because a line that jumps over the antimeridian crosses it in the index
  *     3  boxes around the points that the frontier asks for, until it asks for none */
 #include "gdal/vector_file.h"
 
@@ -14,12 +14,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Drivers whose features are numbered in the order in which they are read without an index. */
+/* Drivers that number features in the order in which they are read without an index. */
 static const char *const drivers[] = {"FlatGeobuf", "GPKG", "ESRI Shapefile"};
 
-/* Points that are asked for are grouped by cells, so many of them to the longer side of the region. */
+/* Points that are asked for are grouped into cells. The longer side of the region has this many. */
 static const double CELLS = 8.0;
-/* Boxes are wider by these shares of their coordinates and of their sides: for rounding, and for curved edges. */
+/* Boxes are enlarged by a fraction of their coordinates, for rounding, and by a fraction of their sides, for curved
+ * edges. */
 static const double ROUNDING = 1e-9, BULGE = 0.02;
 enum { EDGE_POINTS = 41, FIRST_SLOTS = 1024 };
 
@@ -27,17 +28,17 @@ typedef struct box_reader {
     const camber_box_reading *from;
     camber_context *context;
     camber_features *features;
-    OGRCoordinateTransformationH to_layer; /* NULL: degrees or metres */
+    OGRCoordinateTransformationH to_layer; /* NULL: the layer is in degrees or metres */
     size_t first_polyline, first_feature;
-    camber_frontier *frontier; /* NULL: all that is found is wanted */
-    bool split_only;           /* only lines that are split at the antimeridian are wanted */
+    camber_frontier *frontier; /* NULL: every feature found is wanted */
+    bool split_only;           /* only lines that were split at the antimeridian are wanted */
     int64_t *keys;             /* by feature of the set: its number in the file */
     size_t key_capacity;
-    int64_t *taken; /* a hash table of numbers; -1: free. A power of two, at most half in use */
+    int64_t *taken; /* hash table of feature numbers; -1: free. A power of two, at most half in use */
     size_t slot_count, taken_count;
 } box_reader;
 
-/* ---- Where the layer lies ---- */
+/* ---- The extent of the layer ---- */
 
 static bool has_index(const camber_box_reading *reading) {
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(reading->dataset));
@@ -51,8 +52,8 @@ static double half_world_of(camber_projection_kind kind) {
     return kind == CAMBER_PROJECTION_METRES ? 3.14159265358979323846 * CAMBER_MERCATOR_RADIUS_M : 180.0;
 }
 
-/* Finds out whether the layer lies in one world, as most do: *wide says whether a line may jump over the antimeridian.
- * A layer without a coordinate system is read whole, for then the numbers themselves tell whether they are degrees. */
+/* Finds out whether the layer is within one world, as most are. *wide: a line may cross the antimeridian. A layer
+ * without a coordinate system is read as a whole, because only its numbers show whether they are degrees. */
 static bool lies_in_world(const camber_box_reading *reading, bool *wide) {
     OGREnvelope box;
     if (!reading->has_srs || OGR_L_GetExtent(reading->layer, &box, FALSE) != OGRERR_NONE)
@@ -72,8 +73,8 @@ static bool lies_in_world(const camber_box_reading *reading, bool *wide) {
            !(*wide && reading->lines->projection == CAMBER_PROJECTION_TRANSFORM);
 }
 
-/* A box of the world in the layer's coordinates, a little wider. false: it has none there. Beyond Web Mercator's limit
- * all latitudes are one place. */
+/* Converts a box of the world to the layer's coordinates, slightly enlarged. Returns false if that is not possible. All
+ * latitudes beyond Web Mercator's limit are one place. */
 static bool find_box(const box_reader *self, const camber_region *part, OGREnvelope *box) {
     const camber_feature_lines *lines = self->from->lines;
     double west, south, east, north;
@@ -104,7 +105,7 @@ static bool find_box(const box_reader *self, const camber_region *part, OGREnvel
     return true;
 }
 
-/* ---- Features, each once ---- */
+/* ---- Features, each only once ---- */
 
 static size_t find_slot(const box_reader *self, int64_t number) {
     size_t slot = (size_t)camber_mix(0, (uint64_t)number) & (self->slot_count - 1);
@@ -137,7 +138,7 @@ static bool take(box_reader *self, int64_t number) {
     return true;
 }
 
-/* Whether what was added is wanted. */
+/* Whether the features that were added since the mark are wanted. */
 static bool is_wanted(const box_reader *self, const camber_features_mark *before, size_t splits) {
     const camber_features *f = self->features;
     if (self->split_only)
@@ -173,7 +174,8 @@ static camber_status add(box_reader *self, OGRFeatureH feature) {
     return CAMBER_OK;
 }
 
-/* Reads the features of a box that are wanted. *served: false where the layer's system has no such box. */
+/* Reads the wanted features of a box. *served: false if the box cannot be expressed in the layer's coordinate system.
+ */
 static camber_status read_box(box_reader *self, const camber_region *part, bool *served) {
     OGREnvelope box;
     camber_status status = CAMBER_OK;

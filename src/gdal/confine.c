@@ -1,7 +1,7 @@
-/* Limits GDAL to the file it reads. By itself it would follow what files say, to servers and to other files.
+/* Confines GDAL to the file that it reads. By default it follows references in files to servers and to other files.
  *
- * Only drivers are allowed whose files hold their data themselves, or in the other files of their format. Fetching from
- * the network is refused, unless the context's access allows it.
+ * Only drivers whose files contain their data, or store it in other files of their format, are allowed. Network access
+ * is refused unless the context allows it.
  */
 #include "gdal/vector_file.h"
 
@@ -13,9 +13,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Drivers of files; not of programs, servers or descriptions of other files. A driver that is not listed needs
- * access to the network: GDAL grows new drivers, and those that read by Xerces (NAS, Interlis) fetch what a DOCTYPE
- * names. */
+/* Drivers for files, as opposed to programs, servers or descriptions of other files. A driver that is not listed here
+ * requires network access, because new versions of GDAL bring new drivers, and those that parse with Xerces (NAS,
+ * Interlis) fetch whatever a DOCTYPE names. */
 static const char *const file_drivers[] = {
     "OSM",    "GeoJSON",      "GeoJSONSeq", "ESRIJSON",      "TopoJSON",  "JSONFG",   "ESRI Shapefile",
     "GPKG",   "SQLite",       "FlatGeobuf", "MBTiles",       "MVT",       "PMTiles",  "GML",
@@ -28,7 +28,7 @@ static const char *const file_drivers[] = {
     "VICAR",  "JP2OpenJPEG",  "BAG",        "FITS",          "Memory",
 };
 static const char *const databases[] = {"GPKG", "SQLite", "MBTiles"};
-/* Drivers whose files name other files. */
+/* Drivers for files that name other files. */
 static const char *const describing_drivers[] = {"OGR_VRT", "VRT", "GDALG", "GTI", "GMLAS", "PDS4", "OGR_PDS"};
 
 static bool is_in(const char *name, const char *const *list, size_t count) {
@@ -65,8 +65,8 @@ char **camber_gdal_drivers(const camber_context *context, const char *path) {
     return names;
 }
 
-/* GDAL opens a file to ask a driver that cannot tell by the file's beginning; so only drivers that can tell are
- * asked. */
+/* If a driver cannot recognise its files by their first bytes, GDAL opens the file to ask it. So only drivers that can
+ * are asked. */
 const char *camber_gdal_refused(const camber_context *context, const char *path) {
     static const char *const asked[] = {"OGR_VRT",    "GMLAS", "PDS4",          "OGR_PDS", "WFS", "OAPIF",
                                         "PostgreSQL", "MySQL", "Elasticsearch", "CSW",     NULL};
@@ -93,8 +93,8 @@ static bool has_word(const char *text, const char *word) {
     return false;
 }
 
-/* Reads the beginning of a file beside path. */
-static bool read_beside(const char *path, const char *ending, char *text, size_t size) {
+/* Reads the beginning of a file next to path. */
+static bool read_companion(const char *path, const char *ending, char *text, size_t size) {
     VSILFILE *file = VSIFOpenL(CPLResetExtension(path, ending), "rb");
     if (!file)
         return false;
@@ -107,16 +107,16 @@ bool camber_gdal_leads_elsewhere(const char *path) {
     char text[8192] = "";
     const char *ending = CPLGetExtension(path);
     if (EQUAL(ending, "shp") &&
-        (read_beside(path, "prj", text, sizeof text) || read_beside(path, "PRJ", text, sizeof text)))
+        (read_companion(path, "prj", text, sizeof text) || read_companion(path, "PRJ", text, sizeof text)))
         return camber_gdal_names_path(text);
     char kept[8];
     snprintf(kept, sizeof kept, "%s", ending);
-    if (EQUAL(kept, "tab") && read_beside(path, kept, text, sizeof text))
+    if (EQUAL(kept, "tab") && read_companion(path, kept, text, sizeof text))
         return has_word(text, "open table") || has_word(text, "isseamless");
     return false;
 }
 
-/* Examines each of GDAL's file systems that a path goes through, as in /vsizip//vsicurl/... */
+/* Checks each of GDAL's file systems in a path such as /vsizip//vsicurl/... */
 bool camber_gdal_is_remote(const char *path) {
     static const char *const systems[] = {"curl", "s3", "gs", "az", "adls", "oss", "swift", "hdfs", "webhdfs"};
     const char *at = path;
@@ -137,11 +137,11 @@ static const struct {
     const char *name, *value;
     bool is_of_network;
 } options[] = {
-    /* Or GDAL writes a .properties file beside a .gz. */
+    /* otherwise GDAL writes a .properties file next to a .gz */
     {"CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false},
-    /* The other parser fetches what a DOCTYPE names. */
+    /* the other parser fetches whatever a DOCTYPE names */
     {"GML_PARSER", "EXPAT", false},
-    /* GDAL's network file systems are limited to this one file, which nobody names. */
+    /* limits GDAL's network file systems to this one file, which nobody names */
     {"CPL_VSIL_CURL_ALLOWED_FILENAME", "/vsicurl/none", true},
 };
 

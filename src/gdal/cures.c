@@ -1,6 +1,6 @@
-/* Files that GDAL does not open, though their first bytes tell what they are, and what to do with them.
+/* Files that GDAL cannot open but whose first bytes show what they are, with advice on what to do.
  *
- * Input: the path of a file that turned out to be unreadable. Output: a row of the table, which has the cure.
+ * Input: the path of a file that could not be opened. Output: a row of the table, which has the advice.
  */
 #include "gdal/vector_file.h"
 
@@ -12,7 +12,7 @@
 #define MADE_AGAIN "make it again from its source with ogr2ogr -f FlatGeobuf OUT.fgb SOURCE"
 #define BY_OGR2OGR "convert it with ogr2ogr OUT.gpkg FILE of a GDAL that has it (conda: libgdal-arrow-parquet)"
 
-/* A row is a kind of file. */
+/* One row for each kind of file. */
 static const camber_gdal_cure cures[] = {
     {0, 3, "BZh", NULL, "compressed with bzip2, which GDAL cannot read", "draw it by bzcat ", PIPED},
     {0, 6, "\3757zXZ", NULL, "compressed with xz, which GDAL cannot read", "draw it by xzcat ", PIPED},

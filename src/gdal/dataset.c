@@ -1,4 +1,4 @@
-/* for stat64, which VSIStatBufL is */
+/* for stat64, on which VSIStatBufL is based */
 #define _LARGEFILE64_SOURCE
 
 #include "archive/database.h"
@@ -23,7 +23,7 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
-        /* GDAL's message becomes part of a sentence of ours. */
+        /* GDAL's message becomes part of one of our sentences. */
         size_t length = strlen(errors->message);
         while (length && strchr(". \n", errors->message[length - 1]))
             errors->message[--length] = 0;
@@ -59,7 +59,7 @@ static bool add_key(key_list *list, const char *key, size_t length) {
     return true;
 }
 
-/* Columns that are not keys, and that the driver makes on demand. */
+/* Columns that are not keys; the driver adds them only on demand. */
 static const char *const columns[] = {"osm_id",   "osm_version",   "osm_timestamp", "osm_uid",
                                       "osm_user", "osm_changeset", "other_tags",    "all_tags"};
 
@@ -72,12 +72,12 @@ static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
     return false;
 }
 
-/* OGR's own names for every feature's properties, which are not keys. */
+/* OGR's own names of properties of every feature, which are not keys. */
 static bool is_ogrs(const char *word, size_t length) {
     return (length == 3 && EQUALN(word, "FID", 3)) || (length > 4 && EQUALN(word, "OGR_", 4));
 }
 
-/* Every word of an attribute filter may be a key; SQL's own words do no harm as keys. */
+/* Every word of an attribute filter may be a key. Keywords of SQL do no harm as keys. */
 static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS]) {
     size_t length;
     const char *word;
@@ -87,7 +87,7 @@ static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS
     return true;
 }
 
-/* Replaces each mark of the template. */
+/* Replaces every occurrence of the mark in the template. */
 static char *fill_template(camber_context *context, const char *text, const char *mark, const char *keys) {
     const size_t mark_size = strlen(mark), keys_size = strlen(keys);
     size_t marks = 0;
@@ -108,7 +108,7 @@ static char *fill_template(camber_context *context, const char *text, const char
     return filled;
 }
 
-/* Writes each on a line of its own. */
+/* Writes the columns, one on each line. */
 static void list_columns(const bool named[COLUMNS], char text[256]) {
     size_t used = 0;
     for (size_t i = 0; i < COLUMNS; i++)
@@ -128,7 +128,7 @@ static camber_status write_conf(camber_dataset *dataset, const camber_schema *sc
     camber_context *context = dataset->context;
     key_list list = {.context = context};
     bool named[COLUMNS] = {false};
-    /* Never empty: the driver would fall back on nothing. */
+    /* The list must not be empty, or the driver would have no default to fall back on. */
     bool made = add_key(&list, "highway", strlen("highway"));
     for (size_t i = 0; made && i < schema->property_count; i++)
         made = add_key(&list, schema->properties[i], strlen(schema->properties[i]));
@@ -146,8 +146,8 @@ static camber_status write_conf(camber_dataset *dataset, const camber_schema *sc
     /* GDAL reads from our buffer, which lives as long as the dataset. */
     VSILFILE *file = VSIFileFromMemBuffer(dataset->conf_path, (GByte *)dataset->conf, strlen(dataset->conf), FALSE);
     if (!file)
-        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory for the OSM driver's configuration",
-                           dataset->desc->path);
+        return camber_fail(context, CAMBER_ERROR_MEMORY,
+                           "%s: not enough memory for the OSM driver's configuration; allow more", dataset->desc->path);
     VSIFCloseL(file);
     return CAMBER_OK;
 }
@@ -159,14 +159,14 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && EQUAL(text + length - end_length, end);
 }
 
-/* Whether this is not a path of the file system, as "PG:dbname=x" or standard input: only its driver knows whether
- * it exists. */
+/* Whether this is not a path of the file system, but something like "PG:dbname=x" or standard input, of which only the
+ * driver knows whether it exists. */
 static bool is_connection(const char *path) {
     const char *colon = strchr(path, ':'), *slash = strchr(path, '/');
     return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
 }
 
-/* Finds the file behind GDAL's own file systems and prefixes: /a/b.zip for /vsizip//a/b.zip/c.shp, a for
+/* Finds the real file in a path with GDAL's file systems and prefixes: /a/b.zip for /vsizip//a/b.zip/c.shp; a for
  * /vsisubfile/0_9,a and for GeoJSON:a. Files inside archives cannot be found. */
 static const char *find_file(const char *path) {
     while (STARTS_WITH(path, "/vsi")) {
@@ -184,19 +184,20 @@ static const char *find_file(const char *path) {
     return path;
 }
 
-/* Refuses databases with a log, which GDAL would merge into the file, and virtual tables, which may open other
- * files. */
+/* Refuses databases with a log, which GDAL would merge into the file, and those with virtual tables, which may open
+ * other files. */
 static camber_status check_database(camber_context *context, const char *path) {
     const camber_database_kind kind = camber_database_get_kind(path);
     if (kind == CAMBER_DATABASE_INTERRUPTED || kind == CAMBER_DATABASE_LOGGED)
-        return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: it has a log beside it, so a program is writing to it or was interrupted; close that "
-                           "program, or open the file once with write access (sqlite3 FILE .tables) to repair it",
-                           path);
-    if (!context->desc.access.vrt && camber_database_is_virtual(path))
         return camber_fail(
             context, CAMBER_ERROR_INPUT,
-            "%s: it has virtual tables, which may name other files; allow it (--allow-vrt) if you trust it", path);
+            "%s: has a log file next to it, so a program is writing to it or was interrupted; close that "
+            "program, or open the file once with write access (sqlite3 FILE .tables) to repair it",
+            path);
+    if (!context->desc.access.vrt && camber_database_is_virtual(path))
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: has virtual tables, which may name other files; allow it (--allow-vrt) if you trust it",
+                           path);
     return CAMBER_OK;
 }
 
@@ -208,7 +209,7 @@ static camber_status check_exists(camber_context *context, const char *path, boo
         return camber_fail(context, CAMBER_ERROR_INPUT,
                            "%s: is a network address; download the file, or allow network access (--allow-remote)",
                            path);
-    /* Devices and pipes may have no end. */
+    /* Devices and pipes may never end. */
     struct stat found;
     const char *file = find_file(path);
     if (!STARTS_WITH(path, "/vsistdin") && stat(file, &found) == 0 && !S_ISDIR(found.st_mode)) {
@@ -230,17 +231,17 @@ static camber_status check_exists(camber_context *context, const char *path, boo
     return camber_fail(context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
 }
 
-/* Fails for a format that is known but reaches beyond its file. */
+/* Fails for a format that is supported but refers to something outside its file. */
 static camber_status fail_driver(const camber_dataset *dataset, const char *driver) {
     const bool describes = camber_gdal_describes(driver);
     return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
                        describes ? "%s: is %s, which names other files; allow it (--allow-vrt) if you trust it"
-                                 : "%s: is %s, which reaches servers or programs; allow it (--allow-remote) if you "
+                                 : "%s: is %s, which accesses servers or programs; allow it (--allow-remote) if you "
                                    "trust it",
                        dataset->desc->path, driver);
 }
 
-/* Removes quotes from GDAL's message: it may quote any file that somebody named. */
+/* Removes quotations from GDAL's message, because they may come from any file that somebody named. */
 static void leave_out_quotes(char *message) {
     char *out = message;
     for (const char *at = message; *at; at++) {
@@ -257,7 +258,7 @@ static void leave_out_quotes(char *message) {
     *out = 0;
 }
 
-/* gdal_path: what GDAL was asked to open. */
+/* gdal_path: the path that GDAL was asked to open. */
 static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, bool directory) {
     const char *path = dataset->desc->path, *said = dataset->errors.message;
     VSIStatBufL about;
@@ -272,7 +273,8 @@ static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, b
         return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
     if (there && about.st_size == 0)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", path);
-    /* The beginning of standard input is read already, and a cure is for the file that is named. */
+    /* The beginning of standard input has already been consumed, and the advice is about the file that the user named.
+     */
     const camber_gdal_cure *cure =
         is_connection(gdal_path) || STARTS_WITH(path, "/vsi") ? NULL : camber_gdal_find_cure(gdal_path);
     if (cure)
@@ -291,7 +293,7 @@ static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, b
                        said);
 }
 
-/* The zoom of tiles: MBTiles say it; a directory of tiles is named by it. */
+/* Returns the zoom of tiles. MBTiles states it; the name of a directory of tiles is its zoom. */
 static int zoom_of(const camber_dataset *dataset) {
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), *text = NULL;
     if (EQUAL(driver, "MBTiles"))
@@ -303,13 +305,13 @@ static int zoom_of(const camber_dataset *dataset) {
     return end && *end == 0 && zoom >= 0 && zoom <= 30 ? (int)zoom : -1;
 }
 
-/* Whether this is a vector tile that GDAL cannot place on Earth: it places those whose path ends in zoom/column/row. */
+/* Whether this is a vector tile that GDAL cannot locate. It can locate tiles whose path ends in zoom/column/row. */
 static bool is_bare_tile(GDALDatasetH handle) {
     OGRLayerH layer = GDALDatasetGetLayer(handle, 0);
     return EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(handle)), "MVT") && layer && !OGR_L_GetSpatialRef(layer);
 }
 
-/* The path as GDAL wants it: a .gz goes through its decompressor, - is standard input. */
+/* Returns the path in the form that GDAL needs: a .gz goes through its decompressor, and - is standard input. */
 static char *gdal_path(camber_context *context, const char *path, bool directory) {
     const size_t size = strlen(path) + sizeof "/vsistdin/";
     char *made = camber_alloc(context, size, 1);
@@ -349,15 +351,15 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     options = CSLSetNameValue(options, "CONFIG_FILE", dataset->conf_path);
     if (unsorted)
         options = CSLSetNameValue(options, "USE_CUSTOM_INDEXING", "NO");
-    /* CLIP=NO: the stitcher cuts lines exactly where it joins them, and needs the buffer. */
+    /* CLIP=NO: the stitcher needs the buffer, because it cuts lines exactly where it joins them. */
     options = CSLSetNameValue(options, "CLIP", "NO");
-    /* GDAL must leave no file beside the one it reads. */
+    /* GDAL must not create files next to the one that it reads. */
     options = CSLSetNameValue(options, "WRITE_GFS", "NO");
     if (camber_database_get_kind(desc->path) == CAMBER_DATABASE_AT_REST)
         options = CSLSetNameValue(options, "IMMUTABLE", "YES");
     drivers = camber_gdal_drivers(context, path);
     CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
-    /* A driver warns of options that it does not know; warnings are dropped, failures collected. */
+    /* A driver warns about options that it does not know. Warnings are dropped, and failures are collected. */
     dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                  (const char *const *)drivers, (const char *const *)options, NULL);
     CPLPopErrorHandler();

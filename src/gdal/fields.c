@@ -1,14 +1,15 @@
-/* Finds the fields of a layer that the style reads, and reads a feature's attributes from them. */
+/* Finds the fields of a layer that the style reads, and reads the attributes of features from them. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <math.h>
 #include <string.h>
 
-/* Where vector tiles keep the id of a feature: OGR's name for that of the format, OSM's, anyone's, TIGER's. */
+/* Fields in which vector tiles store the id of a feature: OGR's name for the format's own id, OSM's, a common one,
+ * TIGER's. */
 static const char *const id_names[] = {"mvt_id", "osm_id", "id", "TLID"};
 
-/* OGR's own lookup ignores case, and a style's names do not: "Name" and "name" are two keys. */
+/* OGR's own lookup ignores case, but names in styles do not: "Name" and "name" are different keys. */
 static int find_field(OGRFeatureDefnH schema, const char *name) {
     const int count = OGR_FD_GetFieldCount(schema);
     for (int i = 0; i < count; i++)

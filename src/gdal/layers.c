@@ -1,10 +1,10 @@
-/* Chooses the layers of a file that are read: the one that is named, the roads, or all that hold lines. */
+/* Chooses which layers of a file are read: the one that is named, the roads, or all layers that contain lines. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <string.h>
 
-/* How many features are examined to learn what a layer of no declared type holds. */
+/* How many features are examined if a layer does not declare its geometry type. */
 enum { PEEKED_FEATURES = 32 };
 
 static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
@@ -31,7 +31,7 @@ static bool holds_drawn(OGRwkbGeometryType type, const camber_schema *schema) {
     }
 }
 
-/* Whether the first features are lines: tiles declare no types. */
+/* Whether the first features are lines. Needed for tiles, which declare no types. */
 static bool begins_with_lines(OGRLayerH layer) {
     bool found = false;
     OGR_L_ResetReading(layer);
@@ -48,7 +48,8 @@ static bool begins_with_lines(OGRLayerH layer) {
     return found;
 }
 
-/* The names that the common schemas give to roads: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER. */
+/* Finds the layer with roads by the names in common schemas: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER.
+ */
 static int find_roads(GDALDatasetH handle) {
     static const char *const names[] = {"transportation", "roads",   "road",     "streets",
                                         "street",         "highway", "highways", "tiger"};
@@ -92,7 +93,7 @@ static camber_status fail_layer(const camber_dataset *dataset) {
     if (dataset->desc->layer)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: no layer \"%s\"; choose one of: %s",
                            dataset->desc->path, dataset->desc->layer, count ? names : "(it has no layers)");
-    return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: no layer with lines; its layers are: %s",
+    return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: no layer has lines; its layers are: %s",
                        dataset->desc->path, count ? names : "(none)");
 }
 
@@ -117,7 +118,8 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_schema
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;
-    /* Closed ways are among the lines; what relations make of ways is in a layer of its own, and so are nodes. */
+    /* Closed ways are in the layer of lines. Areas that relations make of ways have a layer of their own, and so have
+     * nodes. */
     if (dataset->osm && !dataset->desc->layer && schema->wants_areas &&
         (one = find_layer(handle, "multipolygons")) >= 0)
         chosen[found++] = one;

@@ -1,7 +1,7 @@
-/* Turns the geometry of a feature that OGR read into polylines in world coordinates.
+/* Converts the geometry of a feature from OGR to polylines in world coordinates.
  *
- * Input: any OGR geometry and the coordinate system of its layer. Output: world lines (source/world_lines.h). Points
- * that are not numbers split the line.
+ * Input: any OGR geometry, and the coordinate system of its layer. Output: world lines (features/world_lines.h). Points
+ * that are not numbers split their line.
  */
 #include "gdal/vector_file.h"
 
@@ -9,13 +9,13 @@
 #include <math.h>
 #include <string.h>
 
-/* Deeper than any real collection; a file that nests deeper wants to exhaust the stack. */
+/* Deeper than any real collection. A file that nests deeper tries to exhaust the stack. */
 enum { MAX_DEPTH = 64 };
 
 /* ---- Projection of a layer ---- */
 
-/* Whether the first ordinate of a geographic system's data is the longitude; *known is false where the axes do
- * not say. */
+/* Whether the first ordinate in data with this geographic system is the longitude. *known is false if the axes do not
+ * say. */
 static bool longitude_first(OGRSpatialReferenceH srs, bool *known) {
     int count = 0;
     const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
@@ -31,7 +31,7 @@ static bool is_code(OGRSpatialReferenceH srs, const char *code) {
     return authority && own && strcmp(authority, "EPSG") == 0 && strcmp(own, code) == 0;
 }
 
-/* Whether this is WGS 84 by any of its names, CRS84 among them. */
+/* Whether this is WGS 84 under any of its names, including CRS84. */
 static bool is_wgs84(OGRSpatialReferenceH srs) {
     if (!OSRIsGeographic(srs))
         return false;
@@ -64,7 +64,7 @@ static camber_status transform_to_degrees(camber_feature_lines *lines, OGRSpatia
     OSRDestroySpatialReference(degrees);
     if (!lines->transform)
         return camber_fail(lines->context, CAMBER_ERROR_INPUT,
-                           "%s: its coordinate system \"%s\" cannot be turned into longitude and latitude; convert "
+                           "%s: its coordinate system \"%s\" cannot be converted to longitude and latitude; convert "
                            "the file to EPSG:4326",
                            name, OSRGetName(srs) ? OSRGetName(srs) : "unnamed");
     lines->projection = CAMBER_PROJECTION_TRANSFORM;
@@ -106,7 +106,7 @@ void camber_feature_lines_free(camber_feature_lines *lines) {
 
 /* ---- One line ---- */
 
-/* Adds the point of the file's ordinates. false: not a number. */
+/* Adds a point with the file's ordinates. Returns false if it is not a number. */
 static bool add_point(camber_feature_lines *lines, double east, double north) {
     if (!isfinite(east) || !isfinite(north))
         return false;
@@ -121,20 +121,20 @@ static bool add_point(camber_feature_lines *lines, double east, double north) {
     return true;
 }
 
-/* Fetches the line's ordinates to raw: count of x, then count of y. */
+/* Reads the line's ordinates to raw: count x values, then count y values. */
 static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t count) {
     if (!camber_world_lines_reserve(&lines->world, count) ||
         !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw))
         return false;
     double *x = lines->raw, *y = lines->raw + count;
     OGR_G_GetPoints(geometry, x, sizeof *x, y, sizeof *y, NULL, 0);
-    /* A point that PROJ cannot place comes back as infinite. */
+    /* PROJ returns infinity for a point that it cannot project. */
     if (lines->projection == CAMBER_PROJECTION_TRANSFORM)
         OCTTransform(lines->transform, (int)count, x, y, NULL);
     return true;
 }
 
-/* Whether the line fetched, which is closed, goes clockwise as seen. North is up in what was fetched. */
+/* Whether the line that was read, which is closed, goes clockwise as seen. North is up in its coordinates. */
 static bool goes_clockwise(const camber_feature_lines *lines, size_t count) {
     const double *x = lines->raw, *y = lines->raw + count;
     double area = 0.0;
@@ -153,8 +153,8 @@ static void turn_back(double *numbers, size_t count) {
     }
 }
 
-/* is_ring: it ends where it begins, also where the file leaves that out. clockwise: the direction that a ring is to
- * have as seen; below 0: as it is. */
+/* is_ring: the line ends where it begins, even if the file omits the last point. clockwise: the required direction of a
+ * ring as seen; negative: leave it as it is. */
 static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, bool is_ring, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {
@@ -238,7 +238,7 @@ static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH pol
     return CAMBER_OK;
 }
 
-/* Arcs become chords, by OGR's default of 4 degrees. */
+/* Arcs become chords, with OGR's default of 4 degrees each. */
 static camber_status collect_curve(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind,
                                    int depth) {
     OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, NULL);

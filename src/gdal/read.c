@@ -1,7 +1,7 @@
-/* Streams the features of a file that GDAL opens into a set of features.
+/* Reads the features of a file into a set of features with GDAL.
  *
- * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and weighed, or an
- * error after which the set is as before. This is the module's entry: camber_gdal.
+ * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and with importance,
+ * or an error, after which the set is unchanged. This file has the module's entry point: camber_gdal.
  */
 #include "features/gdal_calls.h"
 #include "gdal/vector_file.h"
@@ -15,14 +15,15 @@
 #include <string.h>
 
 static const double PROGRESS_MS = 50;
-/* The clock is read once in this many features. */
+/* The clock is read once for this many features. */
 enum { PROGRESS_FEATURES = 64 };
 
-/* A layer of OSM's driver that is read along with the lines: what relations make of ways, for its areas, or nodes. */
+/* A layer of the OSM driver that is read together with the lines: the areas that relations make of ways, or the nodes.
+ */
 typedef struct osm_layer {
     OGRLayerH handle;
     uint32_t index;
-    unsigned kinds; /* CAMBER_KIND_*: what is read of it */
+    unsigned kinds; /* CAMBER_KIND_*: the kinds that are read from it */
     camber_columns columns;
 } osm_layer;
 
@@ -34,27 +35,27 @@ typedef struct reader {
     const camber_source_desc *desc;
     camber_dataset dataset;
     camber_feature_lines lines;
-    camber_tile_stitcher *stitcher; /* NULL: no vector tiles */
+    camber_tile_stitcher *stitcher; /* NULL: the file is not vector tiles */
 
-    /* The layer being read. */
+    /* The layer that is being read. */
     OGRLayerH layer;
     uint32_t layer_index;
     camber_columns columns;
 
     camber_features_stats stats;   /* counts of this file */
-    char damage[512];              /* a message about the first damage */
-    size_t read;                   /* features of the layer so far */
+    char damage[512];              /* a message about the first damaged feature */
+    size_t read;                   /* features of this layer so far */
     osm_layer others[MOST_OTHERS]; /* other_count */
     size_t other_count;
     bool boxed;    /* the layer is read by its index, for a region */
-    bool failed;   /* OGR reported a failure with the last feature */
+    bool failed;   /* OGR reported a failure for the last feature */
     size_t passed; /* features of all layers so far */
     double shown_ms;
 } reader;
 
 /* ---- Set-up for a layer ---- */
 
-/* CAMBER_ERROR_ARGUMENT: the attribute filter does not fit the layer; nothing is logged then. */
+/* Returns CAMBER_ERROR_ARGUMENT without logging anything if the attribute filter does not fit the layer. */
 static camber_status begin_layer(reader *self, int index) {
     self->layer = GDALDatasetGetLayer(self->dataset.handle, index);
     OGRFeatureDefnH schema = OGR_L_GetLayerDefn(self->layer);
@@ -66,7 +67,7 @@ static camber_status begin_layer(reader *self, int index) {
     if (status != CAMBER_OK)
         return status;
     self->lines.kinds = camber_schema_kinds(self->features->schema, self->columns.unsorted);
-    /* A filter may read any field, so none is ignored then. */
+    /* A filter may read any field, so no field may be ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
     self->dataset.errors = (camber_gdal_errors){0};
@@ -82,7 +83,8 @@ static camber_status begin_other(reader *self, OGRLayerH layer) {
     if (strcmp(OGR_L_GetName(layer), "points") == 0)
         other->kinds = CAMBER_KIND_POINT;
     if (self->desc->where)
-        OGR_L_SetAttributeFilter(layer, self->desc->where); /* the lines tell whether it fits */
+        OGR_L_SetAttributeFilter(layer,
+                                 self->desc->where); /* whether the filter fits is decided by the layer of lines */
     camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(layer), &other->index);
     if (status == CAMBER_OK)
         status = camber_columns_find(&other->columns, self->features, OGR_L_GetLayerDefn(layer), false, false);
@@ -90,8 +92,8 @@ static camber_status begin_other(reader *self, OGRLayerH layer) {
     return status;
 }
 
-/* Tells the OSM driver what is read: it skips what belongs to its other layers, which is twice as fast. Its features of
- * all layers come in one stream. */
+/* Tells the OSM driver which layers are read. It then skips the others, which is twice as fast. Features of all layers
+ * come in one stream. */
 static camber_status begin_osm(reader *self, const int *layers, size_t count) {
     GDALDatasetH handle = self->dataset.handle;
     char names[64] = "";
@@ -108,8 +110,8 @@ static camber_status begin_osm(reader *self, const int *layers, size_t count) {
 
 /* ---- One feature ---- */
 
-/* Finds the tile that a feature comes from. OGR's drivers put it into the feature's number: column in the low bits,
- * then row, then the feature. Where that does not fit the coordinates, the middle of the feature decides. */
+/* Finds the tile from which a feature comes. OGR's drivers encode it in the feature's number: the column in the low
+ * bits, then the row, then the feature. If that contradicts the coordinates, the middle of the feature decides. */
 static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_feature *tile) {
     const int zoom = self->dataset.zoom;
     const double side = ldexp(1.0, zoom);
@@ -123,7 +125,7 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     const GIntBig number = OGR_F_GetFID(feature), mask = ((GIntBig)1 << zoom) - 1;
     tile->column = (uint32_t)(number & mask);
     tile->row = (uint32_t)(number >> zoom & mask);
-    /* Buffers are half a tile wide at most. */
+    /* Buffers are at most half a tile wide. */
     if (number >= 0 && low[0] <= tile->column + 1.5 && high[0] >= tile->column - 0.5 && low[1] <= tile->row + 1.5 &&
         high[1] >= tile->row - 0.5)
         return;
@@ -131,7 +133,7 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
 }
 
-/* The other layer that a feature is of. NULL: it is of the one that is being read. */
+/* Returns the other layer to which a feature belongs, or NULL if it belongs to the current one. */
 static osm_layer *find_other(reader *self, OGRFeatureH feature) {
     for (size_t i = 0; i < self->other_count; i++)
         if (OGR_F_GetDefnRef(feature) == OGR_L_GetLayerDefn(self->others[i].handle))
@@ -165,7 +167,7 @@ static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_g
     return status;
 }
 
-/* Collects what a feature has of a kind. way: its geometry is the ring of an area, which is a line to OGR. */
+/* Collects the geometry of a kind from a feature. way: it is the ring of an area, which OGR takes for a line. */
 static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometry_kind kind, bool way) {
     camber_feature_lines *lines = &self->lines;
     if (kind != CAMBER_GEOMETRY_AREA)
@@ -173,14 +175,14 @@ static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometr
     const size_t invalid = lines->invalid_points, clamped = lines->world.clamped_points;
     const camber_status status =
         way ? camber_feature_lines_collect_ring(lines, geometry) : camber_feature_lines_collect(lines, geometry, kind);
-    if (lines->kinds & CAMBER_KIND_POLYGON) { /* then they were counted with the outlines */
+    if (lines->kinds & CAMBER_KIND_POLYGON) { /* they were already counted with the outlines */
         lines->invalid_points = invalid;
         lines->world.clamped_points = clamped;
     }
     return status;
 }
 
-/* failed: OGR reported a failure with this feature. */
+/* failed: OGR reported a failure for this feature. */
 static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
     camber_feature_lines *lines = &self->lines;
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
@@ -208,13 +210,13 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
 
 /* ---- The stream ---- */
 
-/* A shapefile gives a record that lies past the end of a cut file as a feature with a failure, one after the other:
- * that is a read error, and no damage to a feature. */
+/* If a shapefile is cut off, each record past its end comes as a feature with a failure. That is a read error, not
+ * damage to a feature. */
 static bool is_read_error(const camber_gdal_errors *errors) {
     return errors->number == CPLE_FileIO || strstr(errors->message, "fread(") != NULL;
 }
 
-/* The message names OSM_USE_CUSTOM_INDEXING; the driver's option is USE_CUSTOM_INDEXING. */
+/* The message mentions OSM_USE_CUSTOM_INDEXING; the option of the driver is USE_CUSTOM_INDEXING. */
 static bool is_unsorted(const camber_gdal_errors *errors) {
     return strstr(errors->message, "USE_CUSTOM_INDEXING=NO") != NULL;
 }
@@ -236,7 +238,7 @@ static void show_progress(reader *self, double fraction) {
     camber_progress(self->context, "reading", fraction);
 }
 
-/* Shows progress while OpenStreetMap's nodes are read, which are not features. */
+/* Reports progress while OpenStreetMap's nodes are read, which are not features. */
 static int CPL_STDCALL show_node_progress(double fraction, const char *message, void *user) {
     reader *self = user;
     (void)message;
@@ -259,8 +261,8 @@ static OGRFeatureH next_feature(reader *self, double *fraction) {
     return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, show_node_progress, self);
 }
 
-/* expected: features that the layer announces, below 0 where it does not know. *unsorted: start again with nodes in
- * no order; nothing is logged then. */
+/* expected: how many features the layer announces; negative if unknown. *unsorted: the caller must start again and
+ * allow nodes in any order; nothing is logged then. */
 static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) {
     camber_status status = CAMBER_OK;
     double fraction = -1;
@@ -292,7 +294,7 @@ static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) 
     return status;
 }
 
-/* ---- By the index ---- */
+/* ---- Reading by the index ---- */
 
 static camber_status next_of_box(void *user, OGRFeatureH *feature) {
     reader *self = user;
@@ -309,8 +311,8 @@ static camber_status add_of_box(void *user, OGRFeatureH feature) {
     return read_feature(self, feature, self->failed);
 }
 
-/* Reads the layer for the region of the set, if it can be done. Where that finds nothing but what is no line, the whole
- * layer tells what is wrong with it. */
+/* Reads the layer for the set's region, if that is possible. If only features without lines are found, the whole layer
+ * is read to find out what is wrong with it. */
 static camber_status read_by_box(reader *self) {
     const camber_box_reading reading = {.features = self->features,
                                         .lines = &self->lines,
@@ -336,7 +338,7 @@ static camber_status read_by_box(reader *self) {
 
 /* ---- Layers ---- */
 
-/* A FlatGeobuf that is cut off just ends; its header says how many features there are. */
+/* A FlatGeobuf that is cut off simply ends, but its header states how many features there are. */
 static camber_status check_count(reader *self, GIntBig expected) {
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(self->dataset.handle));
     if (self->desc->where || !EQUAL(driver, "FlatGeobuf") || expected < 0 || self->read >= (size_t)expected)
@@ -344,20 +346,20 @@ static camber_status check_count(reader *self, GIntBig expected) {
     return fail_stream(self, "its header announces more");
 }
 
-/* Fails for a filter that does not fit the layer. For OpenStreetMap every key is a field. */
+/* Fails for a filter that does not fit the layer. In OpenStreetMap data, every key is a field. */
 static camber_status fail_where(const reader *self) {
     char fields[512] = "keys of OpenStreetMap, as in highway = 'primary'";
     if (!self->dataset.osm)
         camber_where_list_fields(self->layer, fields, sizeof fields);
     return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
-                       "%s: the filter \"%s\" does not fit: %s; put values in single quotes, and compare what layer "
-                       "\"%s\" has: %s",
+                       "%s: the filter \"%s\" does not fit: %s; put values in single quotes, and use fields of layer "
+                       "\"%s\": %s",
                        self->desc->path, self->desc->where,
-                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse",
+                       self->dataset.errors.failures ? self->dataset.errors.message : "it cannot be parsed",
                        OGR_L_GetName(self->layer), fields);
 }
 
-/* A tag that no feature has is mostly one that is spelt wrong, or a value in double quotes. */
+/* A tag that no feature has is usually misspelt, or a value in double quotes. */
 static void warn_where(const reader *self) {
     char key[256];
     if (self->dataset.osm && camber_where_find_unknown(&self->dataset, self->layer, key, sizeof key))
@@ -399,7 +401,7 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
 
 /* ---- A file ---- */
 
-/* Warns of losses. Points and areas are not mentioned as such: nobody asked for them. */
+/* Warns about losses. Points and areas are not mentioned, because nobody asked for them. */
 static void warn_of_losses(const reader *self) {
     const camber_features_stats *stats = &self->stats;
     const char *path = self->desc->path;
@@ -419,14 +421,15 @@ static void warn_of_losses(const reader *self) {
                    stats->clamped_points);
 }
 
-/* Fails where the file as a whole gave nothing that can be drawn. */
+/* Fails if the whole file contained nothing that can be drawn. */
 static camber_status check_result(reader *self, size_t features_before) {
     const camber_feature_lines *lines = &self->lines;
     if (lines->strange_points > lines->raw_points / 2)
-        return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                           "%s: its coordinates are not degrees, and it names no other coordinate system; add one (a "
-                           ".prj beside a shapefile) or convert the file with ogr2ogr -s_srs EPSG:... -t_srs EPSG:4326",
-                           self->desc->path);
+        return camber_fail(
+            self->context, CAMBER_ERROR_INPUT,
+            "%s: its coordinates are not degrees, and it names no other coordinate system; add one (a "
+            ".prj next to a shapefile) or convert the file with ogr2ogr -s_srs EPSG:... -t_srs EPSG:4326",
+            self->desc->path);
     if (self->features->feature_count == features_before && !self->stitcher && self->stats.damaged_features)
         return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no feature can be read: %s; get the file again",
                            self->desc->path, self->damage);
@@ -434,10 +437,9 @@ static camber_status check_result(reader *self, size_t features_before) {
         return camber_fail(
             self->context, CAMBER_ERROR_INPUT,
             self->lines.kinds & CAMBER_KIND_AREA
-                ? "%s: no lines, no areas: %zu features have other geometry (points, nothing); name "
-                  "another --layer"
-                : "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
-                  "--layer, or a style that draws outlines of polygons",
+                ? "%s: no lines or areas; its %zu features are points or empty; choose another --layer"
+                : "%s: no lines; its %zu features are points, areas or empty; choose another --layer, or a style "
+                  "that draws outlines of polygons",
             self->desc->path, self->stats.skipped_features);
     return CAMBER_OK;
 }
@@ -495,7 +497,7 @@ static void add_stats(camber_features *features, const reader *self) {
     sum->antimeridian_splits += self->stats.antimeridian_splits;
 }
 
-/* One attempt; on failure the set is as before but for spare classes. */
+/* Tries to read the file once. On failure the set is unchanged, except for unused classes. */
 static camber_status read_once(camber_features *features, const camber_source_desc *desc, bool *unsorted) {
     reader self = {.context = features->context,
                    .features = features,
@@ -537,24 +539,24 @@ static camber_status read_once(camber_features *features, const camber_source_de
     return status;
 }
 
-/* Once for the whole process, as the list of drivers is the process's: GDAL is not safe where two threads register at
- * once, and says so. */
+/* Registers drivers once per process, because the list of drivers belongs to the process. GDAL's documentation says
+ * that registering in two threads at once is not safe. */
 static void register_drivers(void) {
     static pthread_once_t registered = PTHREAD_ONCE_INIT;
     pthread_once(&registered, GDALAllRegister);
 }
 
-/* OpenStreetMap's XML: GDAL says nothing of ways that it has left out since it had not met their nodes. */
+/* OpenStreetMap's XML: GDAL silently leaves out ways whose nodes it has not met yet. */
 static camber_status check_order(const camber_features *features, const camber_source_desc *desc, size_t before) {
     if (!camber_osm_xml_is_unordered(desc->path))
         return CAMBER_OK;
     if (features->feature_count == before)
-        return camber_fail(
-            features->context, CAMBER_ERROR_INPUT,
-            "%s: no lines: nodes come after the ways that use them, or ways after relations; sort it with osmium sort",
-            desc->path);
+        return camber_fail(features->context, CAMBER_ERROR_INPUT,
+                           "%s: no lines, because nodes come after the ways that use them, or ways after relations; "
+                           "sort it with osmium sort",
+                           desc->path);
     camber_log(features->context, CAMBER_LOG_WARNING,
-               "%s: nodes come after ways, or ways after relations; some may be left out: sort it with osmium sort",
+               "%s: nodes come after ways, or ways after relations, so some may be left out; sort it with osmium sort",
                desc->path);
     return CAMBER_OK;
 }
@@ -573,7 +575,7 @@ static camber_status read_file(camber_features *features, const camber_source_de
     camber_gdal_release(features->context, &confined);
     if (status == CAMBER_OK && confined.refused)
         camber_log(features->context, CAMBER_LOG_WARNING,
-                   "%s: refers to the network, and network access is off; what it needs from there is left out: allow "
+                   "%s: refers to the network, and network access is off; data from there is left out; allow "
                    "it (--allow-remote) if you trust it",
                    desc->path);
     return status == CAMBER_OK ? check_order(features, desc, before) : status;

@@ -1,4 +1,5 @@
-/* Attribute filters: finds the words of a filter that may be keys, and the key because of which nothing passes it. */
+/* Attribute filters: finds the words of a filter that may be keys, and the key that prevents everything from passing.
+ */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
@@ -24,7 +25,7 @@ const char *camber_where_next(const char **at, size_t *length) {
 
 /* ---- A key that no feature has ---- */
 
-/* Words of SQL, and types of CAST; a number is no key either. */
+/* Keywords of SQL, and types of CAST. A number is not a key either. */
 static bool is_sql(const char *word, size_t length) {
     static const char *const words[] = {"and",     "or",      "not",      "in",    "is",        "null", "like",
                                         "ilike",   "between", "escape",   "cast",  "as",        "true", "false",
@@ -44,7 +45,7 @@ typedef struct named_keys {
     size_t count;
 } named_keys;
 
-/* Fields of the layer that the filter names and no feature before had. */
+/* Lists fields of the layer that the filter names and that no feature had so far. */
 static void list_keys(const char *where, OGRFeatureDefnH schema, named_keys *keys) {
     size_t length;
     const char *word;
@@ -59,7 +60,7 @@ static void list_keys(const char *where, OGRFeatureDefnH schema, named_keys *key
     }
 }
 
-/* Takes out the keys that the feature has. */
+/* Removes the keys that the feature has. */
 static void cross_out(named_keys *keys, OGRFeatureH feature) {
     size_t left = 0;
     for (size_t i = 0; i < keys->count; i++)

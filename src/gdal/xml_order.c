@@ -1,4 +1,4 @@
-/* Looks at the names of elements alone, from front to back. */
+/* Only looks at the names of elements, from start to end. */
 #include "gdal/xml_order.h"
 
 #include "base/open_file.h"
@@ -7,7 +7,8 @@
 
 enum { MOST_NAME = 9 };
 
-/* The kind of the element that begins here, in the order in which they should come; 0: another. */
+/* Returns the kind of the element that begins here, numbered in the order in which kinds should come; 0: another
+ * element. */
 static int kind_of(const char *name) {
     static const char *const names[] = {"node", "way", "relation"};
     for (int i = 0; i < 3; i++) {
@@ -18,7 +19,7 @@ static int kind_of(const char *name) {
     return 0;
 }
 
-/* Passes over a comment, of which "<!--" was read. */
+/* Skips a comment, of which "<!--" was read. */
 static void skip_comment(FILE *file) {
     int dashes = 0;
     for (int c; (c = getc_unlocked(file)) != EOF && !(c == '>' && dashes >= 2);)
@@ -31,7 +32,8 @@ static bool find_disorder(FILE *file) {
     for (int c; (c = getc_unlocked(file)) != EOF;) {
         char name[MOST_NAME + 1] = "";
         int length = 0;
-        if (c != '<' && !is_xml && (c == 0 || !strchr(" \t\r\n\xef\xbb\xbf", c))) /* the last three begin UTF-8 */
+        if (c != '<' && !is_xml &&
+            (c == 0 || !strchr(" \t\r\n\xef\xbb\xbf", c))) /* the last three are the byte order mark of UTF-8 */
             return false;
         if (c != '<')
             continue;

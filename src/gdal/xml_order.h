@@ -1,11 +1,11 @@
-/* OpenStreetMap's XML, which GDAL reads: whether nodes, ways and relations come in the order that it needs. */
+/* Checks whether nodes, ways and relations in OpenStreetMap's XML come in the order that GDAL needs. */
 #ifndef CAMBER_GDAL_XML_ORDER_H
 #define CAMBER_GDAL_XML_ORDER_H
 
 #include "base/base.h"
 
-/* Whether a file is OpenStreetMap's XML with nodes behind ways, or ways behind relations: GDAL has not seen what these
- * name when it meets them. */
+/* Whether a file is OpenStreetMap's XML in which nodes come after ways, or ways after relations. GDAL then does not
+ * know yet what these refer to. */
 bool camber_osm_xml_is_unordered(const char *path);
 
 #endif

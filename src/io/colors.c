@@ -1,8 +1,8 @@
-/* Numbers the colours of a picture in one pass. Neighbours on a map are mostly equal, so the table is asked once a run
- * of equal pixels. */
+/* Numbers the colours of a picture in one pass. Neighbouring pixels on a map are mostly equal, so the table is searched
+ * only once per run of equal pixels. */
 #include "io/colors.h"
 
-enum { BITS_FIRST = 12 }; /* so few slots stay in the first cache; tables of fewer keys have fewer */
+enum { BITS_FIRST = 12 }; /* this many slots fit into the first-level cache; smaller tables have fewer */
 
 /* ---- Keys ---- */
 
@@ -22,10 +22,10 @@ void camber_key_table_free(camber_context *context, camber_key_table *table) {
     *table = (camber_key_table){0};
 }
 
-/* The slot that has the key, or the free one where it belongs. */
+/* Returns the slot of the key, or the free slot for it. */
 static size_t find_slot(const camber_key_table *table, uint32_t key) {
     const size_t mask = ((size_t)1 << table->bits) - 1;
-    size_t at = (key * 2654435761u) >> (32 - table->bits); /* Knuth's: the golden ratio of 2^32 */
+    size_t at = (key * 2654435761u) >> (32 - table->bits); /* Knuth's multiplicative hash: the golden ratio of 2^32 */
     while (table->slots[at] && table->keys[table->slots[at] - 1] != key)
         at = (at + 1) & mask;
     return at;
@@ -103,7 +103,7 @@ void camber_colors_free(camber_colors *colors) {
     *colors = (camber_colors){0};
 }
 
-/* Counts a run, and lets its pixels vote (Boyer and Moore): a colour with more than half of the votes stays. */
+/* Counts a run, and lets its pixels vote by the Boyer-Moore method: a colour with more than half of the votes wins. */
 static void count_run(camber_colors *c, size_t number, uint32_t color, uint32_t pixels) {
     c->counts[number] += pixels;
     if (c->colors[number] == color) {
@@ -116,7 +116,7 @@ static void count_run(camber_colors *c, size_t number, uint32_t color, uint32_t 
     }
 }
 
-/* Numbers one row; *color and *number are those of the pixel before. false: there are too many colours. */
+/* Numbers one row. *color and *number are those of the previous pixel. Returns false if there are too many colours. */
 static bool number_row(camber_colors *c, size_t width, uint32_t *color, size_t *number, uint16_t *numbers) {
     const uint32_t *row = c->row;
     for (size_t x = 0; x < width;) {
@@ -140,8 +140,8 @@ static bool number_row(camber_colors *c, size_t width, uint32_t *color, size_t *
     return true;
 }
 
-/* Numbers the colours with the lowest bits dropped. false: there are too many. Rows are copied first: out of a large
- * picture that is faster than to wait for each pixel. */
+/* Numbers the colours with their lowest bits dropped. Returns false if there are too many. Rows are copied first: in a
+ * large picture that is faster than waiting for memory at each pixel. */
 static bool number_colors(camber_colors *c, const camber_pixels *pixels, uint32_t forced) {
     const size_t width = pixels->width, stride = pixels->stride_bytes ? pixels->stride_bytes : 4 * width;
     uint32_t color = 0;

@@ -1,8 +1,8 @@
-/* DEFLATE by igzip, libdeflate and zlib.
+/* DEFLATE with igzip, libdeflate and zlib.
  *
- * igzip has the first level. Of the others libdeflate compresses whole blocks alone, and its blocks cannot be joined:
- * the last one is marked as such, at a bit that only decoding finds. So pictures that are too large to hold are
- * streams, and zlib's at these levels. */
+ * igzip compresses the first level. For the other levels, libdeflate can only compress whole blocks, which cannot be
+ * joined: the last block is marked by a bit whose position only decoding reveals. So pictures that are too large for
+ * memory are streams, which zlib compresses on these levels. */
 #include "io/deflate.h"
 #include "io/igzip.h"
 
@@ -22,18 +22,18 @@ static void zlib_free(void *user, void *block) {
 }
 
 static camber_status fail_memory(camber_context *context) {
-    return camber_fail(context, CAMBER_ERROR_MEMORY, "compression: out of memory; write a smaller picture");
+    return camber_fail(context, CAMBER_ERROR_MEMORY, "out of memory for compression; write a smaller picture");
 }
 
-/* Fails for want of memory alone. */
+/* Fails only if there is no memory. */
 static bool begin_zlib(camber_context *context, int level, z_stream *zlib) {
     *zlib = (z_stream){.zalloc = zlib_allocate, .zfree = zlib_free, .opaque = context};
     return deflateInit(zlib, level) == Z_OK;
 }
 
-/* As camber_igzip_compress. */
+/* See camber_igzip_compress. */
 static size_t compress_zlib(z_stream *zlib, camber_uncompressed *input, bool last, uint8_t *to, size_t room_bytes) {
-    zlib->next_in = (Bytef *)(uintptr_t)input->bytes; /* which zlib only reads */
+    zlib->next_in = (Bytef *)(uintptr_t)input->bytes; /* zlib only reads it */
     zlib->avail_in = (uInt)input->size_bytes;
     zlib->next_out = to;
     zlib->avail_out = (uInt)room_bytes;
@@ -46,7 +46,7 @@ static size_t compress_zlib(z_stream *zlib, camber_uncompressed *input, bool las
 
 struct camber_deflater {
     camber_context *context;
-    camber_igzip *igzip; /* NULL: these: */
+    camber_igzip *igzip; /* NULL: one of the following is used */
 #ifdef CAMBER_LIBDEFLATE
     struct libdeflate_compressor *compressor;
 #else
@@ -147,7 +147,7 @@ size_t camber_deflater_compress(camber_deflater *deflater, const uint8_t *from, 
 struct camber_deflate_stream {
     camber_context *context;
     camber_sink sink;
-    camber_igzip *igzip; /* NULL: zlib */
+    camber_igzip *igzip; /* NULL: zlib is used */
     z_stream zlib;
     uint8_t packed[STREAM_BYTES];
     size_t packed_bytes;
@@ -180,7 +180,7 @@ static bool give_packed(camber_deflate_stream *stream) {
     return size_bytes == 0 || stream->sink.write(stream->sink.user, stream->packed, size_bytes);
 }
 
-/* Compresses all of the input. Pieces are given away when they are full. */
+/* Compresses all of the input. Passes pieces on whenever they are full. */
 static bool compress_all(camber_deflate_stream *stream, camber_uncompressed input, bool last) {
     for (;;) {
         uint8_t *to = stream->packed + stream->packed_bytes;

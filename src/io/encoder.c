@@ -1,7 +1,7 @@
 /* Encodes whole pictures in memory: premultiplied RGBA8 becomes a file.
  *
- * A PNG has the fewest bytes that its colours need: a palette of 1, 2, 4 or 8 bits a pixel where 256 colours are
- * enough, else RGB, or RGBA where a pixel is not opaque. All rows are compressed as one block. */
+ * A PNG uses as few bits as its colours allow: a palette with 1, 2, 4 or 8 bits per pixel for up to 256 colours,
+ * otherwise RGB, or RGBA if some pixel is not opaque. All rows are compressed as one block. */
 #include "io/encoder.h"
 
 #include "io/colors.h"
@@ -14,13 +14,13 @@ enum { LEVEL_USUAL = 1, LEVEL_USUAL_PNG8 = 6, LEVEL_MOST = 9, ROWS_AHEAD = 8 };
 struct camber_encoder {
     camber_context *context;
     camber_encoder_desc desc;
-    camber_png_text *texts; /* copies: desc.texts */
+    camber_png_text *texts; /* copies of desc.texts */
     camber_deflater *deflater;
     camber_colors colors;
-    camber_quantizer *quantizer; /* png8's */
+    camber_quantizer *quantizer; /* for png8 */
     camber_palette palette;
-    uint8_t straight[CAMBER_PALETTE_MOST][4]; /* the palette as the file has it */
-    uint8_t *rows;                            /* before compression; WebP's are straight RGBA */
+    uint8_t straight[CAMBER_PALETTE_MOST][4]; /* the palette in the form of the file */
+    uint8_t *rows;                            /* before compression; for WebP straight RGBA */
     size_t row_capacity;
     camber_file_bytes file;
 };
@@ -46,8 +46,8 @@ uint32_t camber_encoding_get_longest_side(camber_encoding encoding) {
 camber_status camber_png_check(camber_context *context, int compression, const camber_png_text *texts,
                                size_t text_count) {
     if (compression < 0 || compression > LEVEL_MOST)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG compression of %d; it must be 1 to 9, or 0 for 1",
-                           compression);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "a PNG compression of %d; it must be 1 to 9, or 0 for the default, 1", compression);
     for (size_t i = 0; i < text_count; i++) {
         const size_t length = strlen(texts[i].key);
         if (length < 1 || length > 79)
@@ -63,8 +63,8 @@ static camber_status check_desc(camber_context *context, const camber_encoder_de
                            "this build has no %s; build camber with libwebp (Debian: libwebp-dev), or write a PNG",
                            name_of(desc->encoding));
     if (desc->quality < 0 || desc->quality > 100)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a quality of %d; it must be 1 to 100, or 0 for 80",
-                           desc->quality);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "a quality of %d; it must be 1 to 100, or 0 for the default, 80", desc->quality);
     return camber_png_check(context, desc->compression, desc->texts, desc->text_count);
 }
 
@@ -75,10 +75,11 @@ static camber_status check_size(const camber_encoder *self, const camber_pixels 
                            "a picture of %u x %u px as %s; each side must be 1 to %u", pixels->width, pixels->height,
                            name_of(self->desc.encoding), longest);
     if ((uint64_t)pixels->width * pixels->height > CAMBER_PIXELS_MOST)
-        return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
-                           "a picture of %u x %u px as %s, which is encoded as a whole; it may have %d px, so draw a "
-                           "smaller one, or write it as png",
-                           pixels->width, pixels->height, name_of(self->desc.encoding), CAMBER_PIXELS_MOST);
+        return camber_fail(
+            self->context, CAMBER_ERROR_ARGUMENT,
+            "a picture of %u x %u px as %s, which may have at most %d px; draw a smaller one, or write a "
+            "png",
+            pixels->width, pixels->height, name_of(self->desc.encoding), CAMBER_PIXELS_MOST);
     return CAMBER_OK;
 }
 
@@ -169,7 +170,7 @@ static bool is_opaque(const camber_pixels *pixels) {
     return true;
 }
 
-/* Rows of a tile lie far apart in a large picture, where no processor looks for the next one by itself. */
+/* Prefetches a row. In a large picture the rows of a tile are far apart, so processors do not prefetch them. */
 static void ask_for_row(const camber_pixels *pixels, size_t y) {
 #ifdef __GNUC__
     if (y < pixels->height)
@@ -184,18 +185,18 @@ static bool make_room(camber_encoder *self, size_t size_bytes) {
     return camber_grow(self->context, &self->rows, &self->row_capacity, size_bytes, 1);
 }
 
-/* Compresses the rows into their place in the file. */
+/* Compresses the rows directly into the file. */
 static bool put_rows(camber_encoder *self, size_t size_bytes) {
     camber_file_bytes *file = &self->file;
     const size_t most =
-        CAMBER_PNG_BEFORE_DATA + camber_deflater_bound(self->deflater, size_bytes) + CAMBER_PNG_BEHIND_DATA;
+        CAMBER_PNG_BEFORE_DATA + camber_deflater_bound(self->deflater, size_bytes) + CAMBER_PNG_AFTER_DATA;
     if (!camber_grow(self->context, &file->bytes, &file->capacity, file->size + most, 1))
         return false;
     uint8_t *chunk = file->bytes + file->size;
     const size_t packed =
         camber_deflater_compress(self->deflater, self->rows, size_bytes, chunk + CAMBER_PNG_BEFORE_DATA);
     camber_png_enclose_data(chunk, packed);
-    file->size += CAMBER_PNG_BEFORE_DATA + packed + CAMBER_PNG_BEHIND_DATA;
+    file->size += CAMBER_PNG_BEFORE_DATA + packed + CAMBER_PNG_AFTER_DATA;
     return true;
 }
 
@@ -219,7 +220,7 @@ static camber_status encode_true_color(camber_encoder *self, const camber_pixels
     return finish_png(self, head, row_bytes);
 }
 
-/* Packs places in the palette, depth bits each, the first in the highest bits. */
+/* Packs indices into the palette, depth bits each, with the first in the highest bits. */
 static void pack_row(const uint16_t *numbers, const uint8_t *places, size_t width, unsigned depth, uint8_t *row) {
     const size_t a_byte = 8 / depth;
     for (size_t x = 0; x < width; x += a_byte) {
@@ -244,7 +245,8 @@ static void make_index_rows(const camber_encoder *self, const camber_png_head *h
     }
 }
 
-/* Those that are not opaque come first, so that no others need an alpha in the file; order tells where each now is. */
+/* Moves colours that are not opaque to the front, so that the file needs no alpha for the others. order: the new index
+ * of each colour. */
 static void sort_palette(const camber_palette *palette, uint8_t straight[][4], uint8_t order[CAMBER_PALETTE_MOST]) {
     uint8_t at = 0;
     for (int opaque = 0; opaque < 2; opaque++)
@@ -259,14 +261,14 @@ static int depth_of(size_t color_count) {
     return color_count <= 2 ? 1 : color_count <= 4 ? 2 : color_count <= 16 ? 4 : 8;
 }
 
-/* Whether a palette saves bytes: not in pictures of hardly more pixels than colours. */
+/* Whether a palette saves bytes, which it does not if the picture has hardly more pixels than colours. */
 static bool is_worth_it(const camber_png_head *head) {
     const size_t indexed = camber_png_row_bytes(CAMBER_PNG_KIND_PALETTE, head->depth, head->width) * head->height;
     const size_t plain = camber_png_row_bytes(CAMBER_PNG_KIND_RGB, 8, head->width) * head->height;
     return indexed + 12 + 3 * head->palette_count <= plain;
 }
 
-/* The numbered colours as they are. */
+/* Uses the numbered colours as the palette. */
 static void take_colors(const camber_colors *colors, camber_palette *palette) {
     palette->count = colors->table.count;
     memcpy(palette->colors, colors->colors, sizeof *palette->colors * palette->count);

@@ -1,4 +1,4 @@
-/* The files of an encoder share these. */
+/* Shared by the files of the encoder. */
 #ifndef CAMBER_IO_ENCODER_H
 #define CAMBER_IO_ENCODER_H
 
@@ -6,22 +6,22 @@
 
 enum { CAMBER_WEBP_LONGEST_SIDE = 16383 };
 
-/* A file in memory, which keeps its room. */
+/* A file in memory. Its buffer is reused. */
 typedef struct camber_file_bytes {
     camber_context *context;
     uint8_t *bytes;
     size_t size, capacity;
-    bool refused; /* there was no memory for some bytes, and that has been logged */
+    bool refused; /* there was no memory for some bytes, which has been logged */
 } camber_file_bytes;
 
 bool camber_file_bytes_add(camber_file_bytes *file, const void *bytes, size_t size_bytes);
 
-/* Checks what goes into a PNG. Returns CAMBER_ERROR_ARGUMENT. */
+/* Checks the parameters of a PNG. Returns CAMBER_ERROR_ARGUMENT. */
 camber_status camber_png_check(camber_context *context, int compression, const camber_png_text *texts,
                                size_t text_count);
 
 bool camber_webp_is_built(void);
-/* Appends the picture as WebP to file. straight: room for as many pixels as there are. */
+/* Appends the picture to file as WebP. straight: scratch with room for all pixels. */
 camber_status camber_webp_encode(const camber_encoder_desc *desc, const camber_pixels *pixels, uint8_t *straight,
                                  camber_file_bytes *file);
 

@@ -1,4 +1,4 @@
-/* DEFLATE by ISA-L, where camber is built with it, and a way around its fault. */
+/* DEFLATE with ISA-L, if the build has it, and a workaround for a fault in it. */
 #include "io/igzip.h"
 
 #ifdef CAMBER_ISAL
@@ -8,7 +8,7 @@
 
 enum {
     LEVEL = 1,
-    ISAL_LEVEL = 2, /* bytes fewer than its level 1 by a hundredth, in the same time */
+    ISAL_LEVEL = 2, /* files are 1 % smaller than on its level 1, in the same time */
     FIRST_BYTES = 8,
 };
 
@@ -38,9 +38,10 @@ camber_status camber_igzip_create(camber_context *context, camber_igzip **igzip)
     return CAMBER_OK;
 }
 
-/* At a stream's first byte igzip (2.30 to 2.32; igzip_icf_body_h1_gr_bt.asm, .write_first_byte) puts a hash of its
- * state's address into its table of matches: the bytes would depend on where the state lies. The first bytes are given
- * alone, because the end of what it is given is compressed by another of its functions, which has no such fault. */
+/* At the first byte of a stream, igzip (2.30 to 2.32; igzip_icf_body_h1_gr_bt.asm, .write_first_byte) stores a hash of
+ * its state's address in its table of matches, so the output would depend on that address. Therefore the first bytes
+ * are passed separately, because the end of each input is compressed by another function, which does not have this
+ * fault. */
 static void compress_first(struct isal_zstream *stream) {
     const uint32_t rest = stream->avail_in - FIRST_BYTES;
     stream->avail_in = FIRST_BYTES;
@@ -53,7 +54,7 @@ static void compress_first(struct isal_zstream *stream) {
 size_t camber_igzip_compress(camber_igzip *igzip, camber_uncompressed *input, bool last, uint8_t *to,
                              size_t room_bytes) {
     struct isal_zstream *stream = &igzip->stream;
-    stream->next_in = (uint8_t *)(uintptr_t)input->bytes; /* which it only reads */
+    stream->next_in = (uint8_t *)(uintptr_t)input->bytes; /* igzip only reads it */
     stream->avail_in = (uint32_t)input->size_bytes;
     stream->next_out = to;
     stream->avail_out = (uint32_t)room_bytes;
@@ -68,7 +69,7 @@ size_t camber_igzip_compress(camber_igzip *igzip, camber_uncompressed *input, bo
     return room_bytes - stream->avail_out;
 }
 
-/* Huffman's codes take nine bits a byte at most, and each block has a head. */
+/* Huffman codes take at most nine bits per byte, and each block has a header. */
 size_t camber_igzip_bound(size_t size_bytes) {
     return size_bytes + size_bytes / 8 + 4096;
 }

@@ -1,5 +1,5 @@
-/* Reads and writes the interchange file of polylines in pixels: little-endian uint32 magic, n polylines, p points; n +
- * 1 uint32 offsets; p pairs of float32. A file is checked as a whole before anything of it is used. */
+/* Reads and writes the interchange format for polylines in pixels: little-endian uint32 magic, n polylines, p points; n
+ * + 1 uint32 offsets; p pairs of float32. The whole file is checked before any of it is used. */
 #include "lines/lines.h"
 
 #include <string.h>
@@ -23,16 +23,17 @@ static camber_status check_file(camber_context *context, const unsigned char *by
     const uint64_t n = get_u32(bytes + 4), p = get_u32(bytes + 8);
     const uint64_t wanted = 12 + 4 * (n + 1) + 8 * p;
     if (size_bytes != wanted)
-        return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: %zu bytes, but its header announces %llu; it is cut off or damaged, write it again",
-                           name, size_bytes, (unsigned long long)wanted);
+        return camber_fail(
+            context, CAMBER_ERROR_INPUT,
+            "%s: has %zu bytes, but its header announces %llu; it is cut off or damaged, so write it again", name,
+            size_bytes, (unsigned long long)wanted);
     uint32_t before = 0;
     for (uint64_t i = 0; i <= n; i++) {
         const uint32_t offset = get_u32(bytes + 12 + 4 * i);
         if (offset < before || offset > p || (i == 0 && offset != 0) || (i == n && offset != p))
             return camber_fail(
                 context, CAMBER_ERROR_INPUT,
-                "%s: offset %llu is %u, which does not ascend from 0 to %llu; it is damaged, write it again", name,
+                "%s: offset %llu is %u, but offsets must ascend from 0 to %llu; it is damaged, so write it again", name,
                 (unsigned long long)i, offset, (unsigned long long)p);
         before = offset;
     }
@@ -64,7 +65,7 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
     return CAMBER_OK;
 }
 
-/* Writes words little-endian, whatever the host's order is, a block at a time. */
+/* Writes words in little-endian order on any host, one block at a time. */
 static bool write_words(camber_sink sink, const void *words, size_t count) {
     unsigned char block[4096];
     const char *from = words;

@@ -1,5 +1,5 @@
-/* Writes a PNG of rows that come as they are drawn. Small pictures are held, and an encoder makes the file of the
- * whole. Large ones are a stream, of which no more than a row and what compressing needs are in memory. */
+/* Writes a PNG from rows that arrive as they are drawn. A small picture is kept in memory, and an encoder makes the
+ * file at the end. A large one is a stream, for which only one row and the compressor's state are in memory. */
 #include "io/deflate.h"
 #include "io/encoder.h"
 #include "io/png_chunks.h"
@@ -11,10 +11,10 @@ struct camber_png {
     camber_sink sink;
     uint32_t width, height, rows_left;
     camber_status failed; /* the first failure; nothing is written after it */
-    /* a small picture's: */
+    /* for a small picture: */
     camber_encoder *encoder;
-    uint8_t *rgba; /* the rows that have come */
-    /* a large one's: */
+    uint8_t *rgba; /* the rows so far */
+    /* for a large one: */
     camber_deflate_stream *stream;
     camber_png_kind kind;
     uint8_t *row;
@@ -104,10 +104,11 @@ camber_status camber_png_create(camber_context *context, const camber_png_desc *
 
 camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count) {
     if (png->failed != CAMBER_OK)
-        return png->failed; /* told when it failed */
+        return png->failed; /* logged when it failed */
     if (row_count > png->rows_left)
         return camber_fail(png->context, CAMBER_ERROR_IO,
-                           "PNG: %u rows, and it takes %u more; write those of its height", row_count, png->rows_left);
+                           "PNG: %u more rows, but it lacks only %u; write as many rows as its height", row_count,
+                           png->rows_left);
     const size_t row_bytes = 4 * (size_t)png->width;
     if (png->rgba)
         memcpy(png->rgba + row_bytes * (png->height - png->rows_left), rgba, row_bytes * row_count);
@@ -120,7 +121,7 @@ camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32
 
 camber_status camber_png_finish(camber_png *png) {
     if (png->failed != CAMBER_OK)
-        return png->failed; /* told when it failed */
+        return png->failed; /* logged when it failed */
     if (png->rows_left > 0)
         return camber_fail(png->context, CAMBER_ERROR_IO, "PNG: %u rows are missing; write them before the end",
                            png->rows_left);

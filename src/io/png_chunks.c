@@ -1,7 +1,7 @@
-/* The chunks that a PNG is made of, by its specification: length, type, data, CRC; and its rows.
+/* The chunks of a PNG as its specification defines them: length, type, data, CRC; and its rows.
  *
- * Rows have no filter. Maps are flat areas and thin lines of few colours, whose repetitions filters destroy: without
- * them files are a third smaller, and made in less time. */
+ * Rows are not filtered. Maps consist of flat areas and thin lines in few colours, whose repetitions filters would
+ * destroy. Without filters files are a third smaller, and are made in less time. */
 #include "io/png_chunks.h"
 
 #include "io/deflate.h"
@@ -37,7 +37,7 @@ static bool put_chunk(camber_sink sink, const char *type, const part *parts, siz
     return taken && put(sink, tail, sizeof tail);
 }
 
-/* Keyword, 0, no compression, its method, no language, no translated keyword, text. */
+/* The fields: keyword, 0, no compression, compression method, no language, no translated keyword, text. */
 static bool put_text(camber_sink sink, const camber_png_text *text) {
     static const uint8_t between[5] = {0};
     const part parts[] = {{text->key, strlen(text->key)}, {between, sizeof between}, {text->text, strlen(text->text)}};
@@ -59,7 +59,7 @@ static bool put_palette(camber_sink sink, const camber_png_head *head) {
 
 bool camber_png_put_head(camber_sink sink, const camber_png_head *head) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    static const uint8_t perceptual = 0; /* sRGB's rendering intent */
+    static const uint8_t perceptual = 0; /* the rendering intent of sRGB */
     uint8_t ihdr[13] = {0};
     put_u32(ihdr, head->width);
     put_u32(ihdr + 4, head->height);
@@ -112,7 +112,7 @@ void camber_png_make_row(camber_png_kind kind, const uint8_t *rgba, uint32_t wid
         camber_unpremultiply(rgba, width, row);
         return;
     }
-    for (size_t i = 0; i + 1 < width; i++) /* four bytes are one store; the fourth is the next pixel's */
+    for (size_t i = 0; i + 1 < width; i++) /* four bytes are stored at once; the fourth belongs to the next pixel */
         memcpy(row + 3 * i, rgba + 4 * i, 4);
     memcpy(row + 3 * (size_t)(width - 1), rgba + 4 * (size_t)(width - 1), 3);
 }

@@ -1,40 +1,40 @@
-/* A palette of up to 256 colours for a map. Input: its numbered colours with their counts; output: the palette, and
- * each colour's place in it.
+/* Chooses a palette of up to 256 colours for a map. Input: its numbered colours and their pixel counts. Output: the
+ * palette, and each colour's index in it.
  *
- * A map has few colours that were chosen and many that are mixtures of those by coverage, on the straight lines between
- * them. So first the flat colours, which many pixels have, get places of their own, and mixtures that hardly differ
- * from one become it. The other colours are gathered in cells of a few levels, and each cell takes the nearest colour
- * of the palette. The cell that adds most to the error then gives its own colour to the palette, until the error is
- * small; after that the cell that is farthest off does, until none is far off. At last a colour becomes the mean of the
- * cells that took it.
+ * A map has a few colours that its author chose, and many mixtures of them by coverage, on the straight lines between
+ * them. So flat colours, which many pixels have, get entries of their own first, and mixtures that hardly differ from
+ * one are replaced by it. The other colours are grouped into cells a few levels wide, and each cell takes the nearest
+ * palette entry. The cell that contributes most to the error becomes an entry, until the error is small; then the cell
+ * that is farthest from its entry does, until none is far away. Finally each entry becomes the mean of the cells that
+ * took it.
  *
- * All counts are whole numbers: the same on every machine. */
+ * All sums are integers, so the result is the same on every machine. */
 #include "io/quantize.h"
 
 enum {
-    FLAT_SHARE = 200,   /* a colour is flat if at least one pixel in so many has it */
-    NEAR_LEVELS = 2,    /* as far as this from a flat colour in each channel, of 255, a mixture becomes it */
-    CELL_DROP = 2,      /* bits: a cell is 4 levels wide */
-    MEAN_PERCENT = 10,  /* the four channels' squared differences, in the mean of all pixels, are to add up to 0.1 */
-    MEAN_COLORS = 80,   /* but no more colours than these are chosen for the mean */
-    SQUARES_MOST = 144, /* a cell's squared differences, at most: 12 levels */
+    FLAT_SHARE = 200,   /* a colour is flat if at least one in this many pixels has it */
+    NEAR_LEVELS = 2,    /* a mixture is replaced by a flat colour if all channels differ by at most this, out of 255 */
+    CELL_DROP = 2,      /* bits dropped: a cell is 4 levels wide */
+    MEAN_PERCENT = 10,  /* target for the mean over all pixels of the channels' squared differences, added up: 0.1 */
+    MEAN_COLORS = 80,   /* but only up to this many colours are chosen to reduce the mean */
+    SQUARES_MOST = 144, /* the largest sum of squared differences of a cell: 12 levels */
 };
 
 typedef struct cell {
     uint8_t color[4];
-    uint8_t place; /* in the palette */
+    uint8_t place; /* index in the palette */
     uint16_t number;
     uint32_t pixels;
-    uint32_t squares; /* the differences from the colour at its place */
+    uint32_t squares; /* sum of squared differences from its entry */
 } cell;
 
 struct camber_quantizer {
     camber_context *context;
     camber_key_table table;
     cell *cells;          /* CAMBER_KEYS_MOST */
-    uint64_t (*sums)[5];  /* of a cell: its colours by their pixels, and its pixels */
-    uint16_t *cell_of;    /* each colour's, or NO_CELL */
-    uint8_t *cell_places; /* in the palette */
+    uint64_t (*sums)[5];  /* by cell: sums of its colours, weighted by pixels, and its pixels */
+    uint16_t *cell_of;    /* by colour: its cell, or NO_CELL */
+    uint8_t *cell_places; /* by cell: index in the palette */
 };
 
 static const uint16_t NO_CELL = UINT16_MAX;
@@ -84,7 +84,7 @@ static bool is_flat(const camber_colors *colors, size_t number, uint64_t pixels)
     return color[3] == 0 || (uint64_t)FLAT_SHARE * colors->counts[number] > pixels;
 }
 
-/* Gives flat colours, and the transparent one, a place of their own. Fewer than FLAT_SHARE + 1 can be flat. */
+/* Gives entries to the transparent colour and to flat colours, of which there are at most FLAT_SHARE. */
 static void take_flat(camber_quantizer *self, const camber_colors *colors, camber_palette *palette) {
     const uint64_t pixels = count_pixels(colors);
     palette->count = 0;
@@ -102,7 +102,7 @@ static bool is_opaque(const uint8_t color[4]) {
     return color[3] == 255;
 }
 
-/* The flat colour that is as good as this one; none: palette->count. */
+/* Returns a flat colour that can replace this one, or palette->count if there is none. */
 static size_t find_near(const camber_palette *palette, const uint8_t color[4]) {
     size_t found = palette->count;
     int least = NEAR_LEVELS + 1;
@@ -130,7 +130,7 @@ static void add_to_cell(camber_quantizer *self, size_t number, const uint8_t col
     sums[4] += pixels;
 }
 
-/* Gathers what is not flat, nor near to it, in cells. */
+/* Groups the colours that are neither flat nor close to a flat one into cells. */
 static size_t make_cells(camber_quantizer *self, const camber_colors *colors, camber_palette *palette) {
     camber_key_table_clear(&self->table);
     for (size_t i = 0; i < colors->table.count; i++) {
@@ -160,7 +160,7 @@ static size_t make_cells(camber_quantizer *self, const camber_colors *colors, ca
     return self->table.count;
 }
 
-/* Opaque cells first: such a cell takes an opaque colour, and no other does. */
+/* Moves opaque cells to the front. Opaque cells take only opaque entries, and others only those that are not. */
 static size_t part_opaque(cell *cells, size_t count) {
     size_t opaque = 0;
     for (size_t i = 0; i < count; i++) {
@@ -178,10 +178,10 @@ static size_t part_opaque(cell *cells, size_t count) {
 typedef struct cell_range {
     cell *cells;
     size_t count, opaque;
-    uint64_t pixels; /* of the picture */
+    uint64_t pixels; /* pixels of the picture */
 } cell_range;
 
-/* Cells that are nearer to the colour at this place than to the others take it. */
+/* Assigns this entry to the cells that are closer to it than to their current one. */
 static void offer_color(const cell_range *range, const uint8_t color[4], size_t place) {
     const bool opaque = is_opaque(color);
     cell *const end = range->cells + (opaque ? range->opaque : range->count);
@@ -194,7 +194,7 @@ static void offer_color(const cell_range *range, const uint8_t color[4], size_t 
     }
 }
 
-/* The cell whose colour the palette needs most; NULL: it is good enough. */
+/* Returns the cell whose colour the palette needs most, or NULL if the palette is good enough. */
 static const cell *choose_cell(const cell_range *range, size_t color_count) {
     const cell *heaviest = NULL, *farthest = NULL;
     uint64_t most = 0, sum = 0;
@@ -228,7 +228,8 @@ static void choose_colors(const cell_range *range, camber_palette *palette) {
     }
 }
 
-/* Colours that are not flat become the mean of the cells that took them: each has at least the one it came from. */
+/* Replaces entries that are not flat by the mean of the cells that took them. Each has at least the cell from which it
+ * was made. */
 static void center_colors(const cell_range *range, size_t flat_count, camber_palette *palette) {
     uint64_t sums[CAMBER_PALETTE_MOST][5] = {{0}};
     for (const cell *c = range->cells; c < range->cells + range->count; c++) {

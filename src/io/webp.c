@@ -6,7 +6,7 @@
 
 #include <webp/encode.h>
 
-/* Measured on maps of Porto: methods beyond take more time than they save bytes. */
+/* Measured on maps of Porto: higher methods cost more time than the saved bytes are worth. */
 enum { QUALITY_USUAL = 80, METHOD = 2, LOSSLESS_LEVEL = 1 };
 
 bool camber_webp_is_built(void) {
@@ -40,7 +40,7 @@ static bool import(WebPPicture *picture, const camber_pixels *pixels, uint8_t *s
                   : WebPPictureImportRGBA(picture, straight, straight_stride);
 }
 
-/* Pictures have been checked, so that libwebp fails for want of memory alone. */
+/* The picture was checked before, so libwebp fails only if there is no memory. */
 static camber_status fail(camber_context *context, const camber_pixels *pixels) {
     return camber_fail(context, CAMBER_ERROR_MEMORY,
                        "WebP: out of memory for %u x %u px; draw a smaller picture, or write it as png", pixels->width,
@@ -53,7 +53,7 @@ camber_status camber_webp_encode(const camber_encoder_desc *desc, const camber_p
     WebPPicture picture;
     if (!configure(desc, &config) || !WebPPictureInit(&picture))
         return camber_fail(file->context, CAMBER_ERROR_DEVICE,
-                           "WebP: libwebp is older than the one camber was built with; install camber again");
+                           "WebP: libwebp is older than the one camber was built with; reinstall camber");
     picture.use_argb = config.lossless;
     picture.width = (int)pixels->width;
     picture.height = (int)pixels->height;
@@ -75,7 +75,7 @@ bool camber_webp_is_built(void) {
 
 camber_status camber_webp_encode(const camber_encoder_desc *desc, const camber_pixels *pixels, uint8_t *straight,
                                  camber_file_bytes *file) {
-    (void)desc, (void)pixels, (void)straight; /* no encoder is made of it */
+    (void)desc, (void)pixels, (void)straight; /* encoders for WebP cannot be created in this build */
     return camber_fail(file->context, CAMBER_ERROR_ARGUMENT, "this build has no webp; write a PNG");
 }
 

@@ -14,8 +14,8 @@ static camber_status check_rings(camber_context *context, const camber_areas_des
     for (size_t i = 0; desc->ring_count && i <= desc->ring_count; i++) {
         if (desc->offsets[i] < before || desc->offsets[i] > desc->point_count || (i == 0 && desc->offsets[0] != 0))
             return camber_fail(context, CAMBER_ERROR_INPUT,
-                               "ring %zu: its offset %u does not lie between %zu and %zu; offsets must ascend from 0",
-                               i, desc->offsets[i], before, desc->point_count);
+                               "ring %zu: its offset %u is not between %zu and %zu; offsets must ascend from 0", i,
+                               desc->offsets[i], before, desc->point_count);
         before = desc->offsets[i];
     }
     before = 0;
@@ -23,7 +23,7 @@ static camber_status check_rings(camber_context *context, const camber_areas_des
         if (desc->rings[i] < before || desc->rings[i] > desc->ring_count || (i == 0 && desc->rings[0] != 0) ||
             (i == desc->area_count && desc->rings[i] != desc->ring_count))
             return camber_fail(context, CAMBER_ERROR_INPUT,
-                               "area %zu: its first ring %u does not lie between %zu and %zu; rings must ascend from 0 "
+                               "area %zu: its first ring %u is not between %zu and %zu; rings must ascend from 0 "
                                "to all of them",
                                i, desc->rings[i], before, desc->ring_count);
         before = desc->rings[i];

@@ -11,9 +11,9 @@
 /* Returns the point strictly between first and last that is farthest from the segment between these two, and its
  * squared distance. Returns first if all points are on the segment.
  *
- * For a point beside the segment, the distance is that to its line; before a or beyond b, the distance to that end:
+ * For a point alongside the segment, the distance is that to its line; before a or beyond b, the distance to that end:
  *
- *              beside
+ *            alongside
  *     before a--------b beyond
  *
  * Which case holds varies from point to point, so that a branch would often be guessed wrong. The loop therefore
@@ -29,9 +29,9 @@ static inline size_t camber_farthest(const double *points, size_t first, size_t 
         const double *p = points + 2 * i;
         const double px = p[0] - a[0], py = p[1] - a[1], qx = p[0] - b[0], qy = p[1] - b[1];
         const double along = px * dx + py * dy, cross = px * dy - py * dx;
-        const double beside = cross * cross * inverse, before = px * px + py * py, beyond = qx * qx + qy * qy;
+        const double alongside = cross * cross * inverse, before = px * px + py * py, beyond = qx * qx + qy * qy;
         const double past = along <= 0.0 ? before : beyond;
-        const double d = ((along > 0.0) & (along < length_squared)) ? beside : past;
+        const double d = ((along > 0.0) & (along < length_squared)) ? alongside : past;
         if (d > most) {
             most = d;
             found = i;

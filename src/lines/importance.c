@@ -203,7 +203,8 @@ static camber_status share_some(camber_context *context, const double *points, s
 /* Gives all points of a node the largest importance among them. */
 static camber_status share_nodes(camber_context *context, const double *points, size_t count, float *importance) {
     if (count >= (size_t)1 << 31)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points at once are more than 2^31; read fewer", count);
+        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points are more than the limit of 2^31; read fewer",
+                           count);
     node_table table = {.slot_count = 4 * BATCH};
     size_t share_count = 1;
     while (table.slot_count < MOST_SLOTS && table.slot_count < 2 * count)

@@ -47,7 +47,7 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
     for (size_t i = 0; desc->polyline_count && i <= desc->polyline_count; i++) {
         if (desc->offsets[i] < before || desc->offsets[i] > desc->point_count)
             return camber_fail(context, CAMBER_ERROR_INPUT,
-                               "polyline %zu: its offset %u does not lie between %zu and %zu; offsets must ascend", i,
+                               "polyline %zu: its offset %u is not between %zu and %zu; offsets must ascend", i,
                                desc->offsets[i], before, desc->point_count);
         before = desc->offsets[i];
     }

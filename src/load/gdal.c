@@ -1,5 +1,5 @@
-/* Finds GDAL for the shared library, which keeps the files that need it in a module. The static library has them in
- * itself: there src/gdal/ says where they are. */
+/* Finds GDAL for the shared library, which keeps the files that need GDAL in a separate module. The static library
+ * contains them, so there src/gdal/ provides the table. */
 #define _GNU_SOURCE /* dladdr */
 
 #include "features/gdal_calls.h"
@@ -11,8 +11,8 @@
 
 static const int MODE = RTLD_LAZY | RTLD_LOCAL;
 
-/* Opens the module by its path: beside this library where it is built, in a folder beside it where it is installed. */
-static void *open_beside(void) {
+/* Opens the module by its path: next to this library in the build folder, in a folder next to it after installation. */
+static void *open_next_to_library(void) {
     static const char *const folders[] = {"", "camber/"};
     Dl_info here;
     void *module = NULL;
@@ -29,12 +29,12 @@ static void *open_beside(void) {
     return module;
 }
 
-/* Opens the module by the library's RUNPATH, which a sanitizer's dlopen does not know. It stays loaded: GDAL's own
- * threads and caches live as long as the process. */
+/* Opens the module through the library's RUNPATH, which a sanitizer's dlopen ignores. The module stays loaded, because
+ * GDAL's own threads and caches live as long as the process. */
 const camber_gdal_calls *camber_gdal_find(const char **why) {
     void *module = dlopen(CAMBER_GDAL_MODULE, MODE);
     if (!module)
-        module = open_beside();
+        module = open_next_to_library();
     const camber_gdal_calls *calls = module ? dlsym(module, "camber_gdal") : NULL;
     *why = calls ? NULL : dlerror();
     return calls;

@@ -1,11 +1,12 @@
-/* Puts rings together of a multipolygon's ways.
+/* Assembles the rings of a multipolygon from its ways.
  *
- * Input: ways, closed or not, in any order and direction, with roles or without. Output: rings, outer ones first. Main
- * idea: walk from way to way by the places where they end. A walk that comes back to a place that it has been at has
- * found a ring, which is taken out of it; so rings that touch stay apart. Ways of one role go first, then all that are
- * left. If all of them are there and form rings, geometry has the last word (planar.h). Else roles have it, and a ring
- * without one is a hole where an odd number of others have it inside. Time is linear in the places, but for the sorting
- * of ends and for such rings. */
+ * Input: ways, closed or not, in any order and direction, with or without roles. Output: rings, outer ones first. The
+ * main idea is to walk from way to way by the places at which they end. If a walk returns to a place where it was
+ * before, it has found a ring, which is removed from the walk; so rings that touch stay separate. Ways with the same
+ * role are walked first, then everything that is left. If no way is missing and all of them form rings, geometry
+ * decides about roles (planar.h). Otherwise the roles of the ways do, and a ring without a role is a hole if an odd
+ * number of other rings contain it. Time is linear in the number of places, apart from sorting ends and testing such
+ * rings. */
 #include "osm/assemble.h"
 
 #include "osm/node_set.h"
@@ -16,7 +17,7 @@
 
 #define NONE UINT32_MAX
 
-/* An end of a piece: its first place is end 2 * piece, its last the one behind. */
+/* An end of a piece: end 2 * piece is its first place, and end 2 * piece + 1 its last. */
 typedef struct piece_end {
     uint64_t place;
     uint32_t end;
@@ -26,20 +27,20 @@ typedef struct walker {
     camber_osm_assembly *to;
     const camber_osm_piece *pieces;
     size_t count;
-    piece_end *ends;      /* 2 * count, by their places */
-    uint32_t *nodes;      /* by end: its node, the number of its place among those of all ends */
-    uint32_t *first_ends; /* by node: index into ends; one more behind the last */
-    uint32_t *next_ends;  /* by node: no piece before this goes on from there on the walks of the role */
-    uint32_t *walked;     /* by node: where it stands on the walk; NONE: not on it */
-    uint32_t *walk;       /* the ends that pieces are entered by */
+    piece_end *ends;      /* 2 * count, sorted by place */
+    uint32_t *nodes;      /* by end: its node, which is the index of its place among the distinct places of all ends */
+    uint32_t *first_ends; /* by node: index into ends, and one more entry at the end */
+    uint32_t *next_ends;  /* by node: the first of its ends that a walk of the current role may still use */
+    uint32_t *walked;     /* by node: its position on the walk; NONE: not on it */
+    uint32_t *walk;       /* the ends at which the walk enters pieces */
     uint32_t walk_count;
     uint8_t *states; /* by piece */
 } walker;
 
 enum { FREE = 0, WALKED, IN_RING };
 
-/* Pairs of rings of a relation that are compared, and places of a file that are looked at for it; where there are more,
- * rings without a role are outer ones. Only files that were made to slow us down have so many. */
+/* Limits: pairs of rings that are compared per relation, and places that are examined for this per file. Beyond them,
+ * rings without a role become outer ones. Only malicious files exceed them. */
 static const size_t MOST_COMPARED = (size_t)1 << 20, MOST_PLACES = (size_t)1 << 28;
 
 static int compare_ends(const void *left, const void *right) {
@@ -68,7 +69,7 @@ static void number_nodes(walker *self) {
 /* ---- Rings ---- */
 
 static bool add_places(camber_osm_assembly *to, const camber_osm_piece *piece, bool backwards) {
-    /* Where pieces meet one place is left; the first closes the ring at last. */
+    /* A place that two pieces share is kept once. The first place closes the ring at the end. */
     if (!camber_grow(to->context, &to->places, &to->place_capacity, to->place_count + piece->count, sizeof *to->places))
         return false;
     for (uint32_t i = 0; i + 1 < piece->count; i++)
@@ -76,7 +77,7 @@ static bool add_places(camber_osm_assembly *to, const camber_osm_piece *piece, b
     return true;
 }
 
-/* Makes a ring of what the walk has entered from this place of it on. */
+/* Makes a ring of the pieces that the walk entered from this position on. */
 static bool add_ring(walker *self, uint32_t from) {
     camber_osm_assembly *to = self->to;
     camber_osm_ring ring = {.first = to->place_count, .role = self->pieces[self->walk[from] / 2].role};
@@ -100,7 +101,7 @@ static bool add_ring(walker *self, uint32_t from) {
 
 /* ---- Walking ---- */
 
-/* Finds a piece that goes on from a node, and returns the end that it is entered by. role NONE: any. */
+/* Finds a piece that continues from a node, and returns the end at which it is entered. role NONE: any role. */
 static uint32_t find_next(walker *self, uint32_t node, uint32_t role) {
     for (uint32_t i = self->next_ends[node]; i < self->first_ends[node + 1]; i++) {
         const uint32_t piece = self->ends[i].end / 2;
@@ -111,7 +112,7 @@ static uint32_t find_next(walker *self, uint32_t node, uint32_t role) {
     return NONE;
 }
 
-/* Walks from a piece on, and goes back where it ends nowhere. */
+/* Walks from a piece on, and backs up from dead ends. */
 static bool walk_from(walker *self, uint32_t piece, uint32_t role) {
     uint32_t at = self->nodes[2 * piece], next = 2 * piece;
     for (self->walk_count = 0;; next = find_next(self, at, role)) {
@@ -131,7 +132,7 @@ static bool walk_from(walker *self, uint32_t piece, uint32_t role) {
     }
 }
 
-/* Makes rings of the pieces of a role; NONE: of any. The pieces that are in none are free again afterwards. */
+/* Makes rings of the pieces with a role; NONE: with any. Pieces that are in no ring are free again afterwards. */
 static bool walk_role(walker *self, uint32_t role) {
     memcpy(self->next_ends, self->first_ends, 2 * self->count * sizeof *self->next_ends);
     for (uint32_t i = 0; i < self->count; i++)
@@ -148,8 +149,8 @@ static bool walk_role(walker *self, uint32_t role) {
 
 /* ---- Roles ---- */
 
-/* Whether a place lies in a ring: 1, outside of it: 0, or on it: below 0. That is exact for
- * rings below some 9 degrees, whose products fit a double. */
+/* Whether a place is inside a ring: 1, outside: 0, or on it: negative. Exact for rings smaller than about 9 degrees,
+ * whose products a double represents exactly. */
 static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, uint64_t place) {
     const double x = camber_osm_longitude(place), y = camber_osm_latitude(place);
     bool inside = false;
@@ -165,8 +166,8 @@ static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, ui
     return inside;
 }
 
-/* Whether a ring lies in another, by the first of its places that does not lie on it. *left: places that may be looked
- * at. */
+/* Whether a ring is inside another, judged by the first of its places that is not on the other ring. *left: how many
+ * more places may be examined. */
 static bool has_inside(const camber_osm_assembly *a, const camber_osm_ring *outer, const camber_osm_ring *ring,
                        size_t *left) {
     for (size_t i = ring->first; i<ring->first + ring->count && * left> outer->count; i++) {

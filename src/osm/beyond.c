@@ -1,14 +1,14 @@
-/* Looks for what GDAL passes over in a PBF.
+/* Looks for things in a PBF that GDAL silently ignores.
  *
- * Input: a file that is to be left to GDAL. Output: why it would be read wrongly. GDAL 3.6 skips blobs of other
- * packings than zlib, ways whose nodes come after them, and places on ways, all without a word. */
+ * Input: a file that is to be left to GDAL. Output: why GDAL would read it wrongly. GDAL 3.6 silently skips blobs that
+ * are not compressed with zlib, ways whose nodes come after them, and places on ways. */
 #include "osm/beyond.h"
 
 enum { WAY_LATITUDES = 9 };
 
 typedef struct block {
     camber_osm_unpacked unpacked;
-    unsigned first, last; /* kinds of entities, which grow as they should come */
+    unsigned first, last; /* kinds of entities; in an ordered file they only increase */
     bool has_any;
     camber_osm_beyond beyond;
 } block;

@@ -1,8 +1,8 @@
-/* Reads the outer layers of a PBF file: blobs, each with its header, packed (codec.h) or not.
+/* Reads the outer layers of a PBF file: blobs with their headers, compressed (codec.h) or not.
  *
- * Input: a path. Output: the list of blobs, then the blocks in them, one at a time and from any thread. The format is
- * that of wiki.openstreetmap.org/wiki/PBF_Format. Its own bounds on headers and blobs are kept, so a file asks for
- * little memory. Blobs of types that the format does not have are passed over, as it wants. */
+ * Input: a path. Output: the list of blobs, and then the blocks in them, one at a time and from any thread. The format
+ * is defined at wiki.openstreetmap.org/wiki/PBF_Format. The limits on headers and blobs are the format's own, so a file
+ * cannot ask for much memory. Blobs of unknown types are skipped, as the format requires. */
 #include "osm/blobs.h"
 
 #include "base/open_file.h"
@@ -12,15 +12,15 @@
 
 enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20 };
 
-/* Fields of a blob's header, of a blob, of the file's header and of a block. */
+/* Field numbers: of a blob's header, of a blob, of the file's header and of a block. */
 enum { HEADER_TYPE = 1, HEADER_SIZE = 3 };
-enum { BLOB_RAW_SIZE = 2 }; /* its other fields: camber_osm_codec */
+enum { BLOB_RAW_SIZE = 2 }; /* its other fields are camber_osm_codec values */
 enum { FILE_BOX = 1, FILE_REQUIRED_FEATURE = 4 };
 enum { BLOCK_STRINGS = 1, BLOCK_GROUP = 2, BLOCK_GRANULARITY = 17, BLOCK_LATITUDE = 19, BLOCK_LONGITUDE = 20 };
 
 /* ---- Bytes of the file ---- */
 
-/* Reads up to size bytes; fewer where the file ends. Below 0: an error. */
+/* Reads up to size bytes, or fewer at the end of the file. Returns a negative value on errors. */
 static ssize_t read_at(int file, uint8_t *bytes, size_t size, uint64_t offset) {
     size_t done;
     return camber_file_read(file, bytes, size, offset, &done) ? -1 : (ssize_t)done;
@@ -42,7 +42,7 @@ typedef enum blob_type {
     BLOB_DATA,
 } blob_type;
 
-/* Reads a blob's header. false: it is none. */
+/* Reads a blob's header. Returns false if it is not valid. */
 static bool read_header(camber_wire wire, blob_type *type, uint64_t *size) {
     uint64_t key;
     *type = BLOB_NONE;
@@ -76,9 +76,9 @@ bool camber_osm_knows(const char *path) {
            read_header((camber_wire){bytes + 4, bytes + 4 + size, false}, &type, &blob_bytes) && type == BLOB_HEADER;
 }
 
-/* ---- Unpacking ---- */
+/* ---- Decompression ---- */
 
-/* Finds a block in a blob, and unpacks it where it is packed. */
+/* Finds the block in a blob, and decompresses it if necessary. */
 static bool unpack(camber_osm_pass *pass, camber_wire blob, camber_osm_unpacked *unpacked, camber_wire *block,
                    camber_osm_failure *failure) {
     camber_osm_codec codec = CAMBER_OSM_CODEC_NONE;
@@ -176,7 +176,8 @@ bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group)
 
 /* ---- The list of blobs ---- */
 
-/* Reads the box of a file's header: nanodegrees west, east, north and south, which become 10^-7 degrees. */
+/* Reads the bounding box of a file's header: west, east, north and south in nanodegrees, which are converted to 10^-7
+ * degrees. */
 static void read_box(camber_wire wire, camber_osm_box *box) {
     int64_t sides[4] = {0};
     uint64_t key;
@@ -193,7 +194,7 @@ static void read_box(camber_wire wire, camber_osm_box *box) {
         *box = (camber_osm_box){(int32_t)sides[0], (int32_t)sides[1], (int32_t)sides[3], (int32_t)sides[2]};
 }
 
-/* Whether this reader has all that the file's header requires. */
+/* Whether this reader supports all features that the file's header requires. */
 static bool read_file_header(camber_wire wire, camber_osm_box *box, camber_osm_failure *failure) {
     uint64_t key;
     while (camber_wire_next(&wire, &key)) {
@@ -222,7 +223,8 @@ typedef struct listing {
     size_t passed_over;
 } listing;
 
-/* Reads the blob's header at the position, and steps behind the blob. false: the file ends here, or *failure. */
+/* Reads the blob header at the current position, and moves past the blob. Returns false at the end of the file, or if
+ * it sets *failure. */
 static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *failure) {
     camber_osm_file *file = list->file;
     uint8_t bytes[MOST_HEADER_BYTES];
@@ -230,7 +232,8 @@ static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *
     ssize_t got = read_at(file->file, bytes, USUAL_HEADER_BYTES, list->at);
     const uint32_t size = got >= 4 ? header_size(bytes) : 0;
     if (got < 4 || size > MOST_HEADER_BYTES - 4)
-        return camber_osm_fail(failure, got < 4 ? "it ends within a blob's header" : "a blob's header that is none");
+        return camber_osm_fail(failure,
+                               got < 4 ? "it ends within a blob's header" : "a blob's header that is not valid");
     if (size > USUAL_HEADER_BYTES - 4)
         got = read_at(file->file, bytes, size + 4, list->at);
     blob_type type;
@@ -238,7 +241,7 @@ static bool list_blob(listing *list, camber_osm_pass *pass, camber_osm_failure *
     if (got < 0 || (size_t)got < size + 4)
         return camber_osm_fail(failure, "it ends within a blob's header");
     if (!read_header((camber_wire){bytes + 4, bytes + 4 + size, false}, &type, &blob_bytes))
-        return camber_osm_fail(failure, "a blob's header that is none");
+        return camber_osm_fail(failure, "a blob's header that is not valid");
     if (blob_bytes > MOST_BLOB_BYTES)
         return camber_osm_fail(failure, "a blob of more than 32 MiB");
     const camber_osm_blob blob = {.offset = list->at + 4 + size, .size_bytes = (uint32_t)blob_bytes};

@@ -1,15 +1,15 @@
-/* Makes the sea of a coast.
+/* Turns the coast into an area of sea.
  *
- * Input: ways with land on their left, and a box. Output: rings. Main idea: ways that follow each other are put
- * together. What of them lies in the box is a stretch from one place of the box's sides to another, or a ring. Along a
- * stretch the sea is on the right. So it is along the box's sides, clockwise, from the stretch's end to where the next
- * one begins:
+ * Input: ways with land on their left, and a box. Output: rings. The main idea: ways that follow each other are joined.
+ * Each part of such a line within the box is a stretch from one place on the box's sides to another, or a ring. The sea
+ * is to the right of a stretch. So it continues along the box's sides, clockwise, from the end of the stretch to the
+ * beginning of the next:
  *
- *        +---end--->--+       Ends and beginnings take turns around the box. Where they do not, some of the coast is
- *        |    |       |       missing, and no sea is better than one that floods the land.
+ *        +---end--->--+       Ends and beginnings alternate around the box. If they do not, a part of the coast is
+ *        |    |       |       missing, and then drawing no sea is better than flooding the land.
  *        | land  sea  v
- *        |    ^       |       Rings are islands, or seas in land. Which of them fit is found by how often the others
- *        +--begin--<--+       wind around them. Without stretches that also tells whether the box lies in the sea.
+ *        |    ^       |       Rings are islands, or seas surrounded by land. How often the others wind around a ring
+ *        +--begin--<--+       shows whether it fits. Without stretches, it also shows whether the box is in the sea.
  */
 #include "osm/coast.h"
 
@@ -18,20 +18,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* How far from a side the coast may end: a share of the box's shorter side, and 10^-7 degrees. */
+/* How far from a side the coast may end: as a fraction of the box's shorter side, and in 10^-7 degrees. */
 enum { NEAR_SHARE = 16, NEAR_MOST = 500000 };
-/* Pairs of an edge and a ring that are looked at; a coast has about one an edge. */
+/* How many pairs of an edge and a ring are examined at most. A coast has about one per edge. */
 static const size_t MOST_PROBED = (size_t)1 << 31;
 
-/* A way by where it begins. */
+/* A way and its first place. */
 typedef struct way_start {
     uint64_t place;
     uint32_t way;
-    uint32_t used_count; /* where it is the first that begins at its place: so many from it on are used */
+    uint32_t used_count; /* for the first way that begins at its place: how many from it on are used */
     bool used;
 } way_start;
 
-/* A part of the coast in the box, from side to side: its places, and where along the sides it begins and ends. */
+/* A part of the coast in the box, from side to side: its places, and the positions along the sides at which it begins
+ * and ends. */
 typedef struct stretch {
     size_t first, count;
     int64_t begin, end;
@@ -49,20 +50,20 @@ typedef struct shore {
     const camber_osm_coast *coast;
     camber_osm_box box;
     camber_osm_assembly *sea;
-    way_start *starts; /* way_count, by place */
-    uint64_t *line;    /* places of the ways that were put together */
+    way_start *starts; /* way_count, sorted by place */
+    uint64_t *line;    /* the places of the ways that were joined */
     size_t line_count, line_capacity;
-    uint64_t *cut; /* places of stretches */
+    uint64_t *cut; /* the places of all stretches */
     size_t cut_count, cut_capacity;
     stretch *stretches;
     size_t stretch_count, stretch_capacity;
     bool in_stretch;
-    bool failed; /* no memory */
+    bool failed; /* out of memory */
 } shore;
 
 /* ---- Ways ---- */
 
-/* The side that a place in the box is near to: 0 left, 1 right, 2 bottom, 3 top. Below 0: it is near to none. */
+/* Returns the side near which a place in the box is: 0 left, 1 right, 2 bottom, 3 top. Negative: it is not near any. */
 static int find_side(camber_osm_box b, uint64_t place) {
     const int64_t x = camber_osm_longitude(place), y = camber_osm_latitude(place), wide = (int64_t)b.right - b.left,
                   high = (int64_t)b.top - b.bottom, shorter = wide < high ? wide : high;
@@ -74,7 +75,7 @@ static int find_side(camber_osm_box b, uint64_t place) {
     return distances[side] >= 0 && distances[side] <= most ? side : -1;
 }
 
-/* The nearest place on the side that a place is near to, or the place itself. */
+/* Returns the nearest place on the side near which a place is, or the place itself. */
 static uint64_t nearest_on_side(camber_osm_box b, uint64_t place) {
     const int side = find_side(b, place), x = camber_osm_longitude(place), y = camber_osm_latitude(place);
     return side < 0   ? place
@@ -82,11 +83,11 @@ static uint64_t nearest_on_side(camber_osm_box b, uint64_t place) {
                       : camber_osm_place(x, side == 2 ? b.bottom : b.top);
 }
 
-/* A gap between two nodes of a way: the coast leaves the box there and comes back at the same side, or at another. */
+/* A gap between two nodes of a way: the coast leaves the box there, and returns on the same side or on another one. */
 typedef enum gap { NO_GAP, GAP_AT_SIDE, GAP_BETWEEN_SIDES } gap;
 
-/* Along one side a segment is taken for a gap if it is long beside its ends' distances from the side: then it would cut
- * off little, but cut it off wrongly. */
+/* Along one side, a segment counts as a gap if it is long compared with the distances of its ends from the side. As
+ * coast, such a segment would cut off only a narrow strip, but wrongly. */
 static gap find_gap(camber_osm_box box, uint64_t a, uint64_t b) {
     const int side = find_side(box, a), next = find_side(box, b);
     if (side < 0 || next < 0 || side != next)
@@ -101,7 +102,7 @@ static gap find_gap(camber_osm_box box, uint64_t a, uint64_t b) {
     return along > 2.0 * (far_a > far_b ? far_a : far_b) ? GAP_AT_SIDE : NO_GAP;
 }
 
-/* Ends the way whose places begin at `first`; one of fewer than two is none. */
+/* Ends the way whose places begin at `first`. It is dropped if it has fewer than two places. */
 static camber_status end_way(camber_osm_coast *coast, size_t first) {
     if (coast->place_count < first + 2) {
         coast->place_count = first;
@@ -113,7 +114,8 @@ static camber_status end_way(camber_osm_coast *coast, size_t first) {
     return CAMBER_OK;
 }
 
-/* The coast went on beyond the box at a gap: along the side, or it comes in at another one as another way. */
+/* At a gap the coast continued outside the box: along the same side, or it returns on another side as a separate way.
+ */
 camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *places, size_t count, bool has_gaps) {
     size_t first = coast->place_count;
     camber_status status = CAMBER_OK;
@@ -156,7 +158,7 @@ static int compare_starts(const void *a, const void *b) {
                                       : (one->way > other->way) - (one->way < other->way);
 }
 
-/* The first of the ways that begin at a place, or where it would be. */
+/* Returns the first of the ways that begin at a place, or the position at which it would be. */
 static size_t find_start(const shore *s, uint64_t place) {
     size_t first = 0;
     for (size_t count = s->coast->way_count; count > 0;) {
@@ -171,7 +173,7 @@ static size_t find_start(const shore *s, uint64_t place) {
     return first;
 }
 
-/* The next way that begins at a place and is in no line yet. way_count: there is none. */
+/* Returns the next way that begins at a place and is not in a line yet, or way_count if there is none. */
 static size_t find_next(shore *s, uint64_t place) {
     const size_t count = s->coast->way_count, first = find_start(s, place);
     if (first == count)
@@ -182,7 +184,7 @@ static size_t find_next(shore *s, uint64_t place) {
     return first + *used < count && s->starts[first + *used].place == place ? first + *used : count;
 }
 
-/* Puts ways that follow each other together. */
+/* Joins ways that follow each other. */
 static void take_line(shore *s, size_t start) {
     const camber_osm_coast *coast = s->coast;
     s->line_count = 0;
@@ -207,7 +209,8 @@ static bool is_in_box(const shore *s, uint64_t place) {
     return x >= s->box.left && x <= s->box.right && y >= s->box.bottom && y <= s->box.top;
 }
 
-/* How far along the sides a place lies, clockwise from the upper left corner; below 0: on no side. */
+/* Returns the position of a place along the sides, clockwise from the upper left corner; negative if it is on no side.
+ */
 static int64_t find_border(const shore *s, uint64_t place) {
     const int64_t x = camber_osm_longitude(place), y = camber_osm_latitude(place);
     const int64_t wide = (int64_t)s->box.right - s->box.left, high = (int64_t)s->box.top - s->box.bottom;
@@ -220,13 +223,15 @@ static int64_t find_border(const shore *s, uint64_t place) {
     return x == s->box.left ? 2 * wide + high + y - s->box.bottom : -1;
 }
 
-/* The part of a segment that lies in the box: shares of its length, and the sides at which they lie. */
+/* The part of a segment that is inside the box, as fractions of its length, and the sides on which it begins and ends.
+ */
 typedef struct inside {
     double from, to;
-    int from_side, to_side; /* 0: an end of the segment; else 1 left, 2 right, 3 bottom, 4 top */
+    int from_side, to_side; /* 0: an end of the segment; otherwise 1 left, 2 right, 3 bottom, 4 top */
 } inside;
 
-/* distance: of the segment's beginning from the side, above 0 inside. taken: how much of it the segment takes. */
+/* Cuts at one side. distance: of the segment's beginning from the side, positive inside. taken: by how much the
+ * distance shrinks along the segment. */
 static void cut_at(inside *i, double distance, double taken, int side) {
     const double share = distance / taken;
     if (taken > 0.0 && share < i->to) {
@@ -256,7 +261,7 @@ static int32_t between(double from, double to, double share, int32_t least, int3
     return rounded < least ? least : rounded > most ? most : (int32_t)rounded;
 }
 
-/* The place at a share of a segment, on a side. */
+/* Returns the place at a fraction of a segment, moved exactly onto a side. */
 static uint64_t place_on(const shore *s, uint64_t a, uint64_t b, double share, int side) {
     const camber_osm_box box = s->box;
     const int32_t x = between(camber_osm_longitude(a), camber_osm_longitude(b), share, box.left, box.right),
@@ -293,7 +298,7 @@ static void put_ring(shore *s, size_t first, camber_osm_role role) {
     sea->rings[sea->ring_count++] = (camber_osm_ring){first, sea->place_count - first, role};
 }
 
-/* A closed line in the box: land lies inside where it goes counter-clockwise, as seen. */
+/* Adds a closed line in the box. If it goes counter-clockwise as seen, land is inside it. */
 static void put_closed(shore *s, const uint64_t *places, size_t count) {
     const size_t first = s->sea->place_count;
     const double x0 = camber_osm_longitude(places[0]), y0 = camber_osm_latitude(places[0]);
@@ -332,8 +337,8 @@ static void begin_stretch(shore *s, uint64_t place) {
     add_place(s, place);
 }
 
-/* Ends a stretch, which has to lie between two places of the sides. One that only touches a side is none, and one that
- * ends where it begins is a ring. */
+/* Ends a stretch, which must go from one place on the sides to another. One that only touches a side is dropped, and
+ * one that ends where it begins becomes a ring. */
 static void end_stretch(shore *s) {
     stretch *p = s->stretches + s->stretch_count - 1;
     s->in_stretch = false;
@@ -350,7 +355,8 @@ static void end_stretch(shore *s) {
     s->sea->open |= p->begin < 0 || p->end < 0;
 }
 
-/* An extract may have no node beyond its box: then the coast ends at the last one before a side, and goes on to it. */
+/* An extract may have no nodes outside its box. Then the coast ends at the last node before a side, and is extended to
+ * the side. */
 static void reach_sides(shore *s) {
     const uint64_t first = nearest_on_side(s->box, s->line[0]),
                    last = nearest_on_side(s->box, s->line[s->line_count - 1]);
@@ -367,7 +373,7 @@ static void reach_sides(shore *s) {
     s->line_count++;
 }
 
-/* Cuts stretches of the line, from its place `first` on. */
+/* Cuts the line into stretches, starting from its place `first`. */
 static void cut_line(shore *s, size_t first) {
     const size_t count = s->line_count;
     const bool closed = s->line[0] == s->line[count - 1];
@@ -391,7 +397,7 @@ static void cut_line(shore *s, size_t first) {
         end_stretch(s);
 }
 
-/* A line is a ring in the box, or lies outside, or is cut: from a place outside on, where it is closed. */
+/* A line is a ring in the box, or is outside, or is cut. If it is closed, cutting starts from a place outside. */
 static void take_stretches(shore *s) {
     const bool closed = s->line[0] == s->line[s->line_count - 1];
     size_t outside = 0;
@@ -416,7 +422,7 @@ static void take_all(shore *s) {
     qsort(s->starts, coast->way_count, sizeof *s->starts, compare_starts);
     for (size_t i = 1; i < coast->way_count; i++)
         s->starts[i].used = are_same(coast, s->starts[i - 1].way, s->starts[i].way);
-    /* A way is the first of its line if none ends where it begins. */
+    /* A way is the first of its line if no other way ends where it begins. */
     uint8_t *goes_on = camber_alloc_zero(s->context, coast->way_count, 1);
     s->failed = !goes_on;
     for (size_t i = 0; i < coast->way_count && !s->failed; i++) {
@@ -449,7 +455,7 @@ static uint64_t corner_of(const shore *s, int corner) {
     return corners[corner & 3];
 }
 
-/* Puts the corners that lie between two places of the sides, clockwise. */
+/* Adds the corners between two positions on the sides, clockwise. */
 static void put_corners(shore *s, int64_t from, int64_t to) {
     const int64_t wide = (int64_t)s->box.right - s->box.left, high = (int64_t)s->box.top - s->box.bottom;
     const int64_t corners[8] = {0,
@@ -466,7 +472,8 @@ static void put_corners(shore *s, int64_t from, int64_t to) {
             put_place(s, corner_of(s, i));
 }
 
-/* Joins the stretches along the sides. marks: two a stretch, by place; each end comes before a beginning. */
+/* Joins the stretches along the sides. marks: two per stretch, sorted by position; at the same position ends come
+ * before beginnings. */
 static void join_stretches(shore *s, const border_mark *marks, uint8_t *joined, const uint32_t *mark_of_end) {
     const size_t count = 2 * s->stretch_count;
     for (size_t i = 0; i < s->stretch_count && !s->failed; i++) {
@@ -509,9 +516,9 @@ static void go_around(shore *s) {
     camber_free(s->context, marks);
 }
 
-/* ---- Rings that fit ---- */
+/* ---- Which rings fit ---- */
 
-/* A place on a ring that closes in the box, and how often other rings of the sea wind around it. */
+/* A place on a ring that is closed in the box, and how often the other rings of the sea wind around it. */
 typedef struct probe {
     double x, y;
     size_t ring;
@@ -523,7 +530,8 @@ static int compare_probes(const void *a, const void *b) {
     return (one->y > other->y) - (one->y < other->y);
 }
 
-/* Adds the edge from a to b of a ring to what winds around the probes. *left: probes that may be looked at. */
+/* Adds the contribution of a ring's edge from a to b to the winding around the probes. *left: how many more probes may
+ * be examined. */
 static void wind(probe *probes, size_t count, size_t ring, uint64_t a, uint64_t b, size_t *left) {
     const double ax = camber_osm_longitude(a), ay = camber_osm_latitude(a), bx = camber_osm_longitude(b),
                  by = camber_osm_latitude(b), low = ay < by ? ay : by, high = ay < by ? by : ay;
@@ -539,8 +547,8 @@ static void wind(probe *probes, size_t count, size_t ring, uint64_t a, uint64_t 
             probes[i].around += by > ay ? 1 : -1;
 }
 
-/* Leaves out the rings that lie on the wrong side of others. Without stretches the rings tell whether the box lies in
- * the sea; all have to agree. closed_count: the first rings, which close in the box. */
+/* Drops rings that are on the wrong side of others. Without stretches, the rings decide whether the box is in the sea,
+ * and all of them must agree. closed_count: the first rings, which are closed in the box. */
 static void fit_rings(shore *s, probe *probes, size_t closed_count) {
     camber_osm_assembly *sea = s->sea;
     size_t left = MOST_PROBED;

@@ -1,9 +1,9 @@
-/* Unpacks the bytes of a blob: by zlib or libdeflate always, by liblz4, libzstd and liblzma where the build has them.
+/* Decompresses blobs: always with zlib or libdeflate, and with liblz4, libzstd and liblzma if the build includes them.
  *
- * Input: packed bytes. Output: plain ones, 32 MiB at most, as the format has it. A blob need not say how large it is
- * unpacked; then the room for it doubles until it fits. A few bytes of zstd or of LZMA may stand for 32 MiB, and a file
- * may have millions of such blobs. So what is larger than 256 KiB may have 1,100 times the packed size, which is more
- * than DEFLATE can reach. */
+ * Input: compressed bytes. Output: uncompressed bytes, at most 32 MiB, the format's limit. A blob need not state its
+ * uncompressed size; then the buffer is doubled until the bytes fit. A few bytes of zstd or LZMA can expand to 32 MiB,
+ * and a file may contain millions of such blobs. Therefore bytes beyond 256 KiB are limited to 1,100 times the
+ * compressed size, a ratio that DEFLATE cannot reach. */
 #include "osm/codec.h"
 
 #ifdef CAMBER_LIBDEFLATE
@@ -26,12 +26,12 @@ enum { MOST_BYTES = 32 << 20, SMALL_BYTES = 256 << 10, MOST_RATIO = 1100, FIRST_
 
 typedef enum outcome {
     DONE = 0,
-    FULL, /* the room does not do, if that can be told */
+    FULL, /* the buffer is too small, if the library can tell */
     BROKEN,
     NO_MEMORY,
 } outcome;
 
-/* Packed bytes, and room for the plain ones; size becomes how many these are. */
+/* Compressed bytes, and a buffer for the uncompressed ones; size is set to their number. */
 typedef struct job {
     camber_osm_pass *pass;
     const uint8_t *from;
@@ -67,7 +67,7 @@ static outcome unpack_zlib(job *self) {
 }
 
 #ifdef CAMBER_LZ4
-/* LZ4 does not tell damage from too little room. */
+/* LZ4 does not distinguish damage from a buffer that is too small. */
 static outcome unpack_lz4(job *self) {
     const int size =
         LZ4_decompress_safe((const char *)self->from, (char *)self->to, (int)self->from_size, (int)self->room);
@@ -98,8 +98,7 @@ static void release(void *user, void *block) {
     camber_osm_release(user, block);
 }
 
-/* Takes files of xz and of LZMA alone. Dictionaries of 64 MiB are the largest that xz makes unless it is told to; they
- * count as camber's memory. */
+/* Accepts xz files and bare LZMA. xz makes dictionaries of at most 64 MiB by default; they count as camber's memory. */
 static outcome unpack_lzma(job *self) {
     static const uint64_t most_memory = UINT64_C(80) << 20;
     const lzma_allocator allocator = {.alloc = allocate, .free = release, .opaque = self->pass};
@@ -117,14 +116,14 @@ static outcome unpack_lzma(job *self) {
     lzma_end(&stream);
     if (result == LZMA_STREAM_END || result == LZMA_MEM_ERROR)
         return result == LZMA_STREAM_END ? DONE : NO_MEMORY;
-    return full ? FULL : BROKEN; /* or it wants a larger dictionary */
+    return full ? FULL : BROKEN; /* or it needs a larger dictionary */
 }
 #endif
 
 typedef struct codec_facts {
     camber_osm_codec codec;
     const char *name, *library;
-    outcome (*unpack)(job *self); /* NULL: this build lacks the library */
+    outcome (*unpack)(job *self); /* NULL: the library is not in this build */
 } codec_facts;
 
 static const codec_facts codecs[] = {
@@ -169,7 +168,7 @@ static bool fail_codec(camber_osm_codec codec, const codec_facts *facts, camber_
             facts->name, facts->library, facts->library);
     if (codec == CAMBER_OSM_CODEC_BZIP2)
         return camber_osm_refuse(failure,
-                                 "compressed with bzip2, which PBF no longer allows; have it written again with zlib");
+                                 "compressed with bzip2, which PBF no longer allows; write it again with zlib");
     return camber_osm_fail(failure, "a blob that does not parse");
 }
 
@@ -184,7 +183,7 @@ bool camber_osm_codec_unpack(camber_osm_codec codec, camber_osm_pass *pass, cons
         return fail_codec(codec, facts, failure);
     const size_t most = most_bytes(one.from_size);
     if (size_bytes > most)
-        return camber_osm_fail(failure, "a blob that would unpack to far more than it is");
+        return camber_osm_fail(failure, "a blob that would decompress to far more than its size");
     const size_t guess = FIRST_RATIO * one.from_size < SMALL_BYTES ? SMALL_BYTES : FIRST_RATIO * one.from_size;
     one.room = size_bytes ? (size_t)size_bytes : guess < most ? guess : most;
     for (outcome result = FULL; result != DONE; one.room = one.room < most / 2 ? 2 * one.room : most) {
@@ -198,7 +197,7 @@ bool camber_osm_codec_unpack(camber_osm_codec codec, camber_osm_pass *pass, cons
         }
         if (result == BROKEN || (result == FULL && (size_bytes || one.room == most)) ||
             (result == DONE && size_bytes && one.size != size_bytes))
-            return camber_osm_fail(failure, "a blob that does not unpack");
+            return camber_osm_fail(failure, "a blob that cannot be decompressed");
     }
     *plain = (camber_wire){block->bytes, block->bytes + one.size, false};
     return true;

@@ -1,7 +1,7 @@
-/* A set of ids as a tree of bitmaps, and a place for each id.
+/* A set of ids as a tree of bitmaps, with a place for each id.
  *
- * Input: ids in any order, often in a row. Output: the index of an id among all ids, in the order in which leaves were
- * made. Ids of a country lie in runs, so that a node takes some bits, and an id that lies alone takes 350 bytes. */
+ * Input: ids in any order, often consecutive. Output: an id's index among all ids, in the order in which leaves were
+ * made. The ids of a country come in runs, so a node takes a few bits; an isolated id takes 350 bytes. */
 #include "osm/node_set.h"
 
 enum { LEAF_BITS = CAMBER_OSM_LEAF_BITS, TWIG_BITS = 6 };
@@ -88,7 +88,7 @@ camber_status camber_osm_node_set_complete(camber_osm_node_set *set) {
     }
     if (count > UINT32_MAX)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "lines with more than 4294967295 nodes; select fewer with an attribute filter");
+                           "the lines have more than 4294967295 nodes; select fewer with an attribute filter");
     set->node_count = (size_t)count;
     if (!(set->places = camber_alloc(context, set->node_count, sizeof *set->places)))
         return CAMBER_ERROR_MEMORY;
@@ -97,25 +97,26 @@ camber_status camber_osm_node_set_complete(camber_osm_node_set *set) {
     return CAMBER_OK;
 }
 
-bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber_osm_finger *finger, uint32_t *index) {
+bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber_osm_search_hint *hint,
+                              uint32_t *index) {
     const uint64_t leaf_id = (uint64_t)id >> LEAF_BITS, branch = leaf_id >> TWIG_BITS;
-    if (leaf_id != finger->leaf_id) {
+    if (leaf_id != hint->leaf_id) {
         const uint32_t twig = branch < set->branch_count ? set->branches[branch] : 0;
-        finger->leaf_id = leaf_id;
-        finger->leaf = twig ? set->twigs[twig - 1][leaf_id & ((1 << TWIG_BITS) - 1)] : 0;
+        hint->leaf_id = leaf_id;
+        hint->leaf = twig ? set->twigs[twig - 1][leaf_id & ((1 << TWIG_BITS) - 1)] : 0;
     }
-    if (finger->leaf == 0)
+    if (hint->leaf == 0)
         return false;
-    const camber_osm_leaf *leaf = &set->leaves[finger->leaf - 1];
+    const camber_osm_leaf *leaf = &set->leaves[hint->leaf - 1];
     const unsigned word = id >> 6 & (CAMBER_OSM_LEAF_WORDS - 1);
     const uint64_t bit = UINT64_C(1) << (id & 63);
     if (!(leaf->bits[word] & bit))
         return false;
-    const bool follows = id == finger->id + 1 && (id & ((1 << LEAF_BITS) - 1)) != 0;
-    finger->index = follows ? finger->index + 1
-                            : set->ranks[finger->leaf - 1] + leaf->before[word] +
-                                  camber_osm_count_bits(leaf->bits[word] & (bit - 1));
-    finger->id = id;
-    *index = finger->index;
+    const bool follows = id == hint->id + 1 && (id & ((1 << LEAF_BITS) - 1)) != 0;
+    hint->index =
+        follows ? hint->index + 1
+                : set->ranks[hint->leaf - 1] + leaf->before[word] + camber_osm_count_bits(leaf->bits[word] & (bit - 1));
+    hint->id = id;
+    *index = hint->index;
     return true;
 }

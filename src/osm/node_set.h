@@ -1,33 +1,33 @@
-/* The nodes that lines need, and where they lie: a bitmap of their ids, and eight bytes a node. */
+/* The nodes that lines need, and their places: a bitmap of ids, and eight bytes per node. */
 #ifndef CAMBER_OSM_NODE_SET_H
 #define CAMBER_OSM_NODE_SET_H
 
 #include "base/base.h"
 
-/* Ids are below 2^36; OpenStreetMap's are below 2^34 (2026). */
+/* Ids must be below 2^36; those of OpenStreetMap are below 2^34 (2026). */
 #define CAMBER_OSM_MOST_ID ((int64_t)1 << 36)
 
 enum { CAMBER_OSM_LEAF_WORDS = 8, CAMBER_OSM_LEAF_BITS = 9 };
 
-/* The ids of 512 nodes in a row. */
+/* 512 consecutive ids. */
 typedef struct camber_osm_leaf {
     uint64_t bits[CAMBER_OSM_LEAF_WORDS];
-    uint16_t before[CAMBER_OSM_LEAF_WORDS]; /* nodes of the words before, once the ids are complete */
+    uint16_t before[CAMBER_OSM_LEAF_WORDS]; /* number of ids in the words before, valid after completion */
 } camber_osm_leaf;
 
 typedef struct camber_osm_node_set {
     camber_context *context;
-    /* Three levels: an id's upper bits, six bits, nine bits. Entries are indices + 1; 0: no node is there. */
+    /* Three levels: an id's upper bits, six bits, nine bits. Entries are indices + 1; 0: no ids there. */
     uint32_t *branches;
     size_t branch_count, branch_capacity;
     uint32_t (*twigs)[64];
     size_t twig_count, twig_capacity;
     camber_osm_leaf *leaves;
     size_t leaf_count, leaf_capacity;
-    uint32_t *ranks; /* leaf_count: nodes of the leaves before, once the ids are complete */
+    uint32_t *ranks; /* leaf_count: the number of ids in the leaves before, valid after completion */
     size_t node_count;
     _Atomic uint64_t *places; /* node_count: longitude and latitude in 10^-7 degrees; CAMBER_OSM_NOWHERE */
-    size_t found_count;       /* of them that the file has */
+    size_t found_count;       /* those of them that the file contains */
     uint64_t last_leaf_id;    /* of the leaf that was added to last; UINT64_MAX: none */
     size_t last_leaf;
 } camber_osm_node_set;
@@ -47,34 +47,35 @@ static inline int32_t camber_osm_latitude(uint64_t place) {
     return (int32_t)(uint32_t)place;
 }
 
-/* Where a thread found its last leaf, and its last node: ids often follow each other. */
-typedef struct camber_osm_finger {
+/* A thread's hint for its next search: the leaf and the node that it found last, because ids are often consecutive. */
+typedef struct camber_osm_search_hint {
     uint64_t leaf_id; /* UINT64_MAX: none yet */
-    uint32_t leaf;    /* index + 1; 0: there is none */
+    uint32_t leaf;    /* index + 1; 0: no such leaf */
     int64_t id;
     uint32_t index;
-} camber_osm_finger;
+} camber_osm_search_hint;
 
 void camber_osm_node_set_init(camber_osm_node_set *set, camber_context *context);
 void camber_osm_node_set_free(camber_osm_node_set *set);
 /* 0 <= id < CAMBER_OSM_MOST_ID */
 camber_status camber_osm_node_set_add(camber_osm_node_set *set, int64_t id);
-/* Adds ids of a leaf, which are those of a bitmap; leaf_id is what their upper bits are. *leaf: its index. */
+/* Adds ids that share a leaf, as a bitmap; leaf_id is their upper bits. *leaf: the leaf's index. */
 camber_status camber_osm_node_set_add_leaf(camber_osm_node_set *set, uint64_t leaf_id,
                                            const uint64_t bits[CAMBER_OSM_LEAF_WORDS], uint32_t *leaf);
-/* No id is added from now on. */
+/* Completes the set; no ids may be added afterwards. */
 camber_status camber_osm_node_set_complete(camber_osm_node_set *set);
-/* Finds the index of an id's place. false: no line needs it. */
-bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber_osm_finger *finger, uint32_t *index);
+/* Finds the index of an id's place. Returns false if no line needs the id. */
+bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber_osm_search_hint *hint,
+                              uint32_t *index);
 
-/* Adds neighbouring bits up, then pairs, then bytes: a call of the compiler's library takes longer. */
+/* Adds up neighbouring bits, then pairs, then bytes. Calling the compiler's library function takes longer. */
 static inline uint32_t camber_osm_count_bits(uint64_t word) {
     word = word - (word >> 1 & 0x5555555555555555u);
     word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
     return (uint32_t)(((word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
 }
 
-/* The index of an id of the set by its leaf: no branch depends on which it is. */
+/* Returns the index of an id of the set by its leaf, without branches that depend on the id. */
 static inline uint32_t camber_osm_node_set_index(const camber_osm_node_set *set, uint32_t leaf, uint32_t id) {
     const camber_osm_leaf *from = &set->leaves[leaf];
     const uint32_t word = id >> 6 & (CAMBER_OSM_LEAF_WORDS - 1);

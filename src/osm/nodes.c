@@ -1,9 +1,9 @@
 /* Reads the places of nodes.
  *
- * Input: blobs, and the set of nodes that lines need. Output: their places, in the whole numbers of 10^-7 degrees that
- * GDAL's reader has too. Places may stand on ways instead (osmium add-locations-to-ways); a node that several ways name
- * has one of each. Threads write places as they find them, so what is kept of several must not depend on who comes
- * first. */
+ * Input: blobs, and the set of nodes that lines need. Output: their places, as the same integers in 10^-7 degrees that
+ * GDAL's reader uses. Places may instead be stored in ways (osmium add-locations-to-ways); then a node has one in each
+ * way that names it. Threads store places as they find them, so the choice among several places must not depend on the
+ * order. */
 #include "osm/nodes.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ enum { USUAL_GRANULARITY = 100 };
 
 typedef struct block {
     camber_osm_unpacked unpacked;
-    size_t found_count; /* nodes that got a place */
+    size_t found_count; /* nodes that were given a place */
 } block;
 
 static void free_block(camber_context *context, void *slot) {
@@ -25,14 +25,14 @@ static void free_block(camber_context *context, void *slot) {
 typedef struct decoder {
     camber_osm_node_set *nodes;
     camber_osm_entities entities;
-    camber_osm_finger finger;
+    camber_osm_search_hint hint;
     camber_osm_failure *failure;
     size_t found_count;
-    bool usual;   /* coordinates are in 10^-7 degrees as they are */
+    bool usual;   /* coordinates are already in 10^-7 degrees */
     bool several; /* a node may have several places */
 } decoder;
 
-/* Degrees as GDAL computes them, and rounds them then. false: they are none on Earth. */
+/* Computes degrees as GDAL does, and then rounds them. Returns false if they are not on Earth. */
 static bool to_place(int64_t coordinate, int64_t offset, int32_t granularity, double most, int32_t *place) {
     const double degrees = .000000001 * ((double)offset + (double)granularity * (double)coordinate);
     if (!(fabs(degrees) <= most))
@@ -41,12 +41,12 @@ static bool to_place(int64_t coordinate, int64_t offset, int32_t granularity, do
     return true;
 }
 
-/* Coordinates of the block as a place. false: they are none on Earth. */
+/* Converts coordinates of the block to a place. Returns false if they are not on Earth. */
 static bool find_place(const decoder *self, int64_t longitude, int64_t latitude, uint64_t *place) {
     enum { DEGREE = 10000000 };
     const camber_osm_entities *from = &self->entities;
     int32_t x = (int32_t)longitude, y = (int32_t)latitude;
-    /* At the very limits the rounding decides. */
+    /* Exactly at the limits, rounding decides. */
     const bool inside = longitude > -INT64_C(180) * DEGREE && longitude < INT64_C(180) * DEGREE &&
                         latitude > -INT64_C(90) * DEGREE && latitude < INT64_C(90) * DEGREE;
     if (!(self->usual && inside) && !(to_place(longitude, from->longitude_offset, from->granularity, 180.0, &x) &&
@@ -56,11 +56,11 @@ static bool find_place(const decoder *self, int64_t longitude, int64_t latitude,
     return true;
 }
 
-/* Gives a node its place, if a line needs it. */
+/* Sets the place of a node, if a line needs it. */
 static bool set_place(decoder *self, int64_t id, uint64_t place) {
     uint32_t index;
     uint64_t before = CAMBER_OSM_NOWHERE;
-    if (id < 0 || id >= CAMBER_OSM_MOST_ID || !camber_osm_node_set_find(self->nodes, id, &self->finger, &index))
+    if (id < 0 || id >= CAMBER_OSM_MOST_ID || !camber_osm_node_set_find(self->nodes, id, &self->hint, &index))
         return true;
     _Atomic uint64_t *to = &self->nodes->places[index];
     if (atomic_compare_exchange_strong_explicit(to, &before, place, memory_order_relaxed, memory_order_relaxed)) {
@@ -78,7 +78,7 @@ static bool set_place(decoder *self, int64_t id, uint64_t place) {
 static bool add_node(decoder *self, int64_t id, int64_t longitude, int64_t latitude) {
     uint64_t place;
     if (!find_place(self, longitude, latitude, &place))
-        return camber_osm_fail(self->failure, "a node that is nowhere on Earth");
+        return camber_osm_fail(self->failure, "a node that is not on Earth");
     return set_place(self, id, place);
 }
 
@@ -113,7 +113,7 @@ static bool read_dense(decoder *self, camber_wire wire) {
         else
             camber_wire_skip(&wire, key);
     }
-    /* Differences are added as unsigned numbers, which may go round. */
+    /* Differences are added as unsigned numbers, which may wrap around. */
     while (ids.at < ids.end) {
         id += (uint64_t)camber_wire_signed(&ids);
         latitude += (uint64_t)camber_wire_signed(&latitudes);
@@ -127,7 +127,8 @@ static bool read_dense(decoder *self, camber_wire wire) {
            camber_osm_fail(self->failure, "nodes that do not parse");
 }
 
-/* Reads the places that stand on a way. Those that are nowhere on Earth are missing, as osmium has it. */
+/* Reads the places that are stored in a way. Those that are not on Earth count as missing, which is how osmium writes
+ * missing nodes. */
 static bool read_way(decoder *self, camber_wire wire) {
     camber_wire ids = {0}, longitudes = {0}, latitudes = {0};
     uint64_t key, place, id = 0, longitude = 0, latitude = 0;
@@ -154,7 +155,8 @@ static bool read_way(decoder *self, camber_wire wire) {
            camber_osm_fail(self->failure, "a way that does not parse");
 }
 
-/* nodes_alone: a way, or a relation if it is wanted, tells that the file is in no order. */
+/* nodes_alone: the blob should have only nodes, so a way (or a relation, if relations are wanted) means that the file
+ * is not in order. */
 static bool read_group(decoder *self, camber_wire group, const camber_osm_nodes_desc *desc, bool nodes_alone) {
     uint64_t key;
     bool read = true;
@@ -183,7 +185,7 @@ static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slo
     const reading *all = user;
     const camber_osm_nodes_desc *desc = all->desc;
     decoder self = {.nodes = all->nodes,
-                    .finger = {.leaf_id = UINT64_MAX, .id = -2},
+                    .hint = {.leaf_id = UINT64_MAX, .id = -2},
                     .failure = failure,
                     .several = desc->node_blobs == 0 || desc->on_ways};
     camber_osm_entities *entities = &self.entities;
@@ -229,7 +231,8 @@ typedef struct search {
     bool of_ways;
 } search;
 
-/* Notes which kinds of entities a blob has. So passes need not unpack it again for those that it does not have. */
+/* Records which kinds of entities a blob has, so that later passes need not decompress it for kinds that it does not
+ * have. */
 static bool look_at_blob(const search *self, size_t blob, camber_osm_pass *pass, block *one,
                          camber_osm_failure *failure) {
     camber_osm_blob *to = &self->file->blobs[blob];
@@ -254,8 +257,8 @@ static bool look_at_blob(const search *self, size_t blob, camber_osm_pass *pass,
     return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
 
-/* Finds the first blob that begins with a later kind than these. It looks about a guess in steps that grow, until the
- * end lies between two of them; then it halves what is left. A blob without entities begins with any kind. */
+/* Finds the first blob that begins with a later kind than these. Starts at a guess and searches in growing steps until
+ * the end is between two of them, then by bisection. A blob without entities may count as any kind. */
 static bool find_end(const search *self, unsigned last_kind, size_t at, size_t *first, camber_osm_pass *pass,
                      block *one, camber_osm_failure *failure) {
     size_t end = self->file->blob_count, step = 1;
@@ -279,7 +282,7 @@ static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *s
     const search *self = user;
     const size_t count = self->file->blob_count;
     (void)part;
-    /* Most files have nodes in six blobs of seven, and relations in the last few. */
+    /* In most files, six of seven blobs have nodes, and the last few have relations. */
     return find_end(self, CAMBER_OSM_HAS_NODES, count / 7 * 6 + count % 7 * 6 / 7, &self->ends->nodes, pass, slot,
                     failure) &&
            (!self->of_ways || count == 0 ||

@@ -1,17 +1,19 @@
-/* Packs ways: each node by how far it lies from the one before.
+/* Packs ways: each node is stored as its difference from the one before.
  *
- * Input: ways with ids of nodes, and the places of these. Output: the ways' places one after the other, and the memory
- * of ids and nodes. Main idea: lines in world coordinates take 16 bytes a point, and the nodes 8 and more. They would
- * be in memory together if lines were made at once. Packed lines take a quarter, for nodes of a way lie close together.
+ * Input: ways with ids of nodes, and the places of these nodes. Output: the places of the ways, one way after the
+ * other; the memory of ids and nodes is freed. The main idea: lines in world coordinates take 16 bytes per point, and
+ * nodes 8 bytes or more. If lines were made at once, both would be in memory together. Packed lines take a quarter,
+ * because the nodes of a way are close to each other.
  */
 #include "osm/packed.h"
 
-/* A difference of longitudes and one of latitudes, 16 bits each, in 10^-7 degrees; or this, and then a place. */
+/* A word has a difference of longitudes and one of latitudes, 16 bits each, in 10^-7 degrees; or it is this, and a
+ * place follows. */
 static const uint32_t FAR = 0x8000;
 enum { MOST_PLACE_WORDS = 3 };
 
 typedef struct packed_run {
-    camber_osm_block places, words, ways; /* uint64_t; uint32_t; camber_osm_way, as they will be */
+    camber_osm_block places, words, ways; /* uint64_t; uint32_t; camber_osm_way, in their final form */
     size_t word_count, node_count, dropped;
 } packed_run;
 
@@ -28,11 +30,11 @@ typedef struct packing {
     size_t dropped;
 } packing;
 
-/* Where a thread is in its run. */
+/* A thread's position in its run. */
 typedef struct packer {
-    const uint64_t *places; /* of the nodes to come */
+    const uint64_t *places; /* of the next nodes */
     uint32_t *at;
-    uint64_t place; /* the last that was packed */
+    uint64_t place; /* the last one that was packed */
 } packer;
 
 static void put_place(packer *to, uint64_t place) {
@@ -48,7 +50,8 @@ static void put_place(packer *to, uint64_t place) {
     to->place = place;
 }
 
-/* Looks the places of a run up. Nothing branches here, so the processor waits for many of them at a time. */
+/* Looks up the places of a run. There are no branches here, so the processor can wait for many memory accesses at a
+ * time. */
 static void look_up_places(const camber_osm_ways *ways, const camber_osm_run *run, uint64_t *places) {
     const camber_osm_node_set *nodes = &ways->nodes;
     const uint32_t *ids = ways->ids + run->first_id, *leaves = ways->leaves + run->first_leaf;
@@ -58,7 +61,7 @@ static void look_up_places(const camber_osm_ways *ways, const camber_osm_run *ru
     }
 }
 
-/* Packs a way, and returns what it is now. Fewer than two nodes make no line. *dropped counts areas that go. */
+/* Packs a way, and returns its new form. Fewer than two nodes make no line. *dropped counts areas that are lost. */
 static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, packer *to, size_t *dropped) {
     const packer before = *to;
     uint64_t first = 0, last = 0;
@@ -109,7 +112,7 @@ static bool pack_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     return true;
 }
 
-/* No thread reads the run any more. */
+/* No thread reads the run any more, so it can be freed. */
 static camber_status add_run(void *user, size_t part, void *slot) {
     packing *all = user;
     camber_osm_ways *ways = all->ways;
@@ -142,7 +145,7 @@ camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc 
                                        .from = desc->from,
                                        .to = desc->to};
     bool declined;
-    /* Most places take one word, and the first of a way three. */
+    /* Most places take one word; the first of a way takes three. */
     camber_status status = CAMBER_ERROR_MEMORY;
     if (camber_grow(ways->context, &ways->packed, &ways->packed_capacity, ways->node_count + 2 * ways->way_count,
                     sizeof *ways->packed))
@@ -156,7 +159,7 @@ camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc 
     return status;
 }
 
-/* A signed number of 16 bits as one of 32. */
+/* Extends a signed number of 16 bits to 32 bits. */
 static uint32_t extend(uint32_t number) {
     return (number ^ 0x8000) - 0x8000;
 }

@@ -1,9 +1,9 @@
-/* Runs a pass: threads take parts in their order, and the caller's thread commits the results in the same order.
+/* Runs a pass: threads process parts in order, and the caller's thread commits the results in the same order.
  *
- * Input: how many parts there are, and what is done with one. Output: results, committed. A ring of slots bounds how
- * far the threads run ahead of what is committed, and so the memory. The caller's thread works too while it has nothing
- * to commit. A context is for one thread at a time, so one lock stands before it: commits hold it, and so does what
- * makes room in a worker's block. */
+ * Input: the number of parts, and the functions that process one. Output: committed results. A ring of slots limits how
+ * far the threads may run ahead of the commits, and so limits memory. The caller's thread works, too, while it has
+ * nothing to commit. A context may be used by only one thread at a time, so a lock protects it: commits hold the lock,
+ * and so does code that grows a worker's block. */
 #include "osm/pass.h"
 
 #include "base/threads.h"
@@ -11,7 +11,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Slots a thread: enough that a large part holds nobody up. */
+/* Slots per thread: enough that a large part does not delay other threads. */
 enum { SLOTS_A_THREAD = 4, MOST_THREADS = 64 };
 
 static const double PROGRESS_MS = 50;
@@ -25,7 +25,7 @@ typedef struct slot_state {
 struct camber_osm_pass {
     const camber_osm_pass_desc *desc;
     pthread_mutex_t context_lock;
-    pthread_mutex_t lock; /* of what follows */
+    pthread_mutex_t lock; /* protects the following fields */
     pthread_cond_t moved;
     size_t taken, committed;
     bool stopped;
@@ -90,7 +90,7 @@ void camber_osm_release(camber_osm_pass *pass, void *block) {
 
 /* ---- Taking parts ---- */
 
-/* Takes a part if the ring has room. Called with the lock held. */
+/* Takes the next part if the ring has room. Called with the lock held. */
 static bool take(camber_osm_pass *pass, size_t *part) {
     if (pass->stopped || pass->taken == pass->desc->part_count || pass->taken - pass->committed >= pass->slot_count)
         return false;
@@ -98,7 +98,7 @@ static bool take(camber_osm_pass *pass, size_t *part) {
     return true;
 }
 
-/* Called with the lock held, which is open while the part is worked on. */
+/* Called with the lock held. Releases it while it works on the part. */
 static void work(camber_osm_pass *pass, size_t part) {
     slot_state *state = &pass->states[part % pass->slot_count];
     void *slot = pass->slots + part % pass->slot_count * pass->desc->slot_bytes;
@@ -130,7 +130,7 @@ static camber_status report(const camber_osm_pass *pass, const camber_osm_failur
         return CAMBER_OK;
     if (failure->status == CAMBER_ERROR_MEMORY)
         return camber_fail(pass->desc->context, CAMBER_ERROR_MEMORY,
-                           "%s: memory: a part of it needs more than is allowed; allow more memory", pass->desc->name);
+                           "%s: a part of it needs more memory than is allowed; allow more", pass->desc->name);
     if (failure->told)
         return camber_fail(pass->desc->context, failure->status, "%s: %s", pass->desc->name, failure->text);
     return camber_fail(pass->desc->context, failure->status, "%s: cut off or damaged: %s; get the file again",

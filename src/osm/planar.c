@@ -1,18 +1,18 @@
-/* Arranges the rings of a multipolygon as libosmium does: by where they lie, and not by what their ways are called.
+/* Arranges the rings of a multipolygon as libosmium does: by their geometry, and not by the roles of their ways.
  *
- * Input: closed rings. Output: simple rings with the area inside on their right, so outer ones go clockwise. Main idea:
- * where no place comes twice, the rings are simple, and an odd number of others around one makes it a hole. Else all
- * rings are taken apart into edges. Of two edges that are alike neither bounds anything, so both go. Around a place
- * sectors inside and outside take turns:
+ * Input: closed rings. Output: simple rings with the inside of the area on their right, so outer rings go clockwise.
+ * The main idea: if no place occurs twice, the rings are simple, and a ring that an odd number of others contain is a
+ * hole. Otherwise all rings are split into edges. Two equal edges bound nothing, so both are dropped. Around a place,
+ * sectors inside and outside alternate:
  *
- *          \  in  /          An edge that arrives goes on by the next one around the same sector inside.
- *      out  \    /  out      A walk that comes back to a place has found a ring, which is taken out of it:
- *            >--<            so holes that touch, or touch the outer ring, stay apart, and an island between
- *           /    \           two holes that touch twice is an outer ring.
+ *          \  in  /          An edge that arrives continues with the other edge of the same inner sector. A walk
+ *      out  \    /  out      that returns to a place has found a ring, which is removed from the walk. So holes that
+ *            >--<            touch each other or the outer ring stay separate, and an island between two holes that
+ *           /    \           touch twice becomes an outer ring.
  *          /  in  \
  *
- * Parts of the drawing that are not connected tell by rays from their westernmost places whether they lie in others.
- * Time is n log n where places come twice, and linear where they do not, but for rays. */
+ * For parts of the drawing that are not connected, rays from their westernmost places show whether they are inside
+ * others. The time is n log n if places occur twice, otherwise linear, apart from the rays. */
 #include "osm/planar.h"
 
 #include "osm/node_set.h"
@@ -20,32 +20,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Edges that rays of one file may meet. Only files that were made to slow us down have so many. */
+/* The limit for edges that the rays of a file meet. Only malicious files exceed it. */
 static const size_t MOST_STEPS = (size_t)1 << 28;
 enum { MOST_ROWS = 1 << 16, MOST_SPANS = 4 };
-/* Rays of so few owners may meet all edges: rows take longer. */
+/* With at most this many owners, rays are compared with all edges, because making the rows would take longer. */
 enum { FEW_OWNERS = 8, FEW_PLACES = 32 };
 
-/* An edge of the part of the drawing, or of the ring, that owns it. Ends are keys: places in order from west to east,
- * then from south to north. */
+/* An edge of the ring, or of the connected part of the drawing, that owns it. Its ends are keys: places sorted from
+ * west to east, then from south to north. */
 typedef struct edge {
     uint64_t ends[2];
     uint32_t owner;
 } edge;
 
-/* An edge as it leaves one of its places. */
+/* An edge as it leaves one of its two places. */
 typedef struct half_edge {
     uint64_t from, to;
     uint32_t edge;
 } half_edge;
 
-/* The edges by rows of latitude, so that a ray meets few of them. */
+/* The edges sorted into rows of latitude, so that a ray meets few of them. */
 typedef struct row_index {
     int32_t bottom;
     double rows_a_unit;
-    size_t row_count; /* 0: not made */
-    size_t *first;    /* by row, and one more: index into items */
-    uint32_t *items;  /* edges */
+    size_t row_count; /* 0: the rows were not made */
+    size_t *first;    /* by row, and one more at the end: index into items */
+    uint32_t *items;  /* indices of edges */
 } row_index;
 
 typedef struct arranger {
@@ -55,18 +55,18 @@ typedef struct arranger {
     size_t edge_count;
     uint32_t owner_count;
     uint64_t *tops; /* by owner: one of its places */
-    uint8_t *odd;   /* by owner: it lies in an odd number of others */
+    uint8_t *odd;   /* by owner: it is inside an odd number of others */
     row_index rows;
-    /* If places come twice: */
-    half_edge *halves; /* by their places, and counter-clockwise around them from the south on */
+    /* Only used if places occur twice: */
+    half_edge *halves; /* sorted by place, and around each place counter-clockwise from the south */
     size_t half_count;
-    uint32_t *twins, *nodes; /* by half-edge: the same edge from the other end; its place's number */
-    uint32_t *first;         /* by node, and one more: its first half-edge */
+    uint32_t *twins, *nodes; /* by half-edge: the same edge from its other end; the index of its place */
+    uint32_t *first;         /* by node, and one more at the end: its first half-edge */
     uint32_t node_count;
-    uint32_t *parts;  /* by node: its part of the drawing; NONE */
-    uint8_t *leaves;  /* by half-edge: 1 if a ring goes along it from its place, 0 if towards it; 2: not known */
-    uint32_t *stack;  /* of nodes, or of a walk's half-edges */
-    uint32_t *walked; /* by node: where it stands on the walk; NONE */
+    uint32_t *parts;  /* by node: its connected part; NONE */
+    uint8_t *leaves;  /* by half-edge: 1 if a ring leaves along it, 0 if one arrives along it; 2: not known */
+    uint32_t *stack;  /* of nodes, or of the half-edges of a walk */
+    uint32_t *walked; /* by node: its position on the walk; NONE */
 } arranger;
 
 #define NONE UINT32_MAX
@@ -97,7 +97,8 @@ static void get_rows(const arranger *self, size_t i, size_t *low, size_t *high) 
     *high = a < b ? b : a;
 }
 
-/* Chooses so many rows that edges lie in four each or fewer, taken together. Returns in how many they lie. */
+/* Chooses the number of rows, so that an edge is in at most four rows on average. Returns the total number of entries.
+ */
 static size_t choose_rows(arranger *self) {
     row_index *rows = &self->rows;
     int32_t top = rows->bottom = y_of(self->edges[0].ends[0]);
@@ -125,7 +126,7 @@ static bool index_rows(arranger *self) {
     if (!(rows->first = camber_alloc_zero(self->context, rows->row_count + 2, sizeof *rows->first)) ||
         !(rows->items = camber_alloc(self->context, spans, sizeof *rows->items)))
         return false;
-    size_t *next = rows->first + 1; /* where the next edge of a row goes */
+    size_t *next = rows->first + 1; /* by row: the position of its next edge */
     for (size_t i = 0; i < self->edge_count; i++) {
         get_rows(self, i, &low, &high);
         for (size_t row = low; row <= high; row++)
@@ -141,7 +142,8 @@ static bool index_rows(arranger *self) {
     return true;
 }
 
-/* On which side of the edge a place lies. That is exact for edges below some 9 degrees, whose products fit a double. */
+/* Returns on which side of the edge a place is. Exact for edges shorter than about 9 degrees, whose products a double
+ * represents exactly. */
 static double side_of(const edge *line, uint64_t place) {
     const double x = x_of(place), y = y_of(place), x0 = x_of(line->ends[0]) - x, y0 = y_of(line->ends[0]) - y,
                  x1 = x_of(line->ends[1]) - x, y1 = y_of(line->ends[1]) - y;
@@ -154,7 +156,7 @@ static bool meets(const edge *line, uint32_t owner, uint64_t place, int32_t y) {
     return (y0 > y) != (y1 > y) && line->owner != owner && (side_of(line, place) > 0.0) == (y1 > y0);
 }
 
-/* Whether a ray from an owner's place to the east meets an odd number of edges of others. */
+/* Whether a ray from an owner's place to the east meets an odd number of other owners' edges. */
 static bool is_odd(arranger *self, uint32_t owner) {
     const row_index *rows = &self->rows;
     const uint64_t place = self->tops[owner];
@@ -173,7 +175,7 @@ static bool is_odd(arranger *self, uint32_t owner) {
     return odd;
 }
 
-/* *known: it was not too much to look at. false: there is no memory. */
+/* *known: the limit was not exceeded. Returns false if there is no memory. */
 static bool find_odd(arranger *self, bool *known) {
     *known = true;
     if (self->edge_count == 0)
@@ -195,7 +197,7 @@ static bool do_cross(const edge *a, const edge *b) {
     return ((a0 < 0.0 && a1 > 0.0) || (a0 > 0.0 && a1 < 0.0)) && ((b0 < 0.0 && b1 > 0.0) || (b0 > 0.0 && b1 < 0.0));
 }
 
-/* Whether a ring crosses another: then its role is as good as what geometry says. */
+/* Whether a ring crosses another. If so, its role is as good as the result of geometry. */
 static bool crosses_others(arranger *self, size_t first_edge, size_t end_edge) {
     for (size_t i = first_edge; i < end_edge; i++) {
         size_t low, high;
@@ -213,7 +215,7 @@ static bool crosses_others(arranger *self, size_t first_edge, size_t end_edge) {
     return false;
 }
 
-/* The edges of all rings, each owned by its ring. */
+/* Lists the edges of all rings, each owned by its ring. */
 static bool list_edges(arranger *self) {
     const camber_osm_assembly *to = self->to;
     if (!(self->edges = camber_alloc(self->context, to->place_count, sizeof *self->edges)))
@@ -254,7 +256,8 @@ static bool find_roles(arranger *self) {
     return true;
 }
 
-/* Whether a place comes twice among a few: no table is made for most relations, which are houses with a yard. */
+/* Whether a place occurs twice, for a few places. Most relations are houses with a yard, for which making a table is
+ * not worth it. */
 static bool repeats_few(const camber_osm_assembly *to) {
     uint64_t keys[FEW_PLACES];
     size_t count = 0;
@@ -270,7 +273,7 @@ static bool repeats_few(const camber_osm_assembly *to) {
     return false;
 }
 
-/* Whether a place comes twice, in one ring or in two. false: there is no memory. */
+/* Whether a place occurs twice, in one ring or in two. Returns false if there is no memory. */
 static bool find_repeated(const arranger *self, bool *repeats) {
     const camber_osm_assembly *to = self->to;
     size_t slots = 2 * FEW_PLACES;
@@ -307,7 +310,7 @@ static int compare_edges(const void *left, const void *right) {
     return 0;
 }
 
-/* Drops edges by twos where they are alike: they bound nothing. */
+/* Drops pairs of equal edges, which bound nothing. */
 static void drop_pairs(arranger *self) {
     size_t kept = 0;
     qsort(self->edges, self->edge_count, sizeof *self->edges, compare_edges);
@@ -320,8 +323,8 @@ static void drop_pairs(arranger *self) {
     self->edge_count = kept;
 }
 
-/* East of its place, or straight north: at the westernmost place of a part all are, and the first is next to what lies
- * outside of the part. */
+/* Whether a half-edge goes east or straight north. At the westernmost place of a part all do, and the first one is next
+ * to the outside of the part. */
 static bool goes_east(const half_edge *half) {
     return half->to > half->from;
 }
@@ -341,7 +344,7 @@ static bool make_halves(arranger *self) {
     camber_context *context = self->context;
     self->half_count = 2 * self->edge_count;
     const size_t count = self->half_count;
-    uint32_t *at = camber_alloc(context, count, sizeof *at); /* where both halves of an edge are */
+    uint32_t *at = camber_alloc(context, count, sizeof *at); /* by edge: the indices of its two half-edges */
     if (!at)
         return false;
     if (!(self->halves = camber_alloc(context, count, sizeof *self->halves)) ||
@@ -377,7 +380,7 @@ static bool make_halves(arranger *self) {
     return true;
 }
 
-/* Numbers the parts of the drawing, from the west. */
+/* Numbers the connected parts of the drawing, from the west. */
 static void find_parts(arranger *self) {
     for (uint32_t n = 0; n < self->node_count; n++) {
         if (self->parts[n] != NONE)
@@ -401,15 +404,15 @@ static void find_parts(arranger *self) {
     }
 }
 
-/* Sectors around a node take turns, and so do the directions of its half-edges, of which one is known. */
+/* Sectors around a node alternate, and so do the directions of its half-edges, of which one is known. */
 static void direct_node(arranger *self, uint32_t half) {
     const uint32_t node = self->nodes[half];
     for (uint32_t i = self->first[node]; i < self->first[node + 1]; i++)
         self->leaves[i] = self->leaves[half] ^ ((i ^ half) & 1);
 }
 
-/* Directs all edges so that what is inside lies on their right. false: they cross, or an end of an edge has no other.
- */
+/* Directs all edges so that the inside is on their right. Returns false if edges cross, or if an edge ends without a
+ * continuation. */
 static bool direct_edges(arranger *self) {
     for (uint32_t n = 0; n < self->node_count; n++) {
         uint32_t half = self->first[n];
@@ -418,7 +421,8 @@ static bool direct_edges(arranger *self) {
             return false;
         if (self->leaves[half] != 2)
             continue;
-        /* The westernmost of its part: to the right of its first half-edge is what the part lies in. */
+        /* This is the westernmost node of its part. The surroundings of the part are to the right of its first
+         * half-edge. */
         self->leaves[half] = self->odd[self->parts[n]];
         direct_node(self, half);
         self->stack[depth++] = n;
@@ -461,7 +465,7 @@ static bool take_ring(arranger *self, size_t from, size_t end) {
     return true;
 }
 
-/* Walks along all half-edges that rings leave by, and takes rings out. */
+/* Follows all half-edges along which rings leave their places, and takes out rings. */
 static bool walk(arranger *self) {
     for (size_t start = 0; start < self->half_count; start++) {
         size_t depth = 0;
@@ -474,7 +478,7 @@ static bool walk(arranger *self) {
             }
             self->walked[node] = (uint32_t)depth;
             self->stack[depth++] = half;
-            self->leaves[half] = 3; /* gone along */
+            self->leaves[half] = 3; /* already followed */
             const uint32_t arrived = self->nodes[twin];
             half = twin + 1 < self->first[arrived + 1] ? twin + 1 : self->first[arrived];
         }
@@ -484,7 +488,7 @@ static bool walk(arranger *self) {
     return true;
 }
 
-/* Takes the rings apart, and makes rings of their edges. If edges cross the rings stay as they are. */
+/* Splits the rings into edges and makes new rings of them. If edges cross, the rings stay as they are. */
 static bool redraw(arranger *self) {
     bool known = false;
     drop_pairs(self);

@@ -1,14 +1,15 @@
 /* Reads the lines of a PBF file of OpenStreetMap into a set of features.
  *
- * Input: a path. Output: what GDAL's layer "lines" gives by the rules of gdal/osmconf.ini: the same lines with the same
- * attributes in the same order, to the last bit. The file is read in two passes, and no blob of it twice but a few: the
- * ways first, which lie at its end, then the places of those nodes that ways name. So a node takes eight bytes and a
- * bit, whatever else the file has. Where areas are wanted, the relations that name ways are read before them. A file in
- * which a kind of entities comes before another one that it should follow is read anew: each pass looks for its kind in
- * the whole of it, which takes time and no memory. Where points are wanted, nodes are read once more, for those with
- * tags: these are GDAL's layer "points". A third pass packs the ways with these places, and frees the nodes;
- * a fourth makes world coordinates. Each pass has several threads. Where areas are wanted, the sea is made of the
- * coast's ways as well (coast.h). */
+ * Input: a path. Output: the same lines, with the same attributes and in the same order, as those of GDAL's layer
+ * "lines" with the rules in gdal/osmconf.ini, equal to the last bit. The file is read in two passes, and hardly any
+ * blob is read twice: first the ways, which are at its end, then the places of the nodes that the ways name. So a node
+ * takes little more than eight bytes, whatever else the file contains. A third pass packs the ways with these places
+ * and frees the nodes; a fourth makes world coordinates. Each pass uses several threads.
+ *
+ * If areas are wanted, the relations that name ways are read before the ways, and the sea is made from the ways of the
+ * coast (coast.h). If points are wanted, nodes are read once more, for those with tags; they are GDAL's layer "points".
+ * If the kinds of entities are not in the usual order, reading starts again: each pass then searches the whole file for
+ * its kind, which takes more time, but no more memory. */
 #include "osm/osm.h"
 
 #include "base/threads.h"
@@ -23,8 +24,8 @@
 
 #include <math.h>
 
-static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* of the progress */
-/* OGR's names of the layers. */
+static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* fractions of the progress */
+/* The names of the layers in OGR. */
 static const char LAYER[] = "lines", RELATION_LAYER[] = "multipolygons", POINT_LAYER[] = "points";
 
 typedef struct reader {
@@ -33,14 +34,14 @@ typedef struct reader {
     const camber_source_desc *desc;
     camber_osm_where where;
     camber_osm_ways ways;
-    camber_osm_coast coast; /* its ways, where the sea is wanted */
-    size_t coast_key;       /* the style's property "natural"; SIZE_MAX: the sea is not wanted */
-    const char *coastline;  /* its value on a coast, interned */
+    camber_osm_coast coast; /* its ways, if the sea is wanted */
+    size_t coast_key;       /* the index of the property "natural" in the style; SIZE_MAX: the sea is not wanted */
+    const char *coastline;  /* the interned value of a coast */
     uint32_t layer;
-    uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, of each set of tags: index + 1; 0: not needed yet */
-    size_t met;                               /* of the relations' ways, so many of those met were added */
+    uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, for each set of tags: index + 1; 0: not needed yet */
+    size_t met; /* how many of the relations' ways were added, in the order in which they were met */
     size_t skipped, clamped, splits;
-    size_t nodes, missing; /* that ways name; and that the file does not have */
+    size_t nodes, missing; /* nodes that ways name, and those of them that the file does not have */
     unsigned threads;
 } reader;
 
@@ -53,10 +54,10 @@ static bool reads(const camber_source_desc *desc) {
 /* ---- Ways become lines, on any thread ---- */
 
 typedef struct made_way {
-    uint32_t tags;       /* as the way has them, with the area's bit set only where the line is closed */
-    uint32_t line_count; /* as a line, or as an outline; then comes its ring */
+    uint32_t tags;       /* the bits of the way, but the area's is only set if the line is closed */
+    uint32_t line_count; /* lines, or outlines; the ring comes after them */
     bool has_ring, is_coast;
-    uint32_t place_count; /* of a coast, and of a relation's way, in the run's places */
+    uint32_t place_count; /* places in the run, of a coast or of a way of a relation */
     size_t first_place;
 } made_way;
 
@@ -77,7 +78,7 @@ static void free_run(camber_context *context, void *slot) {
     camber_free(context, run->points.bytes);
 }
 
-/* Unpacks the places of a run, and projects them: some at a time, which stay in the cache. */
+/* Unpacks the places of a run, and projects them in batches that stay in the cache. */
 static void project_run(const camber_osm_ways *ways, const camber_osm_run *from, made_run *run) {
     enum { MOST = 256 };
     double longitudes[MOST], latitudes[MOST], *world = (double *)(void *)run->world.bytes;
@@ -93,7 +94,7 @@ static void project_run(const camber_osm_ways *ways, const camber_osm_run *from,
     }
 }
 
-/* Adds the nodes of a way, the first of which is the run's node of this number. */
+/* Adds the nodes of a way. first: the index of the first of them in the run. */
 static void add_nodes(const camber_osm_way *way, size_t first, made_run *run) {
     const double *world = (const double *)(const void *)run->world.bytes;
     const uint64_t *places = (const uint64_t *)(const void *)run->places.bytes;
@@ -102,7 +103,7 @@ static void add_nodes(const camber_osm_way *way, size_t first, made_run *run) {
         run->lines.clamped_points += fabs((double)camber_osm_latitude(places[i])) > CAMBER_MERCATOR_LATITUDE * 1.0e7;
 }
 
-/* Makes a ring of a closed way. counts: what is counted of its points was not counted with an outline. */
+/* Makes a ring of a closed way. counts: clamped points were not already counted for an outline. */
 static bool make_ring(const camber_osm_way *way, size_t node, made_run *run, bool counts) {
     camber_world_lines *lines = &run->lines;
     camber_rings rings = {.stats = &run->stats};
@@ -129,7 +130,7 @@ static bool is_coast(const reader *self, const camber_osm_way *way) {
     return value->type == CAMBER_VALUE_STRING && value->string == self->coastline;
 }
 
-/* The lines of a way that was packed, and its ring if it is an area. node: its first among the run's. */
+/* Makes the lines of a packed way, and its ring if it is an area. node: the index of its first node in the run. */
 static void make_way(const reader *self, const camber_osm_way *way, size_t node, made_run *run) {
     const camber_schema *schema = self->features->schema;
     camber_world_lines *lines = &run->lines;
@@ -155,7 +156,7 @@ static bool make_run(void *user, camber_osm_pass *pass, size_t part, void *slot,
     made_run *run = slot;
     size_t points = camber_world_lines_most_points(from->node_count),
            ends = camber_world_lines_most_ends(from->node_count);
-    if (schema->wants_areas) { /* a ring adds its points, and four at most */
+    if (schema->wants_areas) { /* a ring adds its points, and at most four more */
         points += from->node_count + 4 * from->way_count;
         ends += from->way_count;
     }
@@ -205,7 +206,7 @@ static camber_status add_lines(reader *self, uint32_t class_index, const camber_
     return status;
 }
 
-/* filled: its ring is drawn; else a relation is in its place. */
+/* filled: its ring is drawn; otherwise a relation is filled instead. */
 static camber_status add_way(reader *self, const made_way *way, bool filled, const camber_world_lines *lines,
                              size_t *line) {
     const camber_geometry_kind kind = way->tags & CAMBER_OSM_WAY_AREA ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
@@ -253,7 +254,7 @@ static camber_status add_run(void *user, size_t part, void *slot) {
 
 /* ---- Nodes become points ---- */
 
-/* Makes points of the nodes with tags. They come before the lines and have a layer of their own, as GDAL has it. */
+/* Makes points of the nodes with tags. They come before the lines and have a layer of their own, as in GDAL. */
 static camber_status make_points(reader *self) {
     camber_osm_ways *ways = &self->ways;
     camber_world_lines world = {.context = self->context};
@@ -283,10 +284,11 @@ static camber_status make_points(reader *self) {
 
 /* ---- Relations become areas ---- */
 
-/* Boundaries of all levels name a way some ten times. A file of a megabyte could make relations of 10^10 places. */
+/* Boundaries of all levels together name each way about ten times. Without a limit, a file of one megabyte could make
+ * relations with 10^10 places. */
 static const size_t MOST_USES = 32, MOST_PLACES = (size_t)1 << 20;
 
-/* An area of a relation. */
+/* The area of a relation. */
 typedef struct made_area {
     camber_osm_assembly assembly;
     camber_world_lines lines; /* one ring */
@@ -294,7 +296,7 @@ typedef struct made_area {
     size_t place_count; /* of all relations so far */
     uint32_t class_index;
     bool added;
-    bool is_sea; /* rings lie within a box: their edges go the way that they go, however far that is */
+    bool is_sea; /* rings are inside a box: their edges are kept as they are, however long they are */
 } made_area;
 
 static camber_status add_ring(reader *self, made_area *area, const camber_osm_ring *ring) {
@@ -319,7 +321,7 @@ static camber_status add_ring(reader *self, made_area *area, const camber_osm_ri
     return count && status == CAMBER_OK ? camber_features_add_polyline(self->features, lines->points, count) : status;
 }
 
-/* Adds the rings that were put together as one area of its class. */
+/* Adds the assembled rings as one area of its class. */
 static camber_status add_rings(reader *self, made_area *area) {
     camber_status status = CAMBER_OK;
     area->added = false;
@@ -336,10 +338,11 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
         return CAMBER_OK;
     area->place_count += camber_osm_relations_count_places(relations, relation);
     if (area->place_count > MOST_PLACES + MOST_USES * relations->place_count)
-        return camber_fail(self->context, CAMBER_ERROR_LIMIT,
-                           "%s: its multipolygons name their ways %zu times and more; get it from a source that you "
-                           "trust",
-                           self->desc->path, MOST_USES);
+        return camber_fail(
+            self->context, CAMBER_ERROR_LIMIT,
+            "%s: its multipolygons name their ways more than %zu times each; get it from a source that you "
+            "trust",
+            self->desc->path, MOST_USES);
     camber_status status = camber_osm_relations_assemble(&self->ways.relations, relation, &area->assembly);
     self->features->stats.open_relations += status == CAMBER_OK && area->assembly.open;
     if (status == CAMBER_OK && area->assembly.ring_count)
@@ -350,7 +353,7 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
     return status;
 }
 
-/* The class of the sea: water, as ponds are. */
+/* Finds the class of the sea: water, like that of ponds. */
 static camber_status find_sea_class(reader *self, uint32_t *index) {
     const size_t count = self->features->schema->property_count;
     camber_value *values = camber_alloc_zero(self->context, count, sizeof *values);
@@ -364,17 +367,17 @@ static camber_status find_sea_class(reader *self, uint32_t *index) {
     return status;
 }
 
-/* Makes an area of the sea, which OpenStreetMap has the coast of. */
+/* Makes an area of the sea from the coast. */
 static camber_status make_sea(reader *self, made_area *area) {
     area->is_sea = true;
     camber_status status = camber_osm_coast_fill(&self->coast, &area->assembly);
     if (status == CAMBER_OK && area->assembly.open)
         camber_log(
             self->context, CAMBER_LOG_WARNING,
-            "%s: no sea is drawn: %s; cut an extract by a box, with whole ways, or name a file of water areas as "
+            "%s: no sea is drawn: %s; cut an extract by a box, with complete ways, or give a file of water areas as "
             "another input",
             self->desc->path,
-            self->coast.box.left < self->coast.box.right ? "its coast is not whole in the box that its header names"
+            self->coast.box.left < self->coast.box.right ? "its coast is incomplete in the box that its header names"
                                                          : "its header names no box, or one across the antimeridian");
     camber_osm_coast_free(&self->coast);
     if (status == CAMBER_OK && area->assembly.ring_count)
@@ -382,7 +385,7 @@ static camber_status make_sea(reader *self, made_area *area) {
     return status == CAMBER_OK ? add_rings(self, area) : status;
 }
 
-/* Makes areas once all ways are lines. They have a layer of their own, as GDAL has it. */
+/* Makes areas after all ways have become lines. They have a layer of their own, as in GDAL. */
 static camber_status make_areas(reader *self) {
     camber_osm_ways *ways = &self->ways;
     made_area area = {.assembly.context = self->context, .lines = {.context = self->context, .uncut = true}};
@@ -434,7 +437,7 @@ static camber_status make_lines(reader *self) {
     size_t points = features->point_count;
     for (size_t i = 0; i < ways->run_count; i++)
         points += ways->runs[i].node_count;
-    /* At once: an array that grows is copied, and takes half as much again. */
+    /* Grows once, because an array that grows step by step is copied, and takes half as much again. */
     if (status == CAMBER_OK &&
         !camber_grow(self->context, &features->points, &features->point_capacity, points, 2 * sizeof *features->points))
         status = CAMBER_ERROR_MEMORY;
@@ -445,8 +448,8 @@ static camber_status make_lines(reader *self) {
 
 /* ---- A file ---- */
 
-/* Reads relations if they are wanted, ways, and the places of their nodes. *declined: the file is not in order, or not
- * for this reader. */
+/* Reads relations if they are wanted, then ways, then the places of their nodes. *declined: the file is not in order,
+ * or not for this reader. */
 static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_order, bool *declined) {
     const bool areas = self->features->schema->wants_areas && !self->desc->layer;
     camber_osm_ends ends;
@@ -465,8 +468,8 @@ static camber_status read_kinds(reader *self, camber_osm_file *file, bool any_or
                                    .to = NODES_SHARE};
     ways.to = WAYS_SHARE;
     if (!any_order) {
-        /* The last blob that begins with ways may go on with relations, and the last that begins with nodes with ways.
-         */
+        /* The last blob that begins with ways may end with relations, and the last that begins with nodes may end with
+         * ways. */
         relations.first_blob = ends.ways ? ends.ways - 1 : 0;
         ways.first_blob = ends.nodes ? ends.nodes - 1 : 0;
         relations.end_blob = ways.end_blob = ends.ways;
@@ -514,19 +517,19 @@ static camber_status check_result(const reader *self, size_t features_before) {
     if (self->nodes > 0 && self->missing == self->nodes)
         return camber_fail(
             self->context, CAMBER_ERROR_INPUT,
-            "%s: it has none of the %zu nodes that its ways refer to; extract it again with them, as osmium "
+            "%s: has none of the %zu nodes to which its ways refer; extract it again with its nodes, as osmium "
             "extract and osmium getid -r do",
             self->desc->path, self->nodes);
     if (self->skipped == 0)
         return CAMBER_OK;
     return camber_fail(self->context, CAMBER_ERROR_INPUT,
-                       "%s: no lines: %zu features have other geometry (points, areas, nothing); name another --layer, "
-                       "or a style that draws outlines of polygons",
+                       "%s: no lines; its %zu features are points, areas or empty; choose another --layer, or a style "
+                       "that draws outlines of polygons",
                        self->desc->path, self->skipped);
 }
 
-/* The sea is wanted where areas are, by their key, and the whole coast is read. box: of the file's header; the world
- * ends where Web Mercator does. */
+/* Enables the sea if areas are wanted, the style reads its key, and the whole coast is read. box: from the file's
+ * header, cut off at the limits of Web Mercator. */
 static camber_status want_sea(reader *self, camber_osm_box box) {
     const camber_schema *schema = self->features->schema;
     const int32_t most = (int32_t)(CAMBER_MERCATOR_LATITUDE * 1.0e7);
@@ -541,14 +544,13 @@ static camber_status want_sea(reader *self, camber_osm_box box) {
     return camber_features_intern(self->features, "coastline", &self->coastline);
 }
 
-/* GDAL's reader finds out why nothing passes a filter, if it can read the file. */
+/* If nothing passes a filter, leaves it to GDAL's reader to explain why, provided that GDAL can read the file. */
 static camber_status explain_filter(const reader *self, const camber_osm_file *file, bool *declined) {
     camber_osm_beyond beyond;
     const camber_status status = camber_osm_find_beyond(file, self->threads, &beyond);
     *declined = status == CAMBER_OK && !camber_osm_is_beyond(&beyond);
     if (status == CAMBER_OK && !*declined)
-        camber_log(self->context, CAMBER_LOG_WARNING,
-                   "%s: nothing passes the filter \"%s\"; check its keys and the values that it compares with",
+        camber_log(self->context, CAMBER_LOG_WARNING, "%s: nothing passes the filter \"%s\"; check its keys and values",
                    self->desc->path, self->desc->where);
     return status;
 }
@@ -592,8 +594,8 @@ static void add_stats(const reader *self) {
         camber_log(self->context, CAMBER_LOG_INFO, "%s: left out what is %s of %zu features", self->desc->path,
                    camber_features_left_out(camber_schema_kinds(features->schema, false)), self->skipped);
     if (self->missing)
-        camber_log(self->context, CAMBER_LOG_INFO, "%s: ways refer to %zu nodes that are not in it", self->desc->path,
-                   self->missing);
+        camber_log(self->context, CAMBER_LOG_INFO, "%s: ways refer to %zu nodes that the file does not have",
+                   self->desc->path, self->missing);
     if (self->clamped)
         camber_log(self->context, CAMBER_LOG_WARNING, "%s: %zu points beyond latitude 85.051129 are moved there",
                    self->desc->path, self->clamped);
@@ -624,7 +626,7 @@ static camber_status read_pbf(camber_features *features, const camber_source_des
     return CAMBER_OK;
 }
 
-/* Whether GDAL reads rightly what this reader leaves. */
+/* Fails if GDAL would read wrongly what this reader leaves to it. */
 static camber_status leave(camber_context *context, const camber_source_desc *desc) {
     camber_osm_file file;
     camber_osm_beyond beyond;
@@ -637,18 +639,18 @@ static camber_status leave(camber_context *context, const camber_source_desc *de
     if (status != CAMBER_OK || !camber_osm_is_beyond(&beyond))
         return status;
     char packing[32];
-    snprintf(packing, sizeof packing, "packing by %s", camber_osm_codec_get_name(beyond.codec));
+    snprintf(packing, sizeof packing, "compression with %s", camber_osm_codec_get_name(beyond.codec));
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: only GDAL can read it for this layer, filter or style, and GDAL does not know %s; %s",
+                       "%s: only GDAL can read it for this layer, filter or style, but GDAL does not support %s; %s",
                        desc->path,
                        beyond.codec       ? packing
                        : beyond.no_size   ? "blobs without their size"
-                       : beyond.unordered ? "any other order than nodes, ways, relations"
+                       : beyond.unordered ? "an order other than nodes, ways, relations"
                                           : "places on ways",
                        beyond.codec || beyond.no_size ? "compress it again with osmium cat -f pbf,pbf_compression=zlib"
                        : beyond.unordered             ? "sort it with osmium sort"
-                                                      : "do without, or use the file that osmium "
-                                                        "add-locations-to-ways was given");
+                                                      : "draw it without these, or use the file from which "
+                                                        "osmium add-locations-to-ways made it");
 }
 
 static const char *format(size_t n) {

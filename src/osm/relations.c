@@ -1,7 +1,7 @@
-/* Keeps relations, and the places of the ways that they name, until rings are made of them.
+/* Keeps relations, and the places of the ways that they name, until rings are assembled from them.
  *
- * Input: relations, before any way is read; then the ways that they name, in the order of the file. Output: rings.
- * Ways are found by their ids, and a way that several relations name is kept once. */
+ * Input: relations, before any way is read; then the ways that they name, in the order of the file. Output: rings. Ways
+ * are found by their ids, and a way that several relations name is stored once. */
 #include "osm/relations.h"
 
 void camber_osm_relations_init(camber_osm_relations *relations, camber_context *context) {
@@ -30,13 +30,13 @@ camber_status camber_osm_relations_complete(camber_osm_relations *relations) {
     return status;
 }
 
-/* Gives a relation the tags of its first outer way that has any. */
+/* Gives a relation the tags of its first outer way that has tags. */
 static void take_tags(camber_osm_relations *relations, camber_osm_relation *one) {
-    camber_osm_finger finger = {.leaf_id = UINT64_MAX, .id = -2};
+    camber_osm_search_hint hint = {.leaf_id = UINT64_MAX, .id = -2};
     for (size_t m = one->first_member; m < one->first_member + one->member_count; m++) {
         uint32_t index;
         if (relations->members[m].role == CAMBER_OSM_ROLE_INNER ||
-            !camber_osm_relations_find(relations, relations->members[m].way, &finger, &index))
+            !camber_osm_relations_find(relations, relations->members[m].way, &hint, &index))
             continue;
         one->set = one->set ? one->set : relations->ways[index].set;
         relations->ways[index].is_outer |= one->set && relations->ways[index].set == one->set;
@@ -49,9 +49,9 @@ void camber_osm_relations_settle(camber_osm_relations *relations) {
             take_tags(relations, &relations->items[i]);
 }
 
-bool camber_osm_relations_find(const camber_osm_relations *relations, int64_t way, camber_osm_finger *finger,
+bool camber_osm_relations_find(const camber_osm_relations *relations, int64_t way, camber_osm_search_hint *hint,
                                uint32_t *index) {
-    return relations->ways && camber_osm_node_set_find(&relations->ids, way, finger, index);
+    return relations->ways && camber_osm_node_set_find(&relations->ids, way, hint, index);
 }
 
 camber_status camber_osm_relations_add_places(camber_osm_relations *relations, size_t met, const uint64_t *places,
@@ -77,26 +77,26 @@ size_t camber_osm_relations_count_missing(const camber_osm_relations *relations)
 
 size_t camber_osm_relations_count_places(const camber_osm_relations *relations, size_t relation) {
     const camber_osm_relation *one = &relations->items[relation];
-    camber_osm_finger finger = {.leaf_id = UINT64_MAX, .id = -2};
+    camber_osm_search_hint hint = {.leaf_id = UINT64_MAX, .id = -2};
     size_t count = 0;
     for (size_t m = one->first_member; m < one->first_member + one->member_count; m++) {
         uint32_t index;
-        if (camber_osm_relations_find(relations, relations->members[m].way, &finger, &index))
+        if (camber_osm_relations_find(relations, relations->members[m].way, &hint, &index))
             count += relations->ways[index].place_count;
     }
     return count;
 }
 
-/* Lists the pieces of a relation that the file has. *lacks becomes true where it lacks some. */
+/* Lists the pieces of a relation that the file contains. *lacks becomes true if some are missing. */
 static size_t list_pieces(const camber_osm_relations *relations, size_t relation, camber_osm_piece *pieces,
                           bool *lacks) {
     const camber_osm_relation *one = &relations->items[relation];
-    camber_osm_finger finger = {.leaf_id = UINT64_MAX, .id = -2};
+    camber_osm_search_hint hint = {.leaf_id = UINT64_MAX, .id = -2};
     size_t count = 0;
     for (size_t m = one->first_member; m < one->first_member + one->member_count; m++) {
         const camber_osm_member *member = &relations->members[m];
         uint32_t index;
-        const bool found = camber_osm_relations_find(relations, member->way, &finger, &index);
+        const bool found = camber_osm_relations_find(relations, member->way, &hint, &index);
         camber_osm_member_way *way = found ? &relations->ways[index] : NULL;
         *lacks = *lacks || !way || way->place_count < 2;
         if (!way || way->place_count < 2 || way->listed == (uint32_t)relation + 1)

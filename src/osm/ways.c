@@ -1,9 +1,9 @@
-/* Reads the ways of a file, before them the relations that are areas, and the nodes with tags.
+/* Reads the ways of a file, and before them the relations that are areas; also the nodes with tags.
  *
- * Input: blobs, and the keys that a style names. Output: for each way with a tag and at least two nodes its set of tags
- * and the ids of its nodes, and the set of all ids. Ways that relations name are read without tags, too. For each node
- * with a tag it is the set of tags and where the node lies. Threads decode blocks: tags become indices of strings, and
- * entities that agree in them share a set. The caller's thread then gives a block's sets to those of the file. */
+ * Input: blobs, and the keys that a style names. Output: for each way with a tag and at least two nodes, its set of
+ * tags and the ids of its nodes, and the set of all ids. Ways that relations name are read even without tags. For each
+ * node with a tag: its set of tags and its position. Threads decode blocks: tags become indices of strings, and
+ * entities with equal tags share a set. The caller's thread then merges a block's sets into those of the file. */
 #include "osm/ways.h"
 
 #include "features/osm_keys.h"
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <strings.h>
 
-/* A run is what one thread makes lines of at a time. */
+/* A run is the number of nodes from which one thread makes lines at a time. */
 enum { RUN_NODES = 16384, FIRST_SLOTS = 1024, FIRST_LEAF_SLOTS = 16384 };
 enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, WAY_LATITUDES = 9, STRING = 1 };
 enum { NODE_LATITUDE = 8, NODE_LONGITUDE = 9, DENSE_LATITUDES = 8, DENSE_LONGITUDES = 9, DENSE_TAGS = 10 };
@@ -33,7 +33,7 @@ static camber_osm_key *find_key(camber_osm_ways *ways, const char *name) {
     return find_key_of(ways, (camber_osm_text){name, strlen(name)});
 }
 
-/* Adds the filter's keys. false: one differs from another key in its case alone, which SQL does not tell apart. */
+/* Adds the filter's keys. Returns false if one differs from another key only in its case, which SQL ignores. */
 static bool find_filter_keys(camber_osm_ways *ways) {
     const camber_osm_where *where = ways->where;
     for (uint32_t i = 0; where && i < where->key_count; i++) {
@@ -47,7 +47,7 @@ static bool find_filter_keys(camber_osm_ways *ways) {
     return true;
 }
 
-/* OGR's own columns, which are no tags. */
+/* OGR's own columns, which are not tags. */
 static bool is_column(const char *name) {
     return strncmp(name, "osm_", 4) == 0 || strcmp(name, "other_tags") == 0 || strcmp(name, "all_tags") == 0;
 }
@@ -106,24 +106,25 @@ void camber_osm_ways_free(camber_osm_ways *ways) {
 
 typedef struct block {
     camber_osm_unpacked unpacked;
-    camber_osm_block strings;    /* uint32_t: where the table has them */
-    camber_osm_block roles;      /* uint16_t a string: its key + 2; 1: it is no key; 0: not looked up */
-    camber_osm_block sets;       /* uint32_t: strings of properties, a set after the other */
+    camber_osm_block strings;    /* uint32_t: offsets of the strings in the table */
+    camber_osm_block roles;      /* uint16_t per string: its key + 2; 1: not a key; 0: not looked up yet */
+    camber_osm_block sets;       /* uint32_t: the strings of properties, one set after the other */
     camber_osm_block slots;      /* uint32_t: a hash table of sets; index + 1 */
-    camber_osm_block ways;       /* camber_osm_way, with sets of the block */
-    camber_osm_block ids;        /* uint32_t, as camber_osm_ways has them */
+    camber_osm_block ways;       /* camber_osm_way, with the block's sets */
+    camber_osm_block ids;        /* uint32_t, in the form of camber_osm_ways.ids */
     camber_osm_block leaves;     /* block_leaf */
     camber_osm_block leaf_slots; /* uint32_t: a hash table of leaves; index + 1 */
-    camber_osm_block members;    /* of relations: camber_osm_member; of ways: their indices among the relations' ways */
-    camber_osm_block relations;  /* camber_osm_relation, with sets and members of the block */
-    camber_osm_block points;     /* camber_osm_point, with sets of the block */
+    camber_osm_block members; /* for relations: camber_osm_member; for ways: their indices among the relations' ways */
+    camber_osm_block relations; /* camber_osm_relation, with the block's sets and members */
+    camber_osm_block points;    /* camber_osm_point, with the block's sets */
     camber_wire table;
     size_t string_count, set_count, slot_count, way_count, id_count, leaf_count, leaf_slot_count;
     size_t member_count, relation_count, point_count;
     bool has_ways, has_places;
 } block;
 
-/* Ids that a block names, as a leaf of the nodes has them: so the file's leaves are looked up once a block. */
+/* The ids that a block names, in the form of a leaf of the node set. So the file's leaves are looked up once per block.
+ */
 typedef struct block_leaf {
     uint64_t id; /* the upper bits of the ids */
     uint64_t bits[CAMBER_OSM_LEAF_WORDS];
@@ -135,8 +136,8 @@ typedef struct decoder {
     block *to;
     camber_osm_failure *failure;
     size_t property_count;
-    camber_osm_finger finger; /* among the relations' ways */
-    uint64_t last_leaf_id;    /* UINT64_MAX: none yet */
+    camber_osm_search_hint hint; /* for searches among the relations' ways */
+    uint64_t last_leaf_id;       /* UINT64_MAX: none yet */
     uint32_t last_leaf;
 } decoder;
 
@@ -156,7 +157,7 @@ static void free_block(camber_context *context, void *slot) {
     camber_free(context, one->strings.bytes);
 }
 
-/* A string of the block's table. It may hold a 0, which ends it for GDAL. */
+/* Returns a string of the block's table. It may contain a 0, which ends it for GDAL. */
 static camber_wire string_at(const block *from, uint32_t string) {
     camber_wire wire = {from->table.at + ((const uint32_t *)(const void *)from->strings.bytes)[string], from->table.end,
                         false};
@@ -190,7 +191,7 @@ static bool list_strings(decoder *self, camber_wire table) {
     return true;
 }
 
-/* The key that a string is; NULL: none of those looked for. */
+/* Returns the key that a string is, or NULL if nobody looks for it. */
 static const camber_osm_key *key_of(const decoder *self, uint32_t string) {
     uint16_t *role = (uint16_t *)(void *)self->to->roles.bytes + string;
     if (*role == 0) {
@@ -236,7 +237,7 @@ static bool grow_slots(decoder *self) {
     return true;
 }
 
-/* Finds the set behind the last one among the sets of the block, or adds it to them. */
+/* Looks up the set after the block's last one among the block's sets, or adds it. */
 static bool find_set(decoder *self, uint32_t *set) {
     block *to = self->to;
     const size_t count = self->property_count;
@@ -255,15 +256,15 @@ static bool find_set(decoder *self, uint32_t *set) {
     return true;
 }
 
-/* The meaning of an entity's tags. */
+/* The tags of an entity, interpreted. */
 typedef struct tag_facts {
-    bool area, passes; /* passes: the filter lets it through */
+    bool area, passes; /* passes: the filter accepts it */
     size_t count;
-    uint32_t type; /* a string; NO_STRING: it has none */
+    uint32_t type; /* index of a string; NO_STRING: there is none */
 } tag_facts;
 
-/* Reads the tags of an entity: the strings of properties go behind the last set. A key that comes twice has its last
- * value. values may be keys itself, where each key is followed by its value. */
+/* Reads the tags of an entity. Appends the strings of properties after the last set. If a key occurs twice, its last
+ * value counts. values may be the same as keys; then each key is followed by its value. */
 static bool read_tags(decoder *self, camber_wire *keys, camber_wire *values, tag_facts *facts) {
     block *to = self->to;
     const size_t start = to->set_count * self->property_count;
@@ -320,7 +321,7 @@ static bool grow_leaves(decoder *self) {
     return true;
 }
 
-/* Finds a leaf among those of the block, or adds it to them. It is then the last. */
+/* Looks up a leaf among those of the block, or adds it. It then is the last leaf used. */
 static bool find_leaf(decoder *self, uint64_t leaf_id) {
     block *to = self->to;
     if (to->leaf_count >= to->leaf_slot_count / 2 && !grow_leaves(self))
@@ -359,27 +360,27 @@ static bool add_way(decoder *self, camber_wire ids, uint64_t count, camber_osm_w
         ((block_leaf *)(void *)to->leaves.bytes)[self->last_leaf].bits[low >> 6] |= UINT64_C(1) << (low & 63);
         *at++ = self->last_leaf << CAMBER_OSM_LEAF_BITS | low;
     }
-    if (ids.at < ids.end) /* the last is cut off */
+    if (ids.at < ids.end) /* the last one is cut off */
         return camber_osm_fail(self->failure, "a way that does not parse");
     to->id_count += (size_t)count;
     ((camber_osm_way *)(void *)to->ways.bytes)[to->way_count++] = way;
     return true;
 }
 
-/* The bits of a way that a relation names; 0: none does. */
+/* Returns the bits of a way that a relation names, or 0 if none does. */
 static uint32_t find_member(decoder *self, uint64_t id) {
     uint32_t index;
     const bool found = id < (uint64_t)CAMBER_OSM_MOST_ID &&
-                       camber_osm_relations_find(&self->ways->relations, (int64_t)id, &self->finger, &index);
+                       camber_osm_relations_find(&self->ways->relations, (int64_t)id, &self->hint, &index);
     return found ? CAMBER_OSM_WAY_MEMBER : 0;
 }
 
-/* Notes the way that was found last. */
+/* Records the way that was found last. */
 static bool add_member_index(decoder *self) {
     block *to = self->to;
     if (!camber_osm_reserve(self->pass, &to->members, (to->member_count + 1) * sizeof(uint32_t), self->failure))
         return false;
-    ((uint32_t *)(void *)to->members.bytes)[to->member_count++] = self->finger.index;
+    ((uint32_t *)(void *)to->members.bytes)[to->member_count++] = self->hint.index;
     return true;
 }
 
@@ -447,13 +448,13 @@ typedef struct reading {
     const camber_osm_ways_desc *desc;
 } reading;
 
-/* Makes the decoder and its block ready for a blob. */
+/* Prepares the decoder and its block for a blob. */
 static void begin_block(const reading *all, camber_osm_pass *pass, decoder *self) {
     block *to = self->to;
     self->ways = all->ways;
     self->pass = pass;
     self->property_count = all->ways->features->schema->property_count;
-    self->finger = (camber_osm_finger){.leaf_id = UINT64_MAX, .id = -2};
+    self->hint = (camber_osm_search_hint){.leaf_id = UINT64_MAX, .id = -2};
     self->last_leaf_id = UINT64_MAX;
     to->set_count = to->slot_count = to->way_count = to->id_count = to->member_count = to->relation_count = 0;
     to->point_count = 0;
@@ -466,7 +467,7 @@ static bool unpack_block(decoder *self, const reading *all, size_t blob, camber_
            list_strings(self, entities->strings);
 }
 
-/* Whether a blob that was looked at has no ways, and nothing that should not be there. */
+/* Whether a blob that was examined before has no ways and nothing unexpected. */
 static bool has_no_ways(const camber_osm_blob *blob, bool nodes_allowed, bool relations_allowed) {
     return (blob->kinds & CAMBER_OSM_LOOKED_AT) && !(blob->kinds & CAMBER_OSM_HAS_WAYS) &&
            (nodes_allowed || !(blob->kinds & CAMBER_OSM_HAS_NODES)) &&
@@ -479,7 +480,8 @@ static bool read_block(void *user, camber_osm_pass *pass, size_t part, void *slo
     decoder self = {.to = slot, .failure = failure};
     camber_osm_entities entities;
     camber_wire group;
-    /* The blob before the first way may have the last nodes, and the one before the first relation relations. */
+    /* The blob before the first way may have the last nodes, and the blob before the first relation may have relations.
+     */
     const bool any_order = all->desc->any_order;
     const bool relations = any_order || !all->ways->features->schema->wants_areas || blob + 1 >= all->desc->end_blob;
     begin_block(all, pass, &self);
@@ -511,7 +513,7 @@ static camber_osm_role role_of(const block *from, uint64_t string) {
     return CAMBER_OSM_ROLE_UNKNOWN;
 }
 
-/* Adds the ways among a relation's members to those of the block. */
+/* Adds the ways among a relation's members to the members of the block. */
 static bool read_members(decoder *self, camber_wire roles, camber_wire members, camber_wire types) {
     block *to = self->to;
     uint64_t id = 0;
@@ -603,7 +605,7 @@ static bool read_relations(void *user, camber_osm_pass *pass, size_t part, void 
 
 /* ---- Nodes with tags, on any thread ---- */
 
-/* A coordinate of the block in degrees, as GDAL computes it. */
+/* Converts a coordinate of the block to degrees, with GDAL's arithmetic. */
 static double to_degrees(int64_t coordinate, int64_t offset, int32_t granularity) {
     return .000000001 * ((double)offset + (double)granularity * (double)coordinate);
 }
@@ -618,7 +620,7 @@ static bool add_point(decoder *self, const camber_osm_entities *from, camber_wir
     if (keys->at == keys->end)
         return true;
     if (!(fabs(point.longitude) <= 180.0 && fabs(point.latitude) <= 90.0))
-        return camber_osm_fail(self->failure, "a node that is nowhere on Earth");
+        return camber_osm_fail(self->failure, "a node that is not on Earth");
     if (!read_tags(self, keys, values, &facts))
         return false;
     if (!facts.passes)
@@ -651,7 +653,7 @@ static bool read_node(decoder *self, const camber_osm_entities *from, camber_wir
     return add_point(self, from, &keys, &values, place);
 }
 
-/* The tags of the next of the dense nodes: keys and values in turn, up to a 0. */
+/* Returns the tags of the next dense node: keys and values alternate, up to a 0. */
 static camber_wire next_tags(camber_wire *all) {
     camber_wire tags = *all;
     while (all->at < all->end) {
@@ -664,7 +666,7 @@ static camber_wire next_tags(camber_wire *all) {
     return tags;
 }
 
-/* Differences are added as unsigned numbers, which may go round. */
+/* Differences are added as unsigned numbers, which may wrap around. */
 static bool read_dense(decoder *self, const camber_osm_entities *from, camber_wire wire) {
     camber_wire longitudes = {0}, latitudes = {0}, all = {0};
     uint64_t key, longitude = 0, latitude = 0;
@@ -678,7 +680,7 @@ static bool read_dense(decoder *self, const camber_osm_entities *from, camber_wi
         else
             camber_wire_skip(&wire, key);
     }
-    /* The last ones may have no tags. */
+    /* The last nodes may have no tags. */
     while (all.at < all.end && latitudes.at < latitudes.end) {
         latitude += (uint64_t)camber_wire_signed(&latitudes);
         longitude += (uint64_t)camber_wire_signed(&longitudes);
@@ -720,7 +722,7 @@ static bool read_points(void *user, camber_osm_pass *pass, size_t part, void *sl
     return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
 
-/* ---- The blocks' ways become the file's ---- */
+/* ---- Merging the blocks' ways into the file's ---- */
 
 static camber_status intern(camber_osm_ways *ways, const block *from, uint32_t string, camber_value *value) {
     *value = (camber_value){0};
@@ -737,7 +739,7 @@ static camber_status intern(camber_osm_ways *ways, const block *from, uint32_t s
     return camber_features_intern(ways->features, ways->text, &value->string);
 }
 
-/* Interned strings are equal where their pointers are. */
+/* Interned strings are equal if their pointers are. */
 static size_t hash_values(const camber_value *values, size_t count) {
     uint64_t hash = 0;
     for (size_t i = 0; i < count; i++)
@@ -769,13 +771,13 @@ static camber_status grow_table(camber_osm_ways *ways, size_t count) {
     return CAMBER_OK;
 }
 
-/* Finds a block's set among those of the file, or adds it to them. */
+/* Looks up a block's set among those of the file, or adds it. */
 static camber_status add_set(camber_osm_ways *ways, const block *from, const uint32_t *strings, uint32_t *set) {
     const camber_schema *schema = ways->features->schema;
     const size_t count = schema->property_count;
     if (ways->set_count >= UINT32_MAX / CAMBER_OSM_WAY_BITS)
         return camber_fail(ways->context, CAMBER_ERROR_LIMIT,
-                           "more than 536870910 different lines; read fewer attributes");
+                           "more than 268435455 different sets of tags; use a style that reads fewer attributes");
     if (!camber_grow(ways->context, &ways->values, &ways->value_capacity, (ways->set_count + 1) * count,
                      sizeof *ways->values))
         return CAMBER_ERROR_MEMORY;
@@ -798,7 +800,7 @@ static camber_status add_set(camber_osm_ways *ways, const block *from, const uin
     return CAMBER_OK;
 }
 
-/* Adds a way of a block, whose leaves begin at this place, to the last run, or to a new one. */
+/* Adds a way of a block, whose leaves begin at first_leaf, to the last run or to a new one. */
 static camber_status add_to_run(camber_osm_ways *ways, const camber_osm_way *way, size_t first_leaf) {
     camber_osm_run *last = ways->run_count ? &ways->runs[ways->run_count - 1] : NULL;
     if (!last || last->first_leaf != first_leaf || last->node_count + way->node_count > RUN_NODES) {
@@ -813,7 +815,7 @@ static camber_status add_to_run(camber_osm_ways *ways, const camber_osm_way *way
     return CAMBER_OK;
 }
 
-/* Adds the ids that a block names to the file's nodes. */
+/* Adds the ids that a block names to the nodes of the file. */
 static camber_status add_ids(camber_osm_ways *ways, const block *from) {
     const block_leaf *leaves = (const block_leaf *)(const void *)from->leaves.bytes;
     camber_status status = CAMBER_OK;
@@ -829,7 +831,7 @@ static camber_status add_ids(camber_osm_ways *ways, const block *from) {
     return status;
 }
 
-/* Gives the sets of a block to the file; ways->local has their numbers. */
+/* Adds the sets of a block to those of the file; ways->local gets their indices. */
 static camber_status add_sets(camber_osm_ways *ways, const block *from) {
     const uint32_t *sets = (const uint32_t *)(const void *)from->sets.bytes;
     if (!camber_grow(ways->context, &ways->local, &ways->local_capacity, from->set_count, sizeof *ways->local))
@@ -840,7 +842,7 @@ static camber_status add_sets(camber_osm_ways *ways, const block *from) {
     return status;
 }
 
-/* Notes a way that a relation names. */
+/* Records a way that a relation names. */
 static camber_status add_member(camber_osm_ways *ways, const camber_osm_way *way, uint32_t index) {
     camber_osm_relations *relations = &ways->relations;
     if (!camber_grow(ways->context, &relations->met, &relations->met_capacity, relations->met_count + 1,

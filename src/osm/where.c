@@ -1,8 +1,8 @@
-/* Parses an attribute filter into steps, and follows them.
+/* Parses an attribute filter into steps, and evaluates them.
  *
- * Input: a filter in OGR's SQL. Output: whether a way's tags pass it. A comparison with a key that is missing fails,
- * strings are equal whatever their case, and AND binds before OR: so GDAL has it. NOT is left to GDAL, since versions
- * differ in what becomes of missing keys under it. */
+ * Input: a filter in OGR's SQL. Output: whether a way's tags pass it. As in GDAL, a comparison with a missing key
+ * fails, strings are compared without regard to case, and AND binds more tightly than OR. NOT is left to GDAL, because
+ * its versions treat missing keys differently under it. */
 #include "osm/where.h"
 
 #include "features/osm_keys.h"
@@ -35,7 +35,7 @@ static bool take_sign(parser *self, const char *sign) {
     return true;
 }
 
-/* A bare word begins with a letter. */
+/* A bare word must begin with a letter. */
 static camber_osm_text see_word(parser *self) {
     skip_space(self);
     camber_osm_text word = {self->at, 0};
@@ -66,7 +66,7 @@ static bool take_string(parser *self, char quote, camber_osm_text *text) {
     return true;
 }
 
-/* Whether the word is one of SQL's, or one of GDAL's own columns. */
+/* Whether the word is a keyword of SQL, or one of GDAL's own columns. */
 static bool is_reserved(camber_osm_text word) {
     static const char *const words[] = {
         "and",    "or",      "not",    "in",       "is",    "null",  "like",  "ilike",      "cast",
@@ -91,7 +91,7 @@ static bool take_key(parser *self, uint32_t *key) {
     for (*key = 0; *key < where->key_count; ++*key) {
         const camber_osm_text *known = &where->keys[*key];
         if (known->length == name.length && strncasecmp(known->at, name.at, name.length) == 0)
-            return memcmp(known->at, name.at, name.length) == 0; /* keys that differ in case alone are GDAL's */
+            return memcmp(known->at, name.at, name.length) == 0; /* keys that differ only in case are left to GDAL */
     }
     if (where->key_count == CAMBER_OSM_WHERE_KEYS)
         return false;

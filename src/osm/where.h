@@ -1,5 +1,5 @@
 /* Attribute filters that are simple enough for this reader: comparisons of tags with strings for equality, IN, IS NULL,
- * AND, OR and parentheses, as GDAL understands them. */
+ * AND, OR and parentheses, with GDAL's semantics. */
 #ifndef CAMBER_OSM_WHERE_H
 #define CAMBER_OSM_WHERE_H
 
@@ -20,7 +20,7 @@ typedef enum camber_osm_step_kind {
     CAMBER_OSM_STEP_DIFFERENT, /* it has another value */
     CAMBER_OSM_STEP_MISSING,
     CAMBER_OSM_STEP_PRESENT,
-    CAMBER_OSM_STEP_AND, /* of the last two results */
+    CAMBER_OSM_STEP_AND, /* combines the last two results */
     CAMBER_OSM_STEP_OR,
 } camber_osm_step_kind;
 
@@ -30,7 +30,7 @@ typedef struct camber_osm_step {
     camber_osm_text text;
 } camber_osm_step;
 
-/* A filter as steps that leave one result. It points into the filter's text. */
+/* A filter as steps that leave one result. It points into the text of the filter. */
 typedef struct camber_osm_where {
     camber_osm_text keys[CAMBER_OSM_WHERE_KEYS];
     uint32_t key_count;
@@ -38,9 +38,9 @@ typedef struct camber_osm_where {
     size_t step_count;
 } camber_osm_where;
 
-/* false: the filter has more than this reader knows, or is wrong. */
+/* Returns false if the filter is invalid, or uses something that this reader does not support. */
 bool camber_osm_where_parse(const char *text, camber_osm_where *where);
-/* values: key_count of them; at NULL: the way does not have the key. */
+/* values: key_count of them. If at is NULL, the way does not have the key. */
 bool camber_osm_where_passes(const camber_osm_where *where, const camber_osm_text *values);
 
 #endif

@@ -1,5 +1,5 @@
-/* Reads the wire format of Protocol Buffers: keys, varints, and fields that have a length. A reader stays within its
- * bytes whatever they say; where they say too much it is bad, and gives zeros from then on. */
+/* Reads the wire format of Protocol Buffers: keys, varints, and fields with a length. A reader never leaves its bytes,
+ * whatever they say. If they are inconsistent, it becomes bad and returns zeros from then on. */
 #ifndef CAMBER_OSM_WIRE_H
 #define CAMBER_OSM_WIRE_H
 
@@ -11,10 +11,10 @@ typedef struct camber_wire {
     bool bad;
 } camber_wire;
 
-/* The types of fields that OpenStreetMap's messages have. */
+/* The types of fields in OpenStreetMap's messages. */
 enum { CAMBER_WIRE_VARINT = 0, CAMBER_WIRE_BYTES = 2 };
 
-/* A field's number and its type, as they stand before it. */
+/* A field's number and type, in the form in which they precede the field. */
 #define CAMBER_WIRE_KEY(number, type) ((uint64_t)(number) << 3 | (uint64_t)(type))
 
 static inline uint64_t camber_wire_fail(camber_wire *wire) {
@@ -36,13 +36,13 @@ static inline uint64_t camber_wire_varint(camber_wire *wire) {
     return camber_wire_fail(wire);
 }
 
-/* A number with its sign in the lowest bit. */
+/* Reads a zigzag-coded number. */
 static inline int64_t camber_wire_signed(camber_wire *wire) {
     const uint64_t value = camber_wire_varint(wire);
     return (int64_t)(value >> 1 ^ (0 - (value & 1)));
 }
 
-/* Writes a number as camber_wire_signed reads it, and returns where it ends. */
+/* Writes a zigzag-coded number, and returns the position after it. */
 static inline uint8_t *camber_wire_put_signed(uint8_t *at, int64_t number) {
     uint64_t value = (uint64_t)number << 1 ^ (number < 0 ? UINT64_MAX : 0);
     for (; value >= 128; value >>= 7)
@@ -51,7 +51,7 @@ static inline uint8_t *camber_wire_put_signed(uint8_t *at, int64_t number) {
     return at;
 }
 
-/* The content of a field that has a length. */
+/* Returns the content of a field that has a length. */
 static inline camber_wire camber_wire_bytes(camber_wire *wire) {
     const uint64_t size = camber_wire_varint(wire);
     if (size > (uint64_t)(wire->end - wire->at)) {
@@ -63,7 +63,7 @@ static inline camber_wire camber_wire_bytes(camber_wire *wire) {
     return (camber_wire){start, wire->at, false};
 }
 
-/* The key of the next field. false: there is none, or the bytes are bad. */
+/* Reads the key of the next field. Returns false at the end, or if the bytes are bad. */
 static inline bool camber_wire_next(camber_wire *wire, uint64_t *key) {
     if (wire->at == wire->end)
         return false;
@@ -71,7 +71,7 @@ static inline bool camber_wire_next(camber_wire *wire, uint64_t *key) {
     return !wire->bad;
 }
 
-/* Passes over the content of a field. */
+/* Skips the content of a field. */
 static inline void camber_wire_skip(camber_wire *wire, uint64_t key) {
     static const unsigned sizes[] = {0, 8, 0, 0, 0, 4, 0, 0};
     const unsigned type = key & 7, size = sizes[type];
@@ -85,7 +85,7 @@ static inline void camber_wire_skip(camber_wire *wire, uint64_t key) {
         camber_wire_fail(wire);
 }
 
-/* How many varints the bytes hold: each has one byte without the high bit. */
+/* Returns how many varints the bytes contain: each ends with a byte without the high bit. */
 static inline uint64_t camber_wire_count(const camber_wire *wire) {
     uint64_t count = 0;
     for (const uint8_t *at = wire->at; at < wire->end; at++)

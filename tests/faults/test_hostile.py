@@ -237,7 +237,7 @@ case("the same through GDAL", logged, [*RENDER, "--where", "a = 'b'", "in.mbtile
 refused("a log without its writer", interrupted, "was interrupted", 65, "in.mbtiles")
 for ending in ("gpkg", "sqlite", "mbtiles"):
     case("a log without its writer, through GDAL, " + ending, lambda: (interrupted(), os.rename("in.mbtiles-wal", "in." + ending +
-         "-wal"), os.rename("in.mbtiles", "in." + ending)), [*RENDER, "in." + ending, "--where", "a = 'b'"], 65, "a log beside it")
+         "-wal"), os.rename("in.mbtiles", "in." + ending)), [*RENDER, "in." + ending, "--where", "a = 'b'"], 65, "a log file next to it")
 case("a virtual table", lambda: mbtiles("in.sqlite", "CREATE VIRTUAL TABLE v USING fts5(a)", "PRAGMA writable_schema = on",
      "UPDATE sqlite_master SET sql = 'CREATE VIRTUAL TABLE v USING VirtualText(''x.csv'')' WHERE name = 'v'"),
      [*RENDER, "in.sqlite"], 65, "virtual tables")

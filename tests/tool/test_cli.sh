@@ -839,7 +839,7 @@ ring='[[0,0],[0.004,0],[0.004,0.004],[0,0.004]]' # its outline is closed, too
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$ring]}}" >"$tmp/in/open.geojson"
 echo '{"version":8,"sources":{},"layers":[{"id":"a","type":"fill","paint":{"fill-outline-color":"#d00"}}]}' >"$tmp/in/outline.json"
 expect 0 "an open ring" render "$tmp/in/open.geojson" --style "$tmp/in/outline.json" -o a.png
-says '^camber: warning: .*1 rings of areas do not end where they begin; closed$'
+says '^camber: warning: .*1 rings of areas were not closed; they are now$'
 says ' 2 polylines, 10 points,'
 says '^areas: 1 ring closed$'
 flat='[[0,0],[0.004,0.004],[0,0]]'

@@ -745,25 +745,25 @@ static void test_wrong_blobs(void **state) {
         pbf_number(&blob, 2, sizes[i]);
         pbf_field(&blob, 3, packed, size);
         pbf_blob(&it->file, "OSMData", &blob);
-        expect_refused(it, "far more than it is");
+        expect_refused(it, "far more than its size");
     }
     begin(it); /* one that says too little */
     blob.size = 0;
     pbf_number(&blob, 2, 1000);
     pbf_field(&blob, 3, packed, size);
     pbf_blob(&it->file, "OSMData", &blob);
-    expect_refused(it, "does not unpack");
+    expect_refused(it, "cannot be decompressed");
     begin(it);
     pbf_blob(&it->file, "", &(pbf_bytes){.size = 0});
     it->file.bytes[it->file.size - 4] = 0x7a; /* the type is another field */
-    expect_refused(it, "a blob's header that is none");
+    expect_refused(it, "a blob's header that is not valid");
     begin(it); /* a header of 2 GB */
     pbf_append(&it->file, "\x7f\xff\xff\xff and so on, and on", 22);
-    expect_refused(it, "a blob's header that is none");
+    expect_refused(it, "a blob's header that is not valid");
     begin(it); /* a node beyond the pole */
     pbf_dense(&it->block, (const pbf_node[]){{1, 0, 900000001}}, 1);
     pbf_end_block(&it->file, &it->block);
-    expect_refused(it, "nowhere on Earth");
+    expect_refused(it, "not on Earth");
 }
 
 /* Little memory ends it with a line about memory, whatever thread wanted it. */

@@ -287,7 +287,7 @@ def devices():
     found, info = [], ffi.new("camber_device_info **")
     with default()._core as core:
         while True:
-            core.check(lib.camber_device_list(core.pointer, len(found), info))
+            core.check(lib.camber_device_list(core.pointer, ffi.NULL, len(found), info))
             if info[0] == ffi.NULL:
                 return found
             found.append(_describe(info[0]))

@@ -255,6 +255,15 @@ static int read_for_view(const camber_input *input, bool *done) {
     return camber_report_status(input->session->report, camber_features_read_for(input->features, &desc));
 }
 
+/* With --verbose: says where the time of reading went. */
+static void say_times(const camber_input *input) {
+    const camber_features_times times = camber_features_get_times(input->features);
+    if (input->session->report->verbose)
+        camber_report_say(input->session->report,
+                          "reading: files %.1f ms, joining lines %.1f, importance of points %.1f", times.file_ms,
+                          times.merge_ms, times.weigh_ms);
+}
+
 static int open_map(camber_input *input) {
     camber_session *session = input->session;
     const double start_ms = camber_now_ms();
@@ -284,6 +293,7 @@ static int open_map(camber_input *input) {
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
     input->read_ms = camber_now_ms() - start_ms;
+    say_times(input);
     return CAMBER_EXIT_DONE;
 }
 
@@ -324,9 +334,18 @@ static camber_status project_once(camber_input *input, const camber_scene_desc *
     return status;
 }
 
-static camber_status project_map(camber_input *input) {
-    if (input->scene)
-        return camber_scene_move(input->scene, &input->view);
+/* With --verbose: says what the scene has in memory for its view and others. */
+static void say_network(const camber_input *input) {
+    camber_camera camera;
+    camber_tessellation_desc desc;
+    const camber_polylines_stats stats =
+        camber_network_get_stats(camber_scene_get_network(input->scene, &camera, &desc));
+    if (input->session->report->verbose)
+        camber_report_say(input->session->report, "network: %zu polyline%s, %zu of %zu points", stats.polylines,
+                          camber_plural(stats.polylines), stats.kept_points, stats.points);
+}
+
+static camber_status make_scene(camber_input *input) {
     const camber_verb verb = input->session->options->verb;
     const camber_scene_desc desc = {.view = input->view,
                                     .simplify_px = input->session->options->simplify_px,
@@ -334,6 +353,15 @@ static camber_status project_map(camber_input *input) {
     if (verb == CAMBER_VERB_VALIDATE)
         return project_validated(input, desc);
     return verb == CAMBER_VERB_RENDER ? project_once(input, &desc) : project_new(input, &desc);
+}
+
+static camber_status project_map(camber_input *input) {
+    if (input->scene)
+        return camber_scene_move(input->scene, &input->view);
+    const camber_status status = make_scene(input);
+    if (status == CAMBER_OK)
+        say_network(input);
+    return status;
 }
 #endif
 

@@ -27,10 +27,10 @@ static void add_devices(camber_session *session, json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "devices", list);
     const camber_device_info *info = NULL;
-    camber_status status = camber_device_list(session->context, 0, &info);
+    camber_status status = camber_device_list(session->context, NULL, 0, &info);
     for (size_t i = 1; status == CAMBER_OK && info; i++) {
         json_array_append_new(list, device_json(info));
-        status = camber_device_list(session->context, i, &info);
+        status = camber_device_list(session->context, NULL, i, &info);
     }
     if (status != CAMBER_OK)
         json_object_set_new(object, "devices_error", take_error(session->report, status));

@@ -80,6 +80,9 @@ camber_status camber_features_create_for(camber_context *context, const camber_s
 /* Whether files would be read into the same set for another style: all that was read is of files, and the style reads
  * the same of them. */
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
+/* Frees the points of the lines, which take most of a set's memory, after its last scene was made: no other can be made
+ * or moved, and nothing more can be read. */
+void camber_features_release_points(camber_features *features);
 
 /* ---- A set as it was, for what fails half way ---- */
 

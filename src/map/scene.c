@@ -366,11 +366,11 @@ static void move_fills(camber_scene *scene) {
 }
 
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
-    const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
-    assert(holds_network || scene->is_projected);
+    const bool of_network = mesh && camber_mesh_get_info(mesh).of_network;
+    assert(of_network || scene->is_projected);
     if (!scene->own && (scene->zoom->has_images || scene->zoom->has_area_images))
         move_fills(scene);
-    const camber_pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
+    const camber_pass_list *list = of_network ? &scene->pair_passes : &scene->passes;
     for (size_t i = 0; i < list->count; i++)
         list->passes[i].mesh = mesh;
     return (camber_frame){.width = scene->view.width,

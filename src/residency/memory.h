@@ -4,6 +4,16 @@
 
 #include "residency/mesh.h"
 
+typedef struct camber_mesh_memory {
+    size_t parts;          /* groups of consecutive polylines with buffers of their own: 1 if there is room */
+    size_t resident_parts; /* parts that need not be tessellated again to be read or drawn */
+    size_t remade_parts;   /* parts that were tessellated again since the last tessellation */
+    uint64_t held_bytes;   /* bytes of the mesh that count against the device's memory limit */
+} camber_mesh_memory;
+
+/* bytes.c: adds up what a mesh and its parts hold. */
+camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh);
+
 /* bytes.c: these recount what a part, a section or a mesh holds, after buffers have been made or released. */
 void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_section_count_bytes(const camber_mesh *mesh, camber_section *section);

@@ -152,10 +152,11 @@ static camber_status open_device(camber_validation *v, camber_checked_device *ch
 }
 
 /* "NAME", or "NAME (2)" for the second of that name. */
-static void name_device(camber_checked_device *checked, camber_context *context, size_t at, const char *name) {
+static void name_device(camber_checked_device *checked, const camber_validation_desc *desc, size_t at,
+                        const char *name) {
     const camber_device_info *earlier = NULL;
     size_t before = 0;
-    for (size_t i = 0; i < at && camber_device_list(context, i, &earlier) == CAMBER_OK; i++)
+    for (size_t i = 0; i < at && camber_device_list(desc->context, desc->match, i, &earlier) == CAMBER_OK; i++)
         before += strcmp(earlier->name, name) == 0;
     if (before)
         snprintf(checked->name, sizeof checked->name, "%s (%zu)", name, before + 1);
@@ -164,23 +165,23 @@ static void name_device(camber_checked_device *checked, camber_context *context,
 }
 
 static camber_status open_all(camber_validation *v) {
-    camber_context *context = v->desc->context;
+    const camber_validation_desc *desc = v->desc;
     const camber_device_info *info = NULL;
     camber_status status = CAMBER_OK;
-    uint32_t number = 0;
-    for (size_t i = 0; camber_device_list(context, i, &info) == CAMBER_OK && info && status == CAMBER_OK; i++) {
-        if (!camber_device_info_matches(info, v->desc->match))
-            continue;
+    for (uint32_t i = 0; status == CAMBER_OK; i++) {
+        status = camber_device_list(desc->context, desc->match, i, &info);
+        if (status != CAMBER_OK || !info)
+            break;
         camber_checked_device *checked = &v->devices.list[v->devices.count];
-        name_device(checked, context, i, info->name);
-        checked->number = ++number;
+        name_device(checked, desc, i, info->name);
+        checked->number = i + 1;
         status = open_device(v, checked);
     }
     if (status != CAMBER_OK || v->devices.count)
         return status;
     /* There is none: opening one says why. */
     camber_device *none = NULL;
-    status = camber_device_create(v->desc->context, &(camber_device_desc){.match = v->desc->match}, &none);
+    status = camber_device_create(desc->context, &(camber_device_desc){.match = desc->match}, &none);
     camber_device_destroy(none);
     return status == CAMBER_OK ? CAMBER_ERROR_DEVICE : status;
 }
@@ -188,9 +189,9 @@ static camber_status open_all(camber_validation *v) {
 camber_status camber_checked_devices_open(camber_validation *v) {
     const camber_device_info *info = NULL;
     size_t count = 0;
-    camber_status status = camber_device_list(v->desc->context, 0, &info);
+    camber_status status = camber_device_list(v->desc->context, v->desc->match, 0, &info);
     while (status == CAMBER_OK && info)
-        status = camber_device_list(v->desc->context, ++count, &info);
+        status = camber_device_list(v->desc->context, v->desc->match, ++count, &info);
     v->devices = (camber_checked_devices){.list = calloc(count + 1, sizeof *v->devices.list)};
     if (status == CAMBER_OK && !v->devices.list)
         status = CAMBER_ERROR_MEMORY;

@@ -1,7 +1,8 @@
-"""city.py FILE [PICTURES]: draws a city's streets, and shows what other libraries make of the same lines.
+"""city.py FILE [PICTURES]: draws a city's streets, and compares with other libraries that draw the same lines.
 
-Each gets the same arrays and gives an array of pixels; the time is the median of five. With a folder for PICTURES the
-pictures go there. matplotlib draws by its LineCollection; datashader is asked where it is installed.
+Each library gets the same arrays and returns an array of pixels. The time is the median of five runs. If a folder for
+PICTURES is given, the pictures are saved there. matplotlib draws with its LineCollection; datashader is used if it is
+installed.
 """
 
 import sys
@@ -23,7 +24,7 @@ if sys.argv[2:]:
     with open(sys.argv[2] + "/city-camber.png", "wb") as file:
         file.write(camber.encode(by_camber(*lines)))
 
-# That was the city. From here on it is drawn by others.
+# The city has been drawn. Below, other libraries draw it.
 
 
 def by_matplotlib(points, offsets):
@@ -43,7 +44,7 @@ def by_matplotlib(points, offsets):
 def by_datashader(points, offsets):
     import datashader
     import pandas
-    ends = numpy.insert(points, offsets[1:-1], numpy.nan, axis=0)  # it has lines of a pixel or more, and no joins
+    ends = numpy.insert(points, offsets[1:-1], numpy.nan, axis=0)  # datashader draws lines of a pixel or more, without joins
     canvas = datashader.Canvas(SIZE, SIZE, (0, SIZE), (0, SIZE))
     counts = canvas.line(pandas.DataFrame(ends, columns=["x", "y"]), "x", "y", agg=datashader.any(), line_width=WIDTH)
     shaded = datashader.transfer_functions.shade(counts, cmap="#333366", how="linear", span=(0, 1), min_alpha=0)

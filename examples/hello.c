@@ -1,12 +1,12 @@
-/* hello: draws lines into hello.png: golden waves on a dark blue ground. */
+/* hello: draws golden waves on a dark blue background into hello.png. */
 #include <camber_files.h>
 #include <math.h>
 #include <stdio.h>
 
 enum { WIDTH = 960, HEIGHT = 480, LINES = 48, POINTS = 200 };
 
-static float points[2 * LINES * POINTS]; /* pairs of x, y in pixels */
-static uint32_t offsets[LINES + 1];      /* where the points of each line begin, and where the last ends */
+static float points[2 * LINES * POINTS]; /* pairs of x and y in pixels */
+static uint32_t offsets[LINES + 1];      /* where the points of each line begin, and where those of the last line end */
 
 static void make_waves(void) {
     for (uint32_t i = 0; i < LINES; i++) {
@@ -22,7 +22,7 @@ static void make_waves(void) {
 
 static void print_message(void *user, camber_log_level level, const char *message) {
     if (level < CAMBER_LOG_INFO)
-        fprintf(user, "hello: %s\n", message); /* why a call failed, and the cure */
+        fprintf(user, "hello: %s\n", message); /* why a call failed, and what to do */
 }
 
 static bool write_bytes(void *file, const void *bytes, size_t size_bytes) {
@@ -30,7 +30,7 @@ static bool write_bytes(void *file, const void *bytes, size_t size_bytes) {
 }
 
 static bool write_rows(void *png, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    (void)first_row; /* rows come from the top down */
+    (void)first_row; /* rows arrive from top to bottom */
     return camber_png_write_rows(png, rgba, row_count) == CAMBER_OK;
 }
 

@@ -72,5 +72,5 @@ int main(int argc, char **argv) {
                       camber_device_create(context, NULL, &device) == CAMBER_OK &&
                       camber_renderer_create(device, NULL, NULL, &renderer) == CAMBER_OK &&
                       camber_mesh_create(device, renderer, &mesh) == CAMBER_OK && fly(context, scene, mesh, renderer);
-    return done ? 0 : 1; /* a program that goes on destroys what it made, the last first */
+    return done ? 0 : 1; /* a program that continues would destroy its objects, the last one first */
 }

@@ -1,4 +1,5 @@
-/* texture: camber draws a line into an engine's texture, over its sky. Exits with 77 where there is no EGL. */
+/* texture: draws a line with camber into a texture of an engine, over the engine's sky. Exits with 77 if EGL is not
+ * available. */
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
@@ -23,7 +24,7 @@ static bool open_engine(void) {
     return engine && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, engine);
 }
 
-/* The engine's part: the texture, with a night sky in it. */
+/* The engine's part: a texture with a night sky. */
 static GLuint draw_sky(void) {
     GLuint texture, framebuffer;
     glGenTextures(1, &texture);
@@ -37,9 +38,9 @@ static GLuint draw_sky(void) {
     return texture;
 }
 
-/* camber's part, in a GL context that shares the engine's textures. */
+/* camber's part, in a GL context that shares textures with the engine's. */
 static bool draw_line(camber_context *context, const camber_polylines *line, GLuint texture) {
-    const camber_texture target = {.name = texture, .keep = true}; /* over what is there */
+    const camber_texture target = {.name = texture, .keep = true}; /* draw over the existing picture */
     const camber_surface_desc shared = {.egl_context = engine, .egl_display = display};
     const camber_stroke stroke = {.width_px = 3};
     const camber_paint paint = {.width_px = 3, .color = {1, 0.85f, 0.5f, 0.8f}};
@@ -50,7 +51,7 @@ static bool draw_line(camber_context *context, const camber_polylines *line, GLu
     camber_device *device;
     camber_renderer *renderer;
     return camber_surface_create(context, &shared, &surface) == CAMBER_OK &&
-           camber_device_create(context, NULL, &device) == CAMBER_OK && /* desc.gl: buffers of the context as well */
+           camber_device_create(context, NULL, &device) == CAMBER_OK && /* with desc.gl it shares buffers, too */
            camber_renderer_create(device, surface, NULL, &renderer) == CAMBER_OK &&
            camber_mesh_create(device, renderer, &pass.mesh) == CAMBER_OK &&
            camber_mesh_tessellate(pass.mesh, line, &desc) == CAMBER_OK &&
@@ -72,7 +73,7 @@ int main(void) {
     if (camber_context_create(NULL, &context) != CAMBER_OK ||
         camber_polylines_create(context, &desc, &line) != CAMBER_OK || !draw_line(context, line, texture))
         return 1;
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, engine); /* the engine goes on */
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, engine); /* the engine continues */
     glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, screen);
     FILE *file = fopen("texture.pam", "wb");
     return !file || fputs(HEAD, file) < 0 || fwrite(screen, sizeof screen, 1, file) != 1 || fclose(file) ? 1 : 0;

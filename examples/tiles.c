@@ -1,4 +1,4 @@
-/* tiles FILE PORT: a program with an HTTP server of its own draws tiles of a map: http://127.0.0.1:PORT/z/x/y.png */
+/* tiles FILE PORT: draws tiles of a map in a program that has its own HTTP server: http://127.0.0.1:PORT/z/x/y.png */
 #include <arpa/inet.h>
 #include <camber_tiles.h>
 #include <errno.h>
@@ -10,7 +10,7 @@
 typedef struct map {
     camber_tiles_engine *engine;
     camber_encoder *encoder;
-    uint8_t *rgba; /* room for a picture of the engine */
+    uint8_t *rgba; /* memory for one picture of the engine */
 } map;
 
 static void print_message(void *user, camber_log_level level, const char *message) {
@@ -18,7 +18,7 @@ static void print_message(void *user, camber_log_level level, const char *messag
         fprintf(user, "tiles: %s\n", message);
 }
 
-/* Draws one tile, and encodes it. The bytes are the encoder's until its next call. */
+/* Draws one tile and encodes it. The bytes belong to the encoder and are valid until its next call. */
 static bool draw(map *m, int zoom, uint32_t column, uint32_t row, const uint8_t **bytes, size_t *size_bytes) {
     camber_tiles_picture picture;
     camber_pixels pixels;
@@ -28,7 +28,7 @@ static bool draw(map *m, int zoom, uint32_t column, uint32_t row, const uint8_t 
     return camber_encoder_encode(m->encoder, &pixels, bytes, size_bytes) == CAMBER_OK;
 }
 
-/* Reads a request to the end of its head: closed with some of it unread, a connection is reset. */
+/* Reads the whole head of a request, because closing a connection with unread data resets it. */
 static void read_head(int connection, char *head, size_t room_bytes) {
     ssize_t got;
     for (size_t at = 0; !strstr(head, "\r\n\r\n"); at += (size_t)got)
@@ -36,7 +36,7 @@ static void read_head(int connection, char *head, size_t room_bytes) {
             return;
 }
 
-/* Stands for your own server's handler of a request. */
+/* Replace this by your own server's handler of a request. */
 static void answer(map *m, int connection) {
     int zoom;
     unsigned column, row;
@@ -86,6 +86,6 @@ int main(int argc, char **argv) {
     const int listening = listen_at(port);
     for (int client; listening >= 0 && (client = accept(listening, NULL, NULL)) >= 0;)
         answer(&m, client);
-    fprintf(stderr, "tiles: port %s: %s\n", port, strerror(errno)); /* it is in use, most likely */
+    fprintf(stderr, "tiles: port %s: %s\n", port, strerror(errno)); /* most likely it is in use */
     return 1;
 }

@@ -1,4 +1,4 @@
-/* validate: a team's own check that camber draws right on this machine. Exits with 1 where it does not. */
+/* validate: an application's own check that camber draws correctly on this machine. Exits with 1 if it does not. */
 #include <camber_proof.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@ static void print_message(void *user, camber_log_level level, const char *messag
         fprintf(user, "validate: %s\n", message);
 }
 
-/* The mesh that the device made, and the one that the CPU makes of the same lines: the same bytes. */
+/* Checks that the device's mesh and the one that the CPU makes from the same lines have the same bytes. */
 static bool is_exact(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines,
                      const camber_tessellation_desc *desc) {
     camber_mesh_data device = {0}, twin = {0};
@@ -26,7 +26,7 @@ static bool is_exact(camber_context *context, camber_mesh *mesh, const camber_po
     return exact;
 }
 
-/* A band of 10.5 px across the picture: a pixel's alpha is the share of it that the band covers. */
+/* Draws a band of 10.5 px across the picture. A pixel's alpha must be the share of it that the band covers. */
 static int largest_error(float top, float bottom) {
     int largest = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {

@@ -1,14 +1,13 @@
-/* viewer FILE...: a map in a window, and how an engine draws one sixty times a second.
+/* viewer FILE...: shows a map in a window, and how an engine draws one sixty times a second.
  *
- * Input: files that camber_map.h reads, a style, the user's mouse and keys. Output: a window, or with --benchmark what
- * frames cost on a flight over the map. Main idea: what is fast runs on the main thread, and the rest beside it. A
- * frame moves the camera over the front scene's network: milliseconds. A worker thread reads files and styles and
- * evaluates the style for another zoom, in the back scene, of a context of its own. Then the two change places. So a
- * frame never waits; while the user zooms, lines are as wide as they were some frames ago.
+ * Input: files that camber_map.h reads, a style, and the user's mouse and keys. Output: a window, or with --benchmark
+ * the times of the frames on a flight over the map. Main idea: only fast work runs on the main thread. A frame moves
+ * the camera over the network of the front scene, which takes milliseconds. A worker thread reads files and styles, and
+ * evaluates the style for another zoom. It does so in the back scene, which has a context of its own. Then the two
+ * scenes are swapped. So a frame never waits; while the user zooms, lines have the widths of a few frames ago.
  *
  *     drag, arrows: pan    right drag: turn, tilt    q, e: turn    w, s: tilt    n: north up, no tilt
- *     wheel, +, -: zoom    t: theme    g: graph of the frames' times    Escape: quit
- */
+ *     wheel, +, -: zoom    t: theme    g: graph of the frames' times    Escape: quit */
 #include <EGL/egl.h>
 #include <GLES3/gl3.h>
 #include <SDL.h>
@@ -23,40 +22,40 @@ enum { GRAPH_WIDTH = 240, GRAPH_HEIGHT = 100, BENCHMARK_FRAMES = 600, WARM_UPS =
 enum { STATE_IDLE = 0, STATE_BUSY, STATE_DONE }; /* of the worker */
 
 static const double PI = 3.14159265358979323846;
-static const double SIMPLIFY_PX = 0.1, COARSEST_PX = 1; /* for a picture at rest; for one that moves, at most */
-static const double ZOOM_STEP = 0.1;                    /* from scene to scene: widths differ by 7 % at most */
-static const double SHORT_MS = 10, LONG_MS = 15;        /* frames that leave time for more points, and for fewer */
+static const double SIMPLIFY_PX = 0.1, COARSEST_PX = 1; /* at rest; the most while moving */
+static const double ZOOM_STEP = 0.1;                    /* between scenes, so widths differ by at most 7 % */
+static const double SHORT_MS = 10, LONG_MS = 15; /* frames faster than this get more points, and slower ones fewer */
 
 typedef struct options {
     char **paths;
     int path_count, width, height, frames;
-    const char *style; /* one that ships, or a file */
+    const char *style; /* name of a built-in style, or a file */
     bool dark, benchmark;
     camber_rasterizer rasterizer;
 } options;
 
-/* Where the camera is. x and y are the centre, in the unit square of Web Mercator. */
+/* The camera's position. x and y are the centre, in the unit square of Web Mercator. */
 typedef struct stand {
     double x, y, zoom, bearing_deg, pitch_deg;
-    double ratio;           /* device px a CSS px */
+    double ratio;           /* device px per CSS px */
     uint32_t width, height; /* CSS px */
 } stand;
 
-/* Says what a scene is made for. */
+/* A job of the worker: which scene to make. */
 typedef struct job {
-    bool fit; /* all of the map; else from the stand */
+    bool fit; /* the whole map; otherwise the view from the stand */
     stand at;
     bool dark;
-    unsigned edition; /* of the style's file */
+    unsigned edition; /* version of the style's file */
 } job;
 
-/* A scene and what it is made of, used by one thread at a time. */
+/* A scene and everything that it is made from. One thread at a time uses it. */
 typedef struct side {
     camber_context *context;
     camber_style *style;
     camber_features *features;
     camber_scene *scene;
-    camber_mesh *mesh; /* the main thread's: of its device, for networks of this context alone */
+    camber_mesh *mesh; /* used by the main thread, on its device, only for networks of this context */
     job made_for;
     bool muted;
 } side;
@@ -68,26 +67,26 @@ typedef struct viewer {
     SDL_Thread *thread;
     SDL_sem *begin;
     SDL_atomic_t state, leave;
-    job order;        /* written while the worker is idle */
-    char *style_text; /* the worker's: the last file that was a style; NULL: none */
+    job order;        /* written only while the worker is idle */
+    char *style_text; /* used by the worker: the last valid contents of the style's file; NULL: none */
     size_t style_bytes;
     bool order_failed;
-    bool is_paired; /* both sides have scenes: the main thread may not look while the worker is busy */
+    bool is_paired; /* both sides have scenes; the main thread may not read this while the worker is busy */
     int scenes;     /* made so far */
 
     SDL_Window *window;
     uint32_t width, height; /* device px */
-    SDL_Renderer *sdl;      /* frames by kernels go into a texture of SDL's */
+    SDL_Renderer *sdl;      /* frames drawn by kernels go into a texture of SDL */
     SDL_Texture *streamed;
     uint8_t *pixels; /* while the texture is locked */
     int stride;
     uint32_t drawn_width;
-    EGLContext gl; /* frames by GL: SDL's context, and what its window draws to */
+    EGLContext gl; /* frames drawn by GL: SDL's context, and the surface of its window */
     EGLDisplay display;
     EGLSurface screen;
-    GLuint textures[2], framebuffer; /* of the map, and of the graph */
+    GLuint textures[2], framebuffer; /* for the map, and for the graph */
 
-    camber_context *context; /* the main thread's */
+    camber_context *context; /* the main thread's context */
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer;
@@ -95,12 +94,12 @@ typedef struct viewer {
 
     stand at, drawn_at;
     bool dark, redraw, hidden, quit, is_graph_shown, is_titled, is_warm;
-    double simplify_px, coarsest_px; /* of the last picture, of all */
-    unsigned edition;                /* of the style's file */
+    double simplify_px, coarsest_px; /* of the last picture; the most of all pictures */
+    unsigned edition;                /* version of the style's file */
     struct stat style_file;
     uint32_t style_looked_ms;
-    double recent[GRAPH_WIDTH]; /* a ring of the last frames' times, ms */
-    double *times;              /* options.frames */
+    double recent[GRAPH_WIDTH]; /* ring buffer of the last frames' times, ms */
+    double *times;              /* options.frames of them */
     int frame_count;
 } viewer;
 
@@ -110,7 +109,7 @@ static void tell(void *user, camber_log_level level, const char *message) {
         fprintf(stderr, "viewer: %s\n", message);
 }
 
-/* ---- Where the camera is ---- */
+/* ---- The camera's position ---- */
 
 static bool is_same(const stand *a, const stand *b) {
     return a->x == b->x && a->y == b->y && a->zoom == b->zoom && a->bearing_deg == b->bearing_deg &&
@@ -138,11 +137,12 @@ static camber_view_desc view_of(const job *made_for) {
                               .ratio = at->ratio};
 }
 
-/* The place on the map below a place in the window. The camera of camber.h looks from 1.5 heights away. */
+/* Finds the position on the map below a position in the window. The camera of camber.h looks from a distance of 1.5
+ * heights. */
 static void look_under(const stand *at, double window_x, double window_y, double *x, double *y) {
     const double seen_x = window_x - 0.5 * at->width, seen_y = window_y - 0.5 * at->height, away = 1.5 * at->height;
     const double pitch = at->pitch_deg * PI / 180, bearing = at->bearing_deg * PI / 180;
-    const double fall = fmax(away * cos(pitch) + seen_y * sin(pitch), 0.1 * away); /* not past the horizon */
+    const double fall = fmax(away * cos(pitch) + seen_y * sin(pitch), 0.1 * away); /* not beyond the horizon */
     const double down = seen_y * away / fall, right = seen_x * (away - down * sin(pitch)) / away;
     const double css_px = 512 * exp2(at->zoom);
     *x = at->x + (right * cos(bearing) - down * sin(bearing)) / css_px;
@@ -157,7 +157,7 @@ static void keep_in_world(stand *at) {
     at->pitch_deg = fmin(fmax(at->pitch_deg, 0), 70);
 }
 
-/* Zooms so that the place below the pointer stays there. */
+/* Zooms while the position below the pointer stays where it is. */
 static void zoom_at(stand *at, double levels, double window_x, double window_y) {
     double before[2], after[2];
     look_under(at, window_x, window_y, before, before + 1);
@@ -180,7 +180,8 @@ static void drag(stand *at, const SDL_MouseMotionEvent *motion) {
     }
 }
 
-/* The benchmark's way: around the map, down to the streets and up again. It turns, and tilts near the ground. */
+/* Returns a position on the benchmark's flight: around the map, down to the streets and up again. It turns, and tilts
+ * near the ground. */
 static stand fly(const stand *start, double share) {
     const double turn = 2 * PI * share, css_px = 512 * exp2(start->zoom);
     stand at = *start;
@@ -210,7 +211,8 @@ static bool parse(side *s, const char *text, size_t size_bytes, const char *name
     return text && camber_style_parse(s->context, text, size_bytes, name, style) == CAMBER_OK;
 }
 
-/* A file that is no style, as one that is being edited, counts as the last one that was. */
+/* Parses the style. If the file is not a valid style, perhaps because it is being edited, the last valid one is
+ * used. */
 static bool parse_style(viewer *v, side *s, bool dark, camber_style **style) {
     const char *name = v->options.style;
     size_t size_bytes = 0;
@@ -246,7 +248,7 @@ static bool read_files(const viewer *v, side *s, const camber_style *style, camb
     return done;
 }
 
-/* Gives the side another style, and reads the files again where that asks for other properties of them. */
+/* Sets another style, and reads the files again if it needs other properties. */
 static bool restyle(viewer *v, side *s, bool dark) {
     camber_style *style = NULL;
     camber_features *features = s->features;
@@ -282,16 +284,16 @@ static bool make_scene(viewer *v, side *s, const job *order) {
 
 static int work(void *user) {
     viewer *v = user;
-    SDL_SetThreadPriority(SDL_THREAD_PRIORITY_LOW); /* frames come first */
+    SDL_SetThreadPriority(SDL_THREAD_PRIORITY_LOW); /* frames are more important */
     while (SDL_SemWait(v->begin) == 0 && !SDL_AtomicGet(&v->leave)) {
         v->order_failed = !make_scene(v, v->back, &v->order);
         SDL_AtomicSet(&v->state, STATE_DONE);
-        SDL_PushEvent(&(SDL_Event){.type = SDL_USEREVENT}); /* the main thread may be asleep */
+        SDL_PushEvent(&(SDL_Event){.type = SDL_USEREVENT}); /* the main thread may be waiting for events */
     }
     return 0;
 }
 
-/* The first scene fits the map: the camera begins there. */
+/* The first scene fits the map, and the camera starts there. */
 static void stand_at_fit(viewer *v) {
     const camber_scene_info info = camber_scene_get_info(v->front->scene);
     camber_camera camera;
@@ -304,8 +306,9 @@ static void stand_at_fit(viewer *v) {
     v->front->made_for.fit = false;
 }
 
-/* Takes what the worker has made, and gives it more to do. Where the camera pans, turns or tilts, the front scene
- * serves; another zoom has other lines and widths. A camera at rest gets a scene of its own. */
+/* Takes the worker's result, and gives it the next job. While the camera pans, turns or tilts, the front scene is
+ * sufficient; another zoom needs other lines and widths. If the camera is at rest, a scene is made for its exact
+ * view. */
 static void exchange(viewer *v, bool at_rest) {
     if (SDL_AtomicGet(&v->state) == STATE_DONE) {
         if (!v->order_failed) {
@@ -338,7 +341,7 @@ static void exchange(viewer *v, bool at_rest) {
 
 /* ---- Drawing ---- */
 
-/* Takes rows of a picture, or of the graph in the picture's corner. */
+/* Copies rows of the picture, or of the graph in its corner. */
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
     viewer *v = user;
     const size_t wide = v->drawn_width < v->width ? v->drawn_width : v->width;
@@ -347,8 +350,9 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* camber draws in a GL context of its own, which shares textures with SDL's, and leaves that current. SDL's then waits
- * on the GPU and shows the texture. SDL_GL_MakeCurrent would think that SDL's is current still, and do nothing. */
+/* camber draws in its own GL context, which shares textures with SDL's, and leaves it current. SDL's context then waits
+ * on the GPU and shows the texture. SDL_GL_MakeCurrent would assume that SDL's context is still current, and do
+ * nothing. */
 static camber_status draw_by_gl(viewer *v, const camber_frame *frame, GLuint name) {
     const GLint width = (GLint)frame->width, height = (GLint)frame->height, top = (GLint)v->height;
     void *drawn = NULL;
@@ -379,7 +383,7 @@ static void size_gl_texture(GLuint *name, uint32_t width, uint32_t height) {
     glFlush(); /* before another context draws into it */
 }
 
-/* Makes the textures as large as the window. */
+/* Resizes the textures to the window. */
 static bool fit_textures(viewer *v) {
     int width, height;
     SDL_GetWindowSizeInPixels(v->window, &width, &height);
@@ -397,7 +401,8 @@ static bool fit_textures(viewer *v) {
     return v->streamed && SDL_SetTextureBlendMode(v->streamed, SDL_BLENDMODE_NONE) == 0;
 }
 
-/* Draws the front scene from where the camera is. At the place that the scene was made for its own camera is exact. */
+/* Draws the front scene from the camera's position. If this is the position that the scene was made for, the scene's
+ * own camera is exact. */
 static camber_status draw_map(viewer *v) {
     side *s = v->front;
     const stand *at = &v->at;
@@ -424,7 +429,7 @@ static camber_status draw_map(viewer *v) {
     return draw_picture(v, &frame, 0);
 }
 
-/* The last frames' times as a line of camber's own, over lines at 16.7 and 50 ms. The top is 60 ms. */
+/* Draws the last frames' times as a line, with camber, over lines at 16.7 and 50 ms. The top is 60 ms. */
 static camber_status draw_graph(viewer *v) {
     float points[2 * (GRAPH_WIDTH + 4)] = {0, GRAPH_HEIGHT * (1 - 16.7f / 60), GRAPH_WIDTH, points[1],
                                            0, GRAPH_HEIGHT * (1 - 50.0f / 60), GRAPH_WIDTH, points[5]};
@@ -456,7 +461,7 @@ static camber_status draw_graph(viewer *v) {
     return status;
 }
 
-/* Pictures that move have as many points as there is time for. One at rest has all of them. */
+/* Moving pictures have as many points as can be drawn in time. A picture at rest has all of them. */
 static void choose_simplification(viewer *v, bool at_rest) {
     const double last_ms = v->frame_count ? v->recent[(v->frame_count - 1) % GRAPH_WIDTH] : 0;
     if (at_rest)
@@ -499,7 +504,7 @@ static bool draw(viewer *v, bool at_rest) {
         show(v);
     else if (v->surface && camber_surface_is_lost(v->surface))
         fprintf(stderr, "viewer: the GL context is lost\n");
-    /* The user's frames wait for the screen here; the benchmark's do not. */
+    /* interactive frames wait for the screen here; those of the benchmark do not */
     const double ms = (v->options.benchmark ? now_ms() : drawn_ms) - begin_ms;
     v->recent[v->frame_count % GRAPH_WIDTH] = ms;
     if (v->frame_count < v->options.frames)
@@ -575,7 +580,7 @@ static void take_events(viewer *v) {
     }
 }
 
-/* Looks four times a second whether the style's file is another. */
+/* Checks four times a second whether the style's file has changed. */
 static void look_at_style(viewer *v) {
     struct stat now;
     if (SDL_GetTicks() - v->style_looked_ms < 250 || stat(v->options.style, &now) != 0)
@@ -597,7 +602,7 @@ static void write_title(const viewer *v) {
 
 /* ---- The run ---- */
 
-/* One turn of the main loop: what the user did, what the worker made, and a picture where it is another. */
+/* One iteration of the main loop: handles events, takes the worker's result, and draws a picture if it has changed. */
 static bool turn(viewer *v, const stand *start) {
     const bool is_ready = v->front->scene && (v->is_paired || !v->options.benchmark);
     take_events(v);
@@ -631,7 +636,7 @@ static void report(const viewer *v, double seconds) {
            v->times[count * 95 / 100], v->times[count - 1], v->scenes, v->coarsest_px);
 }
 
-/* Frames that warm up come before those that are asked for. */
+/* The requested number of frames comes after some frames that warm up. */
 static bool is_over(const viewer *v) {
     const int before = v->options.benchmark && !v->is_warm ? WARM_UPS : 0;
     return v->options.frames && v->frame_count >= before + v->options.frames;
@@ -715,7 +720,7 @@ static bool start_worker(viewer *v) {
     return v->thread;
 }
 
-/* The last made goes first; a worker that is busy ends what it does. */
+/* Destroys objects in reverse order. A busy worker first finishes its job. */
 static void close_viewer(viewer *v) {
     SDL_AtomicSet(&v->leave, 1);
     if (v->thread) {
@@ -736,7 +741,7 @@ static void close_viewer(viewer *v) {
     camber_surface_destroy(v->surface);
     camber_context_destroy(v->context);
     if (v->sdl)
-        SDL_DestroyRenderer(v->sdl); /* and its texture */
+        SDL_DestroyRenderer(v->sdl); /* and the texture */
     if (v->window)
         SDL_DestroyWindow(v->window);
     SDL_Quit();
@@ -787,7 +792,7 @@ static bool open_viewer(viewer *v) {
     v->back = &v->sides[1];
     v->dark = v->options.dark;
     v->times = calloc((size_t)v->options.frames + 1, sizeof *v->times);
-    stat(v->options.style, &v->style_file); /* one that ships is no file */
+    stat(v->options.style, &v->style_file); /* fails for a built-in style, which is not a file */
     if (!v->times || SDL_Init(SDL_INIT_VIDEO) != 0) {
         fprintf(stderr, "viewer: %s\n", v->times ? SDL_GetError() : "out of memory");
         return false;
@@ -797,7 +802,7 @@ static bool open_viewer(viewer *v) {
 
 int main(int argc, char **argv) {
     viewer v = {0};
-    /* PoCL wants it before the first thread (docs/drivers.md). */
+    /* PoCL needs it before the first thread starts (docs/drivers.md) */
     setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0);
     if (!parse_options(argc, argv, &v.options)) {
         fprintf(stderr, "viewer FILE... [--style NAME|FILE] [--theme light|dark] [--size WxH] [--draw cl|gl] "

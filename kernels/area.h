@@ -163,16 +163,32 @@ typedef struct camber_crossings_left {
 } camber_crossings_left;
 
 /* Returns the brush of the next crossing; 0, a brush without polygons: there is none. */
-CAMBER_FN camber_u32 camber_next_area(const camber_crossings_left *left) {
+CAMBER_FN camber_u32 camber_next_crossing(const camber_crossings_left *left) {
     return left->end > left->first
                ? left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_BRUSH]
                : 0u;
 }
 
+/* Returns the brush of the next area that need not have edges in the tile: of a crossing or of a fill. 0: none. */
+CAMBER_FN camber_u32 camber_next_area(const camber_crossings_left *left, const camber_brush *now) {
+    const camber_u32 crossing = camber_next_crossing(left);
+    return crossing > now->fill ? crossing : now->fill;
+}
+
+/* Returns a brush: after its lists, a slice draws the areas above it. Those are the slice's crossings and the fills
+ * between them. Fills below wait until a slice draws something below them, or until the last slice. */
+CAMBER_FN camber_u32 camber_areas_end(const camber_crossings_left *left, camber_u32 is_last) {
+    if (is_last)
+        return 0u;
+    return left->end > left->first
+               ? left->words[CAMBER_CROSSING_WORDS * (size_t)left->first + CAMBER_CROSSING_BRUSH] - 1u
+               : ~0u;
+}
+
 /* Takes the crossings of a brush. Returns the winding number of its rings at the tile's corner. */
 CAMBER_FN int camber_take_winding(camber_crossings_left *left, camber_u32 brush) {
     int winding = 0;
-    for (; camber_next_area(left) == brush && brush != 0u; left->end--) {
+    for (; camber_next_crossing(left) == brush && brush != 0u; left->end--) {
         const camber_u32 place = left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_PLACE];
         winding += camber_crossing_column(place) <= left->column ? camber_crossing_times(place) : 0;
     }

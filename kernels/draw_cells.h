@@ -20,9 +20,9 @@ typedef struct camber_draw_source {
 
 /* Functions that GPU compilers must not inline everywhere, which takes them a minute. */
 #ifdef CAMBER_DEVICE
-#define CAMBER_APART static __attribute__((noinline))
+#define CAMBER_NOINLINE static __attribute__((noinline))
 #else
-#define CAMBER_APART CAMBER_FN
+#define CAMBER_NOINLINE CAMBER_FN
 #endif
 
 /* The tile being drawn. */
@@ -43,7 +43,6 @@ typedef struct camber_drawn_segment {
 #if CAMBER_HAS_MASKS
     camber_extras extras; /* all 0 if the brush has no features */
     camber_image_sampler image;
-    int is_fill;
 #endif
 } camber_drawn_segment;
 
@@ -215,12 +214,6 @@ CAMBER_FN void camber_draw_cell(camber_tile_state *c, const camber_drawn_segment
     camber_cell_pixels pixels;
     if (meets == CAMBER_CELL_OUTSIDE)
         return;
-#if CAMBER_HAS_MASKS
-    if (t->is_fill && t->extras.features & CAMBER_FEATURE_IMAGE) {
-        camber_put_images(c, t, one, 0);
-        return;
-    }
-#endif
     if (!has_colors)
         camber_tile_take_cells(c, (camber_u64)1 << one.number);
     if (!has_colors && meets == CAMBER_CELL_FULL) {
@@ -256,7 +249,6 @@ CAMBER_FN void camber_begin_segment(const camber_draw_source *from, const camber
 #if CAMBER_HAS_MASKS
     CAMBER_GLOBAL const float *arc_length = from->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * which;
     const camber_extras none = {0};
-    t->is_fill = t->edge.half_width >= CAMBER_FILL_PX;
     t->extras = none;
     if (c->brush_ext.features)
         camber_extras_of(&c->brush_ext, arc_length, from->side_table, &t->extras);
@@ -291,7 +283,7 @@ CAMBER_FN void camber_draw_segment(camber_tile_state *c, const camber_drawn_tile
 
 /* ---- Areas ---- */
 
-CAMBER_APART void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
+CAMBER_NOINLINE void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
     CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
     camber_ring_edges e;
     camber_tile_edges t;
@@ -301,7 +293,7 @@ CAMBER_APART void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_
 }
 
 /* Draws the polygon whose edges have been added. */
-CAMBER_APART void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
+CAMBER_NOINLINE void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
     if (!camber_brush_is_area(&c->now))
         return;
 #if CAMBER_HAS_MASKS
@@ -326,7 +318,7 @@ CAMBER_APART void camber_end_area(camber_tile_state *c, const camber_drawn_tile 
 
 /* ---- Tiles ---- */
 
-CAMBER_APART void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
+CAMBER_NOINLINE void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
     camber_end_area(c, d);
     camber_tile_change_brush(c, d->from.brushes[brush]);
 #if CAMBER_HAS_MASKS
@@ -336,10 +328,11 @@ CAMBER_APART void camber_draw_with(camber_tile_state *c, camber_drawn_tile *d, c
     d->brush = brush;
 }
 
-/* Draws the polygons above a brush that have no edges in the tile. */
+/* Draws the areas above a brush that have no edges in the tile. */
 CAMBER_FN void camber_draw_areas_above(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
-    for (camber_u32 next = camber_next_area(&d->left); next > brush; next = camber_next_area(&d->left)) {
-        const int winding = camber_take_winding(&d->left, next);
+    for (camber_u32 next = camber_next_area(&d->left, &c->now); next > brush;
+         next = camber_next_area(&d->left, &c->now)) {
+        const int winding = camber_take_winding(&d->left, next) + (next == c->now.fill);
         if (winding == 0)
             continue;
         camber_draw_with(c, d, next);

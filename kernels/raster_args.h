@@ -15,7 +15,8 @@ typedef struct camber_tile_grid {
 typedef struct camber_setup_args {
     camber_u32 first, end, slot_count; /* the range's slots [first, end), and how many the part has */
     camber_u32 has_arc_length, linear; /* has_arc_length: the part's slots have arc lengths */
-    camber_u32 makes, among_edges;     /* CAMBER_MAKES_...; whether there are edges of rings before and after them */
+    camber_u32 makes_edges;            /* of rings, instead of segments */
+    camber_u32 among_edges;            /* whether there are edges of rings before and after them */
     /* where the range's segments begin, a multiple of 16, and where its table begins among all rows */
     camber_u32 base, first_row;
     float left, top;          /* where the area begins in the picture, px */
@@ -29,9 +30,6 @@ typedef struct camber_setup_args {
 
 /* The number of slots that a work-item of setup takes: several, because starting a work-group takes a while. */
 #define CAMBER_SETUP_SLOTS(lanes) ((lanes) == 1u ? 16u : 128u)
-#define CAMBER_MAKES_SEGMENTS 0u
-#define CAMBER_MAKES_EDGES 1u
-#define CAMBER_MAKES_FILL 2u /* one segment that covers every tile, without points */
 
 /* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
 typedef struct camber_bin_args {

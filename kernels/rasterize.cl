@@ -133,7 +133,7 @@ typedef struct tile_brushes {
 
 /* Adds the queued edges to the polygon. */
 static __attribute__((noinline)) void add_edges(camber_tile_state *c, global const float *edges, camber_tile_rows where,
-                                                sixteen *b) {
+                                                segment_batch *b) {
     const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     for (uint k = b->count; k < SIXTEEN; k++)
         b->which[k] = b->which[0];
@@ -158,11 +158,11 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, global con
 
 /* Draws the queued segments, which all have the current brush. */
 static inline void draw_waiting(camber_tile_state *c, const positions *at, global const float *segments,
-                                global const float *edges, camber_tile_rows where, sixteen *b) {
+                                global const float *edges, camber_tile_rows where, segment_batch *b) {
     if (b->count != 0 && camber_brush_is_area(&c->now))
         add_edges(c, edges, where, b);
     else
-        draw_sixteen(c, at, segments, where, b);
+        draw_segment_batch(c, at, segments, where, b);
 }
 
 /* Draws the polygon whose edges have been added. */
@@ -219,15 +219,15 @@ static inline camber_u32 brush_of(global const float *segments, global const flo
                                    : as_uint(segments[(size_t)CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
 }
 
-/* Draws the polygons above a brush that cover the tile completely, with none of their edges in it. Returns the last
- * brush that was drawn. */
+/* Draws the areas above a brush that cover the tile completely, with none of their edges in it. Returns the last brush
+ * that was drawn. */
 static __attribute__((noinline)) camber_u32 draw_areas_above(camber_tile_state *c, const positions *at,
                                                              tile_brushes *from, camber_tile_rows where,
                                                              camber_crossings_left *left, camber_u32 brush,
                                                              camber_u32 current) {
-    for (camber_u32 next = camber_next_area(left); next > brush && !camber_tile_is_full(c);
-         next = camber_next_area(left)) {
-        const int winding = camber_take_winding(left, next);
+    for (camber_u32 next = camber_next_area(left, &c->now); next > brush && !camber_tile_is_full(c);
+         next = camber_next_area(left, &c->now)) {
+        const int winding = camber_take_winding(left, next) + (next == c->now.fill);
         if (winding == 0)
             continue;
         change_brush(c, at, from, where, next);
@@ -250,7 +250,7 @@ CAMBER_KERNEL(1, rasterize,
                side_table, planes, crossings, ends)) {
     camber_tile_state c;
     positions at;
-    sixteen b;
+    segment_batch b;
     const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
     const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], spilled = jobs[CAMBER_JOB_WORDS * job + 2],
                      column = (camber_u32)tile % s.columns, row = (camber_u32)tile / s.columns;
@@ -338,14 +338,15 @@ CAMBER_KERNEL(1, rasterize,
             b.which[b.count++] = lists[k];
             if (b.count < SIXTEEN)
                 continue;
-            draw_sixteen(&c, &at, segments, where, &b);
+            draw_segment_batch(&c, &at, segments, where, &b);
 #endif
         }
         if (camber_tile_is_full(&c))
             break;
     }
     draw_waiting(&c, &at, segments, edges, where, &b);
-    current = draw_areas_above(&c, &at, &from_brushes, where, &left_of, 0u, current);
+    current =
+        draw_areas_above(&c, &at, &from_brushes, where, &left_of, camber_areas_end(&left_of, slice.is_last), current);
     const int full = camber_tile_is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;

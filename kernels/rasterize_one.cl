@@ -24,11 +24,12 @@ static inline void write_cell(camber_tile_state *c, camber_tile_rows where, glob
 }
 
 /* Draws entries [first, end) of the lists, from the last to the first, until nothing below them shows. */
-static inline void draw_entries(camber_tile_state *c, camber_drawn_tile *d, camber_u32 first, camber_u32 end) {
+static inline void draw_entries(camber_tile_state *c, camber_drawn_tile *d, camber_u32 first, camber_u32 end,
+                                camber_u32 is_last) {
     for (camber_u32 k = end; k-- > first && !camber_tile_is_full(c);)
         camber_draw_listed(c, d, k);
     if (!camber_tile_is_full(c))
-        camber_draw_areas_above(c, d, 0u);
+        camber_draw_areas_above(c, d, camber_areas_end(&d->left, is_last));
 }
 
 CAMBER_KERNEL(CAMBER_CELLS, rasterize,
@@ -73,7 +74,7 @@ CAMBER_KERNEL(CAMBER_CELLS, rasterize,
             c.winding += camber_take_winding(&d.left, d.brush);
         }
     }
-    draw_entries(&c, &d, starts[tile], starts[tile + 1]);
+    draw_entries(&c, &d, starts[tile], starts[tile + 1], slice.is_last);
     const int is_full = camber_tile_is_full(&c);
     if (!slice.is_last && !is_full) {
         const camber_u32 open = (camber_u32)c.is_open[CAMBER_GROUP] << 30 | (camber_u32)c.is_open[CAMBER_LAYER] << 31;

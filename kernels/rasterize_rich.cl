@@ -151,10 +151,6 @@ static __attribute__((noinline)) void draw_rich(camber_tile_state *c, const posi
         return;
     t.from = from;
     begin_edge(from, &t.edge);
-    if (c->brush_ext.features & CAMBER_FEATURE_IMAGE && t.edge.half_width >= CAMBER_FILL_PX) {
-        fill_with_images(c, at, from, (camber_area_cells){.whole = ~c->done});
-        return;
-    }
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE)
         camber_image_line_of(from.side_table, 4u * c->brush_ext.image, from.arc_length, &t.edge, &t.image);
     camber_extras_of(&c->brush_ext, from.arc_length, from.side_table, &t.extras);

@@ -10,14 +10,14 @@
 /* Segments of a brush are queued until there are this many. */
 #define SIXTEEN 16
 
-typedef struct sixteen {
+typedef struct segment_batch {
     uint which[SIXTEEN];
     uint count;
-} sixteen;
+} segment_batch;
 
 #if CAMBER_RASTER_PITCHED
 /* With a pitch segments are drawn one by one. */
-#define draw_sixteen(c, at, segments, where, b) ((b)->count = 0)
+#define draw_segment_batch(c, at, segments, where, b) ((b)->count = 0)
 #else
 
 /* Classes of a segment's ends: they need nothing more, flat caps, or one of the rest, of which sharp joins need most.
@@ -88,13 +88,13 @@ static inline camber_words spread(camber_words bits) {
 }
 
 /* The cell_sets of sixteen segments. */
-typedef struct sixteen_sets {
+typedef struct batch_sets {
     ulong partial[SIXTEEN], near_end[SIXTEEN], full[SIXTEEN];
-} sixteen_sets;
+} batch_sets;
 
 /* Finds the sets of a vector of segments, and stores them at index v. */
 static inline void find_sets(const camber_edges *p, const camber_cell_boxes *b, camber_tile_rows where, size_t v,
-                             sixteen_sets *sets) {
+                             batch_sets *sets) {
     const int columns = camber_largest_of(b->columns), rows = camber_largest_of(b->rows);
     const camber_real left = (float)CAMBER_CELL_PX * CAMBER_TO_REAL(b->x) + (where.left + 0.5f * CAMBER_CELL_PX);
     const camber_real top = (float)CAMBER_CELL_PX * CAMBER_TO_REAL(b->y) + (where.top + 0.5f * CAMBER_CELL_PX);
@@ -158,7 +158,7 @@ static inline void list_cells(cell_list *list, ulong cells, uint word) {
 
 /* Lists the cells of all segments, segment by segment, except closed cells, through which nothing below shows. Returns
  * which cells are listed. */
-static inline ulong list_all(const sixteen_sets *sets, uint count, ulong shut, cell_list *list) {
+static inline ulong list_all(const batch_sets *sets, uint count, ulong shut, cell_list *list) {
     ulong listed = 0;
     list->count = 0;
     for (uint k = 0; k < count; k++) {
@@ -331,11 +331,12 @@ static inline void take_segments(global const float *segments, const uint *which
 #undef WORD
 }
 
-static __attribute__((noinline)) void draw_sixteen(camber_tile_state *c, const positions *at,
-                                                   global const float *segments, camber_tile_rows where, sixteen *b) {
+static __attribute__((noinline)) void draw_segment_batch(camber_tile_state *c, const positions *at,
+                                                         global const float *segments, camber_tile_rows where,
+                                                         segment_batch *b) {
     const int numbers[SIXTEEN] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     camber_edges all[CAMBER_VECTORS];
-    sixteen_sets sets;
+    batch_sets sets;
     cell_list list;
     uint ends[SIXTEEN];
     const list_source from = {at, all, ends};

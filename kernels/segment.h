@@ -15,12 +15,8 @@
 #define CAMBER_CELL_PX 4
 #define CAMBER_TILE_CELLS 8               /* cells along each side of a tile */
 #define CAMBER_TILES_MAX 256              /* tiles along each side of an area: a box has a byte for each coordinate */
-#define CAMBER_LOOK_EVERY 16              /* after this many segments, a cell is checked for being full */
+#define CAMBER_FULL_CHECK_INTERVAL 16     /* after this many segments, a cell is checked for being full */
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* if less than this shows through, nothing below is drawn */
-/* A fill is a line along y = 0 that is this long to either side and has this half width; then the join word of its
- * ends. */
-#define CAMBER_FILL_PX 1e6f
-#define CAMBER_FILL_JOIN (CAMBER_KIND_CAP << CAMBER_JOIN_KIND_SHIFT | CAMBER_ENDS_BUTT << CAMBER_JOIN_END_SHIFT)
 
 /* The box of a segment that is not drawn: its first tile is after the last one. */
 #define CAMBER_NO_BOX 0xffu
@@ -42,10 +38,11 @@
 #define CAMBER_BRUSH_AREA_EVENODD 4u /* the same, by CAMBER_FILL_EVENODD */
 
 /* A colour and mode that segments are drawn with. Layers and groups are composited as a whole; number 0 is none. A
- * layer belongs to one group. */
+ * layer belongs to one group. A fill of the picture is an area without edges, inside which all of the picture is: only
+ * its brush exists. If there are fills, brush 0 draws nothing, and its fill is the topmost one. */
 typedef struct camber_brush {
-    float r, g, b, a; /* not premultiplied */
-    camber_u32 mode, layer, group, spare;
+    float r, g, b, a;                    /* not premultiplied */
+    camber_u32 mode, layer, group, fill; /* fill: the brush of the next fill below this one. 0: none */
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 

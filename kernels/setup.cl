@@ -189,19 +189,6 @@ static inline void take_edge_ends(part_points from, global const float *rows, in
     look_up_rows(rows, r, e);
 }
 
-/* Takes the ends of a fill, whose segment ends in slot 0. */
-static inline void take_fill(global const float *rows, int first, const camber_setup_args *r, ends *e) {
-    const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const camber_words none = (camber_words)(0u), join = (camber_words)(CAMBER_FILL_JOIN);
-    e->b.x = CAMBER_AS_WORDS(CAMBER_REAL(CAMBER_FILL_PX));
-    e->before.x = CAMBER_AS_WORDS(CAMBER_REAL(-CAMBER_FILL_PX));
-    e->b.y = e->before.y = e->b.info = none;
-    e->b.join = e->before.join = join;
-    e->is_dot = join == none;
-    e->is_drawn = CAMBER_LOAD(0, numbers) == -first;
-    look_up_rows(rows, r, e);
-}
-
 /* The points at which segments begin and end. */
 typedef struct lane_ends {
     camber_real ax, ay, bx, by;
@@ -220,10 +207,7 @@ static inline void make_segments(part_points from, global const float *rows, glo
     ends e;
     lane_ends l;
     camber_segment s;
-    if (r->makes == CAMBER_MAKES_FILL)
-        take_fill(rows, first, r, &e);
-    else
-        take_ends(from, rows, first, r, &e);
+    take_ends(from, rows, first, r, &e);
     place_ends(&e, &l);
     /* The previous segment begins two points before the end; for a cap it does not matter. */
     const camber_words px = take_words(from.x, first - 1, r), py = take_words(from.y, first - 1, r);
@@ -316,7 +300,7 @@ CAMBER_KERNEL(1, setup,
                             planes + CAMBER_PLANE_WORDS * at,
                             edges + camber_edge_ends(at),
                             (global camber_u32 *)edges + camber_edge_brush(at)};
-        if (r.makes == CAMBER_MAKES_EDGES)
+        if (r.makes_edges)
             make_edges(points, rows, changes, first, &r, to);
         else
             make_segments(points, rows, slot_arc_lengths, first, &r, to);

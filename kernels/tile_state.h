@@ -165,10 +165,11 @@ CAMBER_FN void camber_tile_put_union(camber_tile_state *c, int i, int v, camber_
     c->sums[i][2][v] += thick ? ny * edge : none;
 }
 
-/* Counts a segment that was drawn into a cell. After every CAMBER_LOOK_EVERY it checks if the cell is filled. */
+/* Counts a segment that was drawn into a cell. After every CAMBER_FULL_CHECK_INTERVAL it checks if the cell is filled.
+ */
 CAMBER_FN void camber_tile_count(camber_tile_state *c, int i) {
-    if (c->now.mode != CAMBER_BRUSH_UNION && ++c->blend_count[i] % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f &&
-        camber_lets_nothing(c->brush[i]))
+    if (c->now.mode != CAMBER_BRUSH_UNION && ++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL == 0 &&
+        c->now.a == 1.0f && camber_lets_nothing(c->brush[i]))
         c->filled |= (camber_u64)1 << i;
 }
 
@@ -338,7 +339,7 @@ CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber
 /* Counts a segment of such colours that was drawn into a cell; whole: the cell is inside the stroke. */
 CAMBER_FN void camber_tile_count_colors(camber_tile_state *c, int i, int whole) {
     const int level = camber_tile_level(c);
-    if (++c->blend_count[i] % CAMBER_LOOK_EVERY && !whole)
+    if (++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL && !whole)
         return;
     if (camber_lets_nothing(c->level[level][i][3])) {
         if (level == CAMBER_PICTURE)

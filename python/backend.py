@@ -1,7 +1,7 @@
-"""What pip and build call: setuptools and cffi, as the system has them.
+"""The build backend that pip and build call: setuptools and cffi, from the system if it has them.
 
-An isolated build sees no package of the system, and fetches all that it is told to. Debian's packages are as good, and
-need no network: this looks in the system's folder too, and asks for what is not there either.
+An isolated build does not see packages of the system, and downloads everything that it requires. Debian's packages work
+as well and need no network, so this backend also searches the system's folder, and requires only what is missing there.
 """
 
 import importlib.util

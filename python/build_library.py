@@ -1,7 +1,7 @@
-"""The extension camber._library: cffi reads the public headers, and the compiler checks what it has read.
+"""The extension camber._library: cffi reads the public headers, and the compiler checks its declarations.
 
-No declaration is copied, so a header that changes is followed, or does not build. The headers and the libraries are
-those that pkg-config finds, or those of a build folder that CAMBER_BUILD names, and of the tree that it was built from.
+No declaration is copied, so after a change to a header the extension either follows it or does not build. The headers
+and libraries are those that pkg-config finds, or those of the build folder in CAMBER_BUILD and of its source tree.
 """
 
 import os
@@ -15,7 +15,7 @@ from cffi import FFI
 HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_map.h",
            "camber_text.h", "camber_tiles.h")
 
-# Rows whose alphas leave their colours go to an array without Python, and so without its lock.
+# Rows with straight (not premultiplied) alpha are written to an array by C code, without Python and its lock.
 HELPERS = """
 typedef struct camber_python_picture {
     uint8_t *rgba;
@@ -53,7 +53,7 @@ void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count) {
 }
 """
 
-# The C data interface of Arrow, as its specification has it.
+# Arrow's C data interface, copied from its specification.
 ARROW = """
 struct ArrowSchema {
     const char *format, *name, *metadata;
@@ -82,7 +82,7 @@ CALLBACKS = 'extern "Python" void camber_python_log(void *user, camber_log_level
 
 
 def declarations(text):
-    """A header as cffi reads it: without comments, directives and constants that are no whole numbers."""
+    """Prepares a header for cffi: removes comments, directives, and constants that are not whole numbers."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
     text = re.sub(r"^#ifdef __cplusplus.*?^#endif", "", text, flags=re.M | re.S)
     text = re.sub(r"^(#define \w+ \w+?)u$", r"\1", text, flags=re.M)
@@ -95,12 +95,12 @@ def pkg_config(*arguments):
     try:
         return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
     except (OSError, subprocess.CalledProcessError) as error:
-        sys.exit("camber: %s failed: install the C library with its headers first (Debian: libcamber-dev), or name a "
-                 "build folder by CAMBER_BUILD\n%s" % (shlex.join(command), getattr(error, "stderr", "")))
+        sys.exit("camber: %s failed: install the C library with its headers first (Debian: libcamber-dev), or set "
+                 "CAMBER_BUILD to a build folder\n%s" % (shlex.join(command), getattr(error, "stderr", "")))
 
 
 def locate():
-    """(folder of the headers, folder of the libraries, whether the linker needs to be told where that is)"""
+    """Returns (folder of the headers, folder of the libraries, whether the linker needs the latter as an option)."""
     build = os.environ.get("CAMBER_BUILD")
     if build:
         with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:

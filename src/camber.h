@@ -268,13 +268,11 @@ typedef struct camber_device_info {
     bool gl_sharing;               /* cl_khr_gl_sharing */
 } camber_device_info;
 
-/* Sets *info to the n-th device, counted from 0, or to NULL past the last. The first call for a context looks for
- * devices. The infos live as long as the context.
+/* Sets *info to the n-th device, counted from 0, of those that match names, or to NULL past the last. match is as in
+ * camber_device_desc; NULL: all. The first call for a context looks for devices. The infos live as long as the context.
  * Returns CAMBER_ERROR_MEMORY, also if the process has too little address space for the drivers (ulimit -v). */
-CAMBER_API camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info);
-
-/* Returns whether match names the device. match is as in camber_device_desc. */
-CAMBER_API bool camber_device_info_matches(const camber_device_info *info, const char *match);
+CAMBER_API camber_status camber_device_list(camber_context *context, const char *match, size_t n,
+                                            const camber_device_info **info);
 
 typedef enum camber_gl_display { CAMBER_GL_DISPLAY_EGL, CAMBER_GL_DISPLAY_GLX } camber_gl_display;
 
@@ -328,12 +326,12 @@ CAMBER_API camber_status camber_device_create(camber_context *context, const cam
 CAMBER_API void camber_device_destroy(camber_device *device);
 
 /* The work that a call of camber_device_warm did. */
-typedef struct camber_warmed {
+typedef struct camber_warm_result {
     size_t programs;   /* programs in the share */
     size_t built;      /* programs that were built; the others were in the cache */
     size_t kept;       /* programs that are in the folder now. 0 if the driver does not let its kernels be saved */
     char folder[1024]; /* where they are; "": nowhere, because no folder can be written */
-} camber_warmed;
+} camber_warm_result;
 
 /* Builds all kernels that the device can be asked for, and saves those that the cache lacks, so that later runs can
  * load them. They go to the folder camber-kernels next to the library, which all users of the machine can read, or, if
@@ -343,7 +341,7 @@ typedef struct camber_warmed {
  * everything. Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
  * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
-                                            camber_warmed *warmed);
+                                            camber_warm_result *result);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
 
 typedef struct camber_device_memory {
@@ -494,6 +492,7 @@ typedef struct camber_mesh_info {
     camber_method method;
     bool strips;         /* triangle strips; else triangles */
     bool has_arc_length; /* as the tessellation was asked for */
+    bool of_network;     /* the last tessellation was of a network; else of polylines */
     /* If the mesh's renderer draws in OpenCL, it needs only points. The next three are then 0 until
      * camber_mesh_count_joins. */
     size_t record_count;      /* camber_record */
@@ -541,15 +540,6 @@ CAMBER_API camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh);
  * tessellated again.
  * Cost: one pass over the points. */
 CAMBER_API camber_status camber_mesh_count_joins(camber_mesh *mesh);
-
-typedef struct camber_mesh_memory {
-    size_t parts;          /* groups of consecutive polylines with buffers of their own: 1 if there is room */
-    size_t resident_parts; /* parts that need not be tessellated again to be read or drawn */
-    size_t remade_parts;   /* parts that were tessellated again since the last tessellation */
-    uint64_t held_bytes;   /* bytes of the mesh that count against the device's memory limit */
-} camber_mesh_memory;
-
-CAMBER_API camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh);
 
 /* ---- Drawing --------------------------------------------------------------------------------------- */
 

@@ -198,10 +198,6 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
  * The first call of a process does what camber_gdal_load does, and registers GDAL's drivers. */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
-/* Frees the points of the lines, which take most of a set's memory. Existing scenes remain, and are drawn as before.
- * Call it once you have made all the scenes you need: afterwards no scene can be made or moved, and nothing more can be
- * read. */
-CAMBER_API void camber_features_release_points(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
 CAMBER_API camber_features_times camber_features_get_times(const camber_features *features);
 /* Returns the credit to show next to a picture of the data, as UTF-8, with commas between several names; NULL: none is
@@ -354,7 +350,7 @@ CAMBER_API camber_status camber_features_read_for(camber_features *features, con
 CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                              camber_scene **scene);
 /* Makes the last scene of its features, of ONE_VIEW whatever use says: their points go as soon as they are in the
- * network, as by camber_features_release_points, and those that it leaves out before that. Returns the same. */
+ * network, and those that it leaves out before that. Then the features can make no other scene. Returns the same. */
 CAMBER_API camber_status camber_scene_create_last(camber_features *features, const camber_scene_desc *desc,
                                                   camber_scene **scene);
 CAMBER_API void camber_scene_destroy(camber_scene *scene);

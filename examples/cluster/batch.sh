@@ -1,13 +1,13 @@
 #!/bin/bash
-# A pyramid on AWS Batch: a job that looks where lines are, an array job of shards that read what it has found, and a job
-# that merges them once all are there.
+# Draws a pyramid on AWS Batch: a job makes the schedule, an array job draws the shards from it, and a job merges them
+# when all have finished.
 #
 #     batch.sh QUEUE SHARDS INPUT OUT.pmtiles [ZOOM]
 #
-# INPUT and OUT are paths in the container. To change in batch.json, beside this script: the image (none is published:
-# yours, with camber on its PATH and a shell) and the file system that all containers share. An array has 2 to 10,000
-# children; each has its AWS_BATCH_JOB_ARRAY_INDEX, which --shard auto reads. Batch tries again, not camber: a shard
-# that was cut off goes on where it stopped, and one that is finished takes a second.
+# INPUT and OUT are paths in the container. In batch.json, next to this script, set the image (none is published: build
+# one with a shell and with camber on its PATH) and the file system that all containers share. An array has 2 to 10,000
+# children. Each has an AWS_BATCH_JOB_ARRAY_INDEX, which --shard auto reads. Batch retries failed jobs; camber then
+# continues an interrupted shard where it stopped, and a finished shard takes a second.
 set -eu
 [ $# -ge 4 ] || { sed -n '2,10s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 queue=$1 shards=$2 input=$3 out=$4 zoom=${5:-16}

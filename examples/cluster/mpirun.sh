@@ -1,11 +1,11 @@
 #!/bin/bash
-# A pyramid by mpirun (Open MPI; MPICH and Slurm's srun set variables that --shard auto reads as well):
+# Draws a pyramid with mpirun (Open MPI; --shard auto also reads the variables that MPICH and Slurm's srun set):
 #
 #     mpirun.sh PROCESSES OUT.pmtiles INPUT [OPTION...]
 #
-# It is three lines, to be copied. The first looks where lines are, and processes read what it has found. MPI tries
-# nothing again: one process that fails ends all. Run the same line then: finished shards take a second, and one that
-# was cut off goes on where it stopped. MPIRUN has mpirun's options.
+# The script is three lines, which you can copy. The first makes a schedule, which all processes read. MPI does not
+# retry: if one process fails, all end. Then run the same command again: finished shards take a second, and an
+# interrupted one continues where it stopped. Set MPIRUN to options for mpirun.
 set -eu
 [ $# -ge 3 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 n=$1 out=$2

@@ -1,16 +1,18 @@
 #!/bin/bash
-# A pyramid on a Slurm cluster: a job that looks where lines are, an array of shards, and their merge behind it.
+# Draws a pyramid on a Slurm cluster: a job makes the schedule, an array draws the shards, and a job merges them.
 #
 #     slurm.sh SHARDS OUT.pmtiles INPUT [OPTION...]
 #     slurm.sh 64 /shared/city.pmtiles /shared/city.osm.pbf --style /shared/roads.json --max-zoom 16
 #
-# It prints the numbers of array and merge. Shards read what the first job has found, beside OUT; where it failed, each
-# looks for itself. Paths are on a disk that all nodes share. SBATCH_OPTIONS goes to sbatch for the
-# array: "--cpus-per-task=4 --mem=4G --time=2:00:00". CAMBER names the tool where it is not on PATH.
+# It prints the job numbers of the array and the merge. Shards read the schedule from the folder of OUT; if the first
+# job has failed, each finds the lines itself. All paths must be on a disk that all nodes share. SBATCH_OPTIONS are
+# options of sbatch for the array: "--cpus-per-task=4 --mem=4G --time=2:00:00". Set CAMBER to the path of the tool if it
+# is not on PATH.
 #
-# Slurm tries again, not camber. A task whose node is lost is requeued. For one that was killed slurm.conf says so:
-# RequeueExit=137 (for want of memory: 137 too). After anything else run the same command again: finished shards take
-# a second, and one that was cut off goes on where it stopped. Exit status 65 (the input) or 2 (an option) stays one.
+# Slurm retries, not camber. It requeues a task whose node is lost. To requeue killed tasks, too, put RequeueExit=137
+# into slurm.conf (137 also means out of memory). After any other failure run the same command again: finished shards
+# take a second, and an interrupted one continues where it stopped. Exit statuses 65 (the input) and 2 (an option) will
+# not go away by running it again.
 set -eu
 CAMBER=${CAMBER:-camber}
 
@@ -29,7 +31,7 @@ case "${1:-}" in
     schedule=$2
     shift 2
     [ ! -e "$schedule" ] || set -- "$@" --schedule "$schedule"
-    # Not exec: the shell makes status 137 of a SIGKILL, which RequeueExit can name.
+    # Do not use exec: the shell turns a SIGKILL into status 137, which RequeueExit can name.
     "$CAMBER" tiles "$@" --shard auto --resume --threads "${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-1}}"
     exit
     ;;
@@ -55,8 +57,8 @@ schedule=$(sbatch --parsable --job-name=tiles-schedule --requeue --open-mode=app
 # shellcheck disable=SC2086 # several options
 array=$(sbatch --parsable --job-name=tiles --array="0-$((shards - 1))" --requeue --open-mode=append \
     --dependency="afterany:$schedule" --output="${out%.*}.%a.log" ${SBATCH_OPTIONS:-} "$0" --task "$out.schedule" "$input" -o "$out" "$@")
-# Not afterok: to that an array has failed for good once a task has, though Slurm requeued it (22.05). The merge itself
-# names the shards that are missing, and writes nothing then.
+# Do not use afterok, which treats an array as failed as soon as one task has failed, even if Slurm requeues it (22.05).
+# If shards are missing, the merge names them and writes nothing.
 merge=$(sbatch --parsable --job-name=tiles-merge --dependency="afterany:$array" --requeue \
     --open-mode=append --output="${out%.*}.merge.log" "$0" --merge "$shards" "$out")
 echo "array $array, merge $merge"

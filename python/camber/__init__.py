@@ -1,4 +1,4 @@
-"""camber: lines of maps, drawn by OpenCL kernels into arrays. docs/python.md is the manual."""
+"""camber draws lines of maps into arrays with OpenCL kernels. The manual is docs/python.md."""
 
 from ._core import (ArgumentError, Context, DeviceError, Error, FileError, InputError, LimitError, NotFoundError,
                     OutOfMemoryError, devices, lib as _lib, version as _version)

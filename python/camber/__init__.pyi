@@ -7,7 +7,7 @@ import numpy.typing
 _Array = numpy.typing.NDArray[Any]
 _Picture = numpy.typing.NDArray[numpy.uint8]
 _Path = Union[str, bytes, "os.PathLike[str]"]
-# An array of n x 2, a list of such arrays, GeoArrow, geometries of Shapely, a GeoSeries or a GeoDataFrame.
+# An n x 2 array, a list of such arrays, GeoArrow, geometries of Shapely, a GeoSeries or a GeoDataFrame.
 _Lines = Any
 _Color = Union[str, Sequence[float]]
 _Colors = Union[_Color, Sequence[_Color], _Array]

@@ -1,7 +1,7 @@
-"""Contexts: a device, a lock, and the log. Every call of the library goes through here.
+"""Contexts: a device, a lock, and the log. Every call of the library goes through this module.
 
-A context serves one thread at a time, so each has a lock, which a call holds while Python's own lock is free. Objects
-that Python drops while another thread is in a call wait in a queue until that call ends.
+A context serves one thread at a time, so each has a lock. A call holds it while Python's own lock is released. If
+Python drops an object while another thread is in a call, the object waits in a queue until the call ends.
 """
 
 import atexit
@@ -17,23 +17,23 @@ logger = logging.getLogger("camber")
 
 
 class Error(Exception):
-    """A call of the library failed. The text is the library's message: what failed, where, and the cure."""
+    """A call of the library failed. The text is the library's message: what failed, where, and what to do."""
 
 
 class ArgumentError(Error, ValueError):
-    """A value is out of range or does not parse."""
+    """A value is out of range or cannot be parsed."""
 
 
 class InputError(Error, ValueError):
-    """Input is not what it claims to be, or is cut off."""
+    """The input does not have the expected format, or is truncated."""
 
 
 class NotFoundError(Error, FileNotFoundError):
-    """There is no such file."""
+    """The file does not exist."""
 
 
 class DeviceError(Error, RuntimeError):
-    """No usable device, or a kernel that does not build."""
+    """There is no usable device, or a kernel cannot be compiled."""
 
 
 class FileError(Error, OSError):
@@ -41,11 +41,11 @@ class FileError(Error, OSError):
 
 
 class LimitError(Error, OverflowError):
-    """More than a buffer, a picture or a budget can hold."""
+    """Something exceeds the limit of a buffer, a picture or a memory budget."""
 
 
 class OutOfMemoryError(Error, MemoryError):
-    """An allocation failed, or a budget refused it."""
+    """Memory could not be allocated, or the memory budget is exhausted."""
 
 
 ERRORS = {
@@ -62,15 +62,15 @@ LEVELS = {lib.CAMBER_LOG_ERROR: logging.DEBUG, lib.CAMBER_LOG_WARNING: logging.W
 
 
 def text_of(pointer):
-    """The text of a C string; None of NULL."""
+    """Returns the text of a C string; None if it is NULL."""
     return None if pointer == ffi.NULL else ffi.string(pointer).decode("utf-8", "replace")
 
 
 def as_path(path):
-    """A path or a text as bytes, none of which the library would take for its end."""
+    """Returns a path or text as bytes. Refuses NUL, at which the library would end the text."""
     path = os.fsencode(path)
     if b"\0" in path:
-        raise ArgumentError("%r has a NUL in it" % path)
+        raise ArgumentError("%r contains a NUL character" % path)
     return path
 
 
@@ -83,13 +83,13 @@ def version():
 
 
 def _is_object(value):
-    """Whether this is a pointer to an object of the library, which no header describes."""
+    """Whether this is a pointer to an opaque object of the library."""
     kind = ffi.typeof(value) if isinstance(value, ffi.CData) else None
     return bool(kind and kind.kind == "pointer" and kind.item.kind == "struct" and kind.item.fields is None)
 
 
 class _Log:
-    """The last message of a failure, which the exception will say. It is told to the log too, at the level DEBUG."""
+    """Keeps the message of the last failure for the exception, and also logs it at level DEBUG."""
 
     message = None
 
@@ -103,20 +103,21 @@ def camber_python_log(user, level, message):
 
 
 class Keeper:
-    """Frees the objects of a context: one at a time, and none before those that were made from it.
+    """Frees the objects of a context one at a time, and none before the objects that were made from it.
 
-    Python drops them in any order where it collects a circle. So each that is dropped waits until its children are freed.
+    Python drops the objects of a reference cycle in any order. So a dropped object waits until its children are freed.
     """
 
     def __init__(self):
         self.lock = threading.Lock()
         self.process = os.getpid()
-        self.surface = ffi.NULL  # whose GL context calls and destroyers leave current on their thread
-        self._held = {}  # address -> [pointer, destroy, addresses of parents, number of children, whether it is dropped]
+        self.surface = ffi.NULL  # calls and destructors leave its GL context current on their thread
+        # address -> [pointer, destroy, addresses of parents, number of children, whether it is dropped]
+        self._held = {}
         self._dropped = collections.deque()
 
     def own(self, pointer, destroy, parents=()):
-        """The pointer, which destroy frees after Python has dropped it."""
+        """Returns the pointer. destroy frees it after Python has dropped it."""
         address = int(ffi.cast("uintptr_t", pointer))
         parents = [int(ffi.cast("uintptr_t", parent)) for parent in parents]
         self._held[address] = [pointer, destroy, parents, 0, False]
@@ -129,7 +130,7 @@ class Keeper:
         self.free_dropped()
 
     def free_dropped(self):
-        """Frees what waits, unless a call is going on: then its end does."""
+        """Frees the objects that wait, unless a call is in progress; then the end of the call does it."""
         while self._dropped and self.process == os.getpid() and self.lock.acquire(blocking=False):
             try:
                 while self._dropped:
@@ -140,7 +141,7 @@ class Keeper:
                 self.release()
 
     def release(self):
-        """Frees the lock, and before it the surface, so that another thread can use both."""
+        """Releases the lock, after freeing the surface, so that another thread can use both."""
         if self.surface != ffi.NULL:
             lib.camber_surface_release(self.surface)
         self.lock.release()
@@ -158,9 +159,9 @@ class Keeper:
 
 
 class Core:
-    """A C context with its lock: `with core:` around calls, core.check(status) for each that can fail."""
+    """A C context with its lock. Use `with core:` around calls, and core.check(status) for each that can fail."""
 
-    opened_in = None  # the process that opened the first one
+    opened_in = None  # the process that created the first Core
 
     def __init__(self, access, cache_dir):
         self._refuse_fork(Core.opened_in)
@@ -176,7 +177,7 @@ class Core:
         made = ffi.new("camber_context **")
         self.check(lib.camber_context_create(desc, made))
 
-        def destroy(pointer, handle=handle):  # the log's handle lives as long as the context
+        def destroy(pointer, handle=handle):  # the handle of the log must live as long as the context
             lib.camber_context_destroy(pointer)
 
         self.pointer = self._keeper.own(made[0], destroy)
@@ -184,8 +185,8 @@ class Core:
     @staticmethod
     def _refuse_fork(process):
         if process not in (None, os.getpid()):
-            raise DeviceError("camber was used before this process was forked, and drivers do not live through that; "
-                              "use multiprocessing's method spawn or forkserver")
+            raise DeviceError("camber was used before this process was forked, and drivers do not survive a fork; "
+                              "use multiprocessing's start method spawn or forkserver")
 
     def __enter__(self):
         self._refuse_fork(self._keeper.process)
@@ -210,9 +211,9 @@ class Core:
         return self._keeper.own(pointer, destroy, [self.pointer, *parents])
 
     def make(self, function, *arguments, parents=()):
-        """Calls X_create, whose last parameter takes the object; X_destroy follows when Python drops it.
+        """Calls X_create, whose last parameter receives the object. X_destroy is called after Python has dropped it.
 
-        An argument that is an object is freed later than what is made; so are parents, which a desc names.
+        Objects among the arguments are freed after the new object; so are parents, which a desc refers to.
         """
         made = ffi.new(ffi.typeof(function).args[-1])
         self.check(function(*arguments, made))
@@ -221,7 +222,7 @@ class Core:
         made = self.own(made[0], destroy, [*parents, *(each for each in arguments
                                                        if _is_object(each) and each != self.pointer)])
         if function is lib.camber_surface_create:
-            self._keeper.surface = ffi.cast("camber_surface *", made)  # does not own it: the keeper frees it
+            self._keeper.surface = ffi.cast("camber_surface *", made)  # without ownership: the keeper frees it
         return made
 
 
@@ -231,7 +232,7 @@ RASTERIZERS = {"auto": lib.CAMBER_RASTERIZER_AUTO, "gl": lib.CAMBER_RASTERIZER_G
 
 
 def pick(table, what, name):
-    """The value that a name has in a table, or an error that lists the names."""
+    """Returns the value of a name in a table, or raises an error that lists the names."""
     try:
         return table[name]
     except (KeyError, TypeError):
@@ -239,7 +240,7 @@ def pick(table, what, name):
 
 
 class Context:
-    """A device to draw with, and all that is kept for it. Threads that draw at once need one each."""
+    """A device to draw with, and everything that is cached for it. Threads that draw at the same time need one each."""
 
     def __init__(self, device=None, *, draw="auto", memory=0, cache_dir=None, root=None, allow_remote=False,
                  allow_vrt=False):
@@ -252,7 +253,7 @@ class Context:
         self._opened = None
 
     def _open(self, core):
-        """(device, renderer, a mesh for pictures of which nothing stays): opened by the first call that needs them."""
+        """Returns (device, renderer, a mesh for temporary pictures), opened by the first call that needs them."""
         if self._opened:
             return self._opened
         surface = ffi.NULL
@@ -270,7 +271,7 @@ class Context:
 
     @property
     def device(self):
-        """What draws, as a dictionary."""
+        """A description of the device that draws, as a dictionary."""
         with self._core as core:
             info = lib.camber_device_get_info(self._open(core)[0])
             return _describe(info)
@@ -283,18 +284,18 @@ def _describe(info):
 
 
 def devices():
-    """The OpenCL devices that are here, each as a dictionary."""
+    """Lists the available OpenCL devices, each as a dictionary."""
     found, info = [], ffi.new("camber_device_info **")
     with default()._core as core:
         while True:
-            core.check(lib.camber_device_list(core.pointer, len(found), info))
+            core.check(lib.camber_device_list(core.pointer, ffi.NULL, len(found), info))
             if info[0] == ffi.NULL:
                 return found
             found.append(_describe(info[0]))
 
 
 def check_memory(size):
-    """Refuses what takes more than the library would allow itself: three quarters of what is free."""
+    """Refuses to use more memory than the library's own default limit: three quarters of the free memory."""
     if size < 64 << 20:
         return
     budget = ffi.new("camber_budget **")
@@ -303,7 +304,7 @@ def check_memory(size):
     most = lib.camber_budget_get_most_bytes(budget[0])
     lib.camber_budget_destroy(budget[0])
     if size > most:
-        raise OutOfMemoryError("a picture that takes %.1f MB while it is drawn, and %.1f MB are allowed; draw it in parts"
+        raise OutOfMemoryError("drawing the picture takes %.1f MB, and %.1f MB are allowed; draw it in parts"
                                % (size / 1e6, most / 1e6))
 
 
@@ -311,7 +312,7 @@ _defaults = threading.local()
 
 
 def default(context=None):
-    """The context that was given, or this thread's own."""
+    """Returns the given context, or this thread's own."""
     if context is not None:
         if not isinstance(context, Context):
             raise TypeError("context is %r; give a camber.Context" % (context,))
@@ -321,4 +322,4 @@ def default(context=None):
     return _defaults.context
 
 
-atexit.register(lambda: _defaults.__dict__.clear())  # the last thread's, before drivers are taken down
+atexit.register(lambda: _defaults.__dict__.clear())  # frees the last thread's before drivers are shut down

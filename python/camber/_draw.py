@@ -1,4 +1,4 @@
-"""Pictures and meshes of lines in pixels, and of networks under a camera."""
+"""Pictures and meshes of lines in pixels, and of networks seen by a camera."""
 
 import collections
 import operator
@@ -19,7 +19,7 @@ KINDS = {"float": "f4", "double": "f8", "int16_t": "i2", "uint16_t": "u2", "int3
 
 
 def dtype_of(name):
-    """numpy's type of a C struct: its fields of numbers, where the compiler has put them."""
+    """Returns numpy's type of a C struct: its numeric fields, at the offsets that the compiler chose."""
     names, formats, offsets = [], [], []
     for field, about in ffi.typeof(name).fields:
         kind = KINDS.get(about.type.cname) or ("u4" if about.type.kind == "enum" else None)
@@ -37,7 +37,7 @@ STROKE, PAINT, RECORD, VERTEX = (dtype_of("camber_" + name) for name in ("stroke
 
 
 def view(pointer, name, count, owner):
-    """A structured array over the library's memory, which owner frees. It is not copied."""
+    """Returns a structured array over the library's memory, without a copy. owner frees the memory."""
     if pointer == ffi.NULL or count == 0:
         return numpy.zeros(0, name if isinstance(name, numpy.dtype) else numpy.dtype(name))
     dtype = numpy.dtype(name)
@@ -49,7 +49,8 @@ def view(pointer, name, count, owner):
 
 
 def parse_color(color):
-    """Four floats, 0 to 1, of "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", or of three or four numbers from 0 to 1."""
+    """Parses "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", or three or four numbers from 0 to 1; returns four floats from 0
+    to 1."""
     if isinstance(color, str):
         digits = color[1:]
         if len(digits) in (3, 4):
@@ -66,12 +67,12 @@ def parse_color(color):
             values = ()
         if len(values) in (3, 4) and all(0 <= value <= 1 for value in values):
             return values + (1.0,) * (len(values) == 3)
-    raise ArgumentError("%r is not a colour; give \"#rgb\", \"#rrggbb\", either with alpha behind it, or three or four "
+    raise ArgumentError("%r is not a colour; give \"#rgb\", \"#rrggbb\", either followed by alpha, or three or four "
                         "numbers from 0 to 1" % (color,))
 
 
 def as_colors(color):
-    """n x 4 floats, and whether there are several: an array, or a list of what parse_color takes."""
+    """Returns n x 4 floats, and whether several colours were given: an array, or a list of values for parse_color."""
     if isinstance(color, str) or (numpy.ndim(color) == 1 and len(color) and not isinstance(color[0], str)):
         return numpy.array([parse_color(color)], numpy.float32), False
     array = numpy.asarray(color)
@@ -90,7 +91,7 @@ def as_colors(color):
 
 
 def as_rows(rows, lines):
-    """The row of each line, where there is one for each line, or geometry with its lines. None: none was given."""
+    """Returns the row of each line, from one row per line or per geometry. None if no rows were given."""
     if rows is None:
         return None
     rows = as_whole(rows, numpy.uint32, "rows")
@@ -100,9 +101,9 @@ def as_rows(rows, lines):
 
 
 class Table:
-    """Strokes and paints by row, and the row of each line, as the library wants them.
+    """Strokes and paints by row, and the row of each line, in the form that the library needs.
 
-    rows has what as_rows gives; lines is None where they have their rows already, or all have row 0.
+    rows is the result of as_rows. lines is None if the lines already have rows, or all have row 0.
     """
 
     def __init__(self, width, color, rows, lines, *, join="round", cap="butt", miter_limit=0, offset=0, gap=0, blur=0,
@@ -124,14 +125,14 @@ class Table:
             raise ArgumentError("there are %s widths and colours, and %s"
                                 % (" and ".join(map(str, sorted(counts))),
                                    "%d lines; give one for each, or rows" % wanted if wanted is not None
-                                   else "both go by rows: give as many"))
+                                   else "both are chosen by row; give the same number of each"))
         self.count = counts.pop() if counts else 1
         self.rows = rows
         if rows is not None and len(rows) and int(rows.max()) >= self.count:
             raise ArgumentError("row %d has no width and colour: there are %d" % (rows.max(), self.count))
         if rows is None and self.count > 1:
             self.rows = as_rows(range(self.count), lines)
-        if self.count == 0:  # no lines: a row that none has
+        if self.count == 0:  # without lines there is one row that nothing uses
             colors, widths = numpy.zeros((1, 4)), numpy.zeros(())
         self.strokes = numpy.zeros(max(self.count, 1), STROKE)
         self.strokes["width_px"] = 2 * widths + gap if gap else widths
@@ -171,10 +172,11 @@ def as_size(size):
 
 
 def as_output(out, width, height):
-    """The array that a picture goes to: rows may lie apart, and the bytes of a row may not."""
-    if out is None:  # where kernels can write themselves
+    """Returns the array that receives a picture. Its rows may have gaps between them, but the bytes of a row may
+    not."""
+    if out is None:  # memory that kernels can write to directly
         step, size = lib.CAMBER_PIXELS_ALIGNMENT, height * width * 4
-        check_memory(2 * size)  # drawing takes about as much again
+        check_memory(2 * size)  # drawing takes about the same amount again
         block = numpy.empty(size + step, numpy.uint8)
         first = -block.ctypes.data % step
         return block[first:first + size].reshape(height, width, 4)
@@ -183,16 +185,16 @@ def as_output(out, width, height):
     if not out.flags.writeable:
         raise ArgumentError("out is read-only")
     if out.strides[1:] != (4, 1) or out.strides[0] < 4 * width:
-        raise ArgumentError("out has the strides %s; its rows must be contiguous and follow each other"
+        raise ArgumentError("out has the strides %s; each row must be contiguous, and rows must not overlap"
                             % (out.strides,))
     return out
 
 
 def render_frame(core, renderer, frame, out, premultiplied):
-    """Draws a frame into an array; Python's lock is free all the while."""
+    """Draws a frame into an array. Python's lock is released meanwhile."""
     out = as_output(out, frame.width, frame.height)
     rgba = ffi.cast("uint8_t *", out.ctypes.data)
-    if premultiplied or frame.background.a >= 1:  # what is opaque is both
+    if premultiplied or frame.background.a >= 1:  # for opaque pictures both are the same
         core.check(lib.camber_renderer_render_into(renderer, frame, rgba, out.strides[0], ffi.NULL))
         return out
     picture = ffi.new("camber_python_picture *", {
@@ -243,7 +245,7 @@ Mesh = collections.namedtuple("Mesh", "method strips records vertices indices")
 
 def tessellate(points, offsets=None, *, width=8, rows=None, method="strip", fan_tolerance=0, keep_open=False,
                context=None, **style):
-    """The mesh of lines in pixels, as arrays over the library's memory."""
+    """Returns the mesh of lines in pixels, as arrays over the library's memory."""
     context = default(context)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
     table = Table(width, "#000", as_rows(rows, lines), lines, **style)
@@ -295,18 +297,18 @@ class Network:
         west, north, east, south = self.bounds
         if center is None:
             center = ((west + east) / 2, (north + south) / 2)
-        if scale is None:  # all of it, with a margin of 2 %
+        if scale is None:  # show everything, with a margin of 2 %
             sides = [side / length for side, length in zip(size, (east - west, south - north)) if length > 0]
             scale = 0.96 * min(sides, default=1.0)
         return float(center[0]), float(center[1]), float(scale)
 
     def draw(self, *, center=None, scale=None, bearing=0, pitch=0, simplify=0, width=8, color="#336",
              size=(1024, 1024), background=None, overlap="flatten", opacity=1, premultiplied=False, out=None, **style):
-        """Draws what a camera sees. scale is pixels a world unit; without center and scale all is seen."""
+        """Draws what a camera sees. scale is in pixels per world unit; without center and scale everything is shown."""
         size = as_size(size)
         table = Table(width, color, self._rows, None, **style)
         if table.dash is not None and not self._dashed:
-            raise ArgumentError("dashes want a network that is made with dashed=True")
+            raise ArgumentError("dashes need a network that was made with dashed=True")
         x, y, scale = self._camera(center, scale, size)
         camera = ffi.new("camber_camera *", {
             "x": x, "y": y, "scale_px": scale, "bearing_deg": bearing, "width": size[0], "height": size[1],
@@ -319,7 +321,7 @@ class Network:
 
 
 def encode(picture, format="png", *, quality=None, premultiplied=False, context=None):
-    """The bytes of a PNG or WebP of a picture."""
+    """Returns a picture encoded as PNG or WebP, as bytes."""
     picture = numpy.asarray(picture)
     if picture.dtype != numpy.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or not picture.size:
         raise ArgumentError("the picture has the type %s and the shape %s; give uint8, height x width x 4"

@@ -1,4 +1,4 @@
-"""Lines as they come: arrays, lists of arrays, GeoArrow, Shapely, GeoPandas. All become points and offsets."""
+"""Converts lines from arrays, lists of arrays, GeoArrow, Shapely and GeoPandas into points and offsets."""
 
 import ctypes
 
@@ -8,9 +8,9 @@ from ._library import ffi
 
 
 class Lines:
-    """points (n x 2), offsets (lines + 1), and for each line the number of what it came from. None: its own.
+    """points (n x 2), offsets (lines + 1), and for each line the index of its origin; None: each line is its own.
 
-    origin_count says how many there were to come from, those of no line too.
+    origin_count is the number of origins, including those without a line.
     """
 
     def __init__(self, points, offsets, origins=None, origin_count=None):
@@ -26,7 +26,7 @@ class Lines:
 
 
 def as_points(points, dtype):
-    """An array of pairs, of the type, C-contiguous and aligned: the caller's own where it is so already."""
+    """Returns an array of pairs of this type, C-contiguous and aligned: the caller's own array if it is one already."""
     array = numpy.asarray(points)
     if array.dtype.kind not in "fiu":
         raise TypeError("points have the type %s; give floats or whole numbers" % array.dtype)
@@ -34,12 +34,12 @@ def as_points(points, dtype):
         array = array.reshape(0, 2)
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError("points have the shape %s; give n x 2: x and y of each" % (array.shape,))
-    with numpy.errstate(over="ignore"):  # what becomes infinite is left out and counted, as NaN is
+    with numpy.errstate(over="ignore"):  # infinite values are left out and counted, like NaN
         return numpy.require(array, dtype, "CA")
 
 
 def as_whole(values, dtype, what):
-    """An array of whole numbers that the type can hold."""
+    """Returns an array of whole numbers that fit the type."""
     array = numpy.asarray(values)
     if array.size == 0:
         array = array.astype(dtype)
@@ -54,7 +54,7 @@ def as_whole(values, dtype, what):
 
 
 def as_lines(points, offsets, dtype, offset_dtype):
-    """Whatever was given as Lines, of these types."""
+    """Converts any supported value to Lines of these types."""
     if isinstance(points, Lines):
         lines = points
     elif offsets is not None:
@@ -80,7 +80,7 @@ def as_lines(points, offsets, dtype, offset_dtype):
 
 
 def join(arrays, origins=None, origin_count=None):
-    """Lines of an array of points each."""
+    """Makes Lines from an array of points for each line."""
     offsets = numpy.zeros(len(arrays) + 1, numpy.uint64)
     numpy.cumsum([len(array) for array in arrays], out=offsets[1:])
     points = numpy.concatenate(arrays) if arrays else numpy.empty((0, 2))
@@ -88,7 +88,7 @@ def join(arrays, origins=None, origin_count=None):
 
 
 def from_list(items):
-    """Arrays of points, or geometries; a list of pairs of numbers is one line."""
+    """Converts a list of arrays of points, or of geometries. A list of pairs of numbers is one line."""
     if len(items) and (hasattr(items[0], "geom_type") or items[0] is None):
         return from_geometries(items)
     if len(items) and all(numpy.ndim(item) == 1 and len(item) == 2 for item in items):
@@ -100,7 +100,7 @@ def from_list(items):
 
 
 def parts_of(geometry):
-    """The lines of a geometry, as arrays of points: parts of several, and the rings of polygons."""
+    """Returns the lines of a geometry as arrays of points: the parts of a collection, and the rings of polygons."""
     kind = None if geometry is None else geometry.geom_type
     if kind in ("LineString", "LinearRing"):
         points = numpy.asarray(geometry.coords, dtype=numpy.float64)
@@ -114,7 +114,7 @@ def parts_of(geometry):
 
 
 def from_geometries(geometries):
-    """One geometry of Shapely or many, a GeoSeries, or the geometries of a GeoDataFrame."""
+    """Converts one or many geometries of Shapely, a GeoSeries, or the geometries of a GeoDataFrame."""
     if hasattr(geometries, "geom_type") and isinstance(geometries.geom_type, str):
         geometries = [geometries]
     else:
@@ -127,7 +127,7 @@ def from_geometries(geometries):
     return join(arrays, numpy.asarray(origins, numpy.int64), len(geometries))
 
 
-# ---- GeoArrow, by Arrow's C data interface ----
+# ---- GeoArrow, through Arrow's C data interface ----
 
 _capsule_pointer = ctypes.pythonapi.PyCapsule_GetPointer
 _capsule_pointer.restype = ctypes.c_void_p
@@ -141,7 +141,7 @@ def _format(schema):
 
 
 class _Arrow:
-    """The memory of an Arrow array, which its owner frees: capsules, or structs that a stream has filled."""
+    """The memory of an Arrow array. Its owner, capsules or structs filled by a stream, frees it."""
 
     def __init__(self, owner):
         self.owner = owner
@@ -151,14 +151,14 @@ class _Arrow:
         return numpy.frombuffer(ffi.buffer(kept, count), numpy.uint8)
 
     def buffer(self, array, number, dtype, first, count):
-        """Elements of a buffer, without a copy; they are valid as long as their owner is."""
+        """Returns elements of a buffer without a copy. They are valid as long as their owner."""
         if count == 0 or array.buffers[number] == ffi.NULL:
             return numpy.zeros(count, dtype)
         size = numpy.dtype(dtype).itemsize
         return self.bytes(array.buffers[number], first * size, count * size).view(dtype)
 
     def list(self, schema, array, first, count, what):
-        """Offsets of a list's elements."""
+        """Returns the offsets of a list's elements."""
         kind = {"+l": numpy.int32, "+L": numpy.int64}.get(_format(schema))
         if kind is None or array.n_buffers != 2 or array.n_children != 1:
             raise TypeError("Arrow's format %r is not a list of %s; %s" % (_format(schema), what, WANTED))
@@ -168,7 +168,8 @@ class _Arrow:
         return offsets
 
     def points(self, schema, array, first, count):
-        """Points as pairs: as they lie where x and y alternate, else put together. One that is not there is NaN."""
+        """Returns points as pairs: without a copy if x and y are interleaved, otherwise combined. A missing point is
+        NaN."""
         kind = _format(schema)
         if kind.startswith("+w:") and kind[3:].isdigit() and _format(schema.children[0]) == "g":
             side = int(kind[3:])
@@ -182,13 +183,13 @@ class _Arrow:
         return values if is_valid is None else numpy.where(is_valid[:, None], values, numpy.nan)
 
     def numbers(self, array, first, count):
-        """Elements of an array of numbers. One that is not there is NaN."""
+        """Returns elements of an array of numbers. A missing element is NaN."""
         values = self.buffer(array, 1, numpy.float64, array.offset + first, count)
         is_valid = self.is_valid(array, first, count)
         return values if is_valid is None else numpy.where(is_valid, values, numpy.nan)
 
     def is_valid(self, array, first, count):
-        """Which elements are there: None where all are."""
+        """Returns which elements are valid; None if all are."""
         if array.null_count == 0 or array.n_buffers == 0 or array.buffers[0] == ffi.NULL:
             return None
         first += array.offset
@@ -196,7 +197,7 @@ class _Arrow:
         return numpy.unpackbits(bits, bitorder="little")[first:first + count].astype(bool)
 
     def lines(self, schema, array):
-        """Linestrings and multilinestrings."""
+        """Converts linestrings and multilinestrings."""
         count, origins = array.length, None
         offsets = self.list(schema, array, 0, count, "points")
         is_valid = self.is_valid(array, 0, count)
@@ -212,14 +213,14 @@ class _Arrow:
         first = int(offsets[0]) if count else 0
         points = self.points(inner_schema, inner, first, int(offsets[-1]) - first if count else 0)
         offsets = offsets[:count + 1] - first if first else offsets[:count + 1]
-        if is_valid is not None and not numpy.all(is_valid):  # a line that is not there has no points
+        if is_valid is not None and not numpy.all(is_valid):  # a missing line has no points
             points = points[numpy.repeat(is_valid, numpy.diff(offsets))]
             offsets = numpy.concatenate([[0], numpy.cumsum(numpy.diff(offsets) * is_valid)])
         return Lines(points, offsets if count else numpy.zeros(1, numpy.int64), origins, array.length)
 
 
 def _struct(capsule, kind, name):
-    """The struct that a capsule has, if nobody else has taken or released it."""
+    """Returns the struct in a capsule, unless it has already been moved or released."""
     made = ffi.cast("struct %s *" % kind, _capsule_pointer(capsule, name))
     if made.release == ffi.NULL:
         raise ValueError("Arrow's %s has been released already" % kind)
@@ -227,19 +228,20 @@ def _struct(capsule, kind, name):
 
 
 def from_arrow(value):
-    """The lines of whatever gives an array by __arrow_c_array__."""
+    """Converts the lines of an object with __arrow_c_array__."""
     capsules = value.__arrow_c_array__()
     return _Arrow(capsules).lines(_struct(capsules[0], "ArrowSchema", b"arrow_schema"),
                                   _struct(capsules[1], "ArrowArray", b"arrow_array"))
 
 
 def _new(kind):
-    """A struct for a stream to fill, which is released when Python drops it."""
+    """Makes a struct for a stream to fill. It is released when Python drops it."""
     return ffi.gc(ffi.new("struct %s *" % kind), lambda made: made.release != ffi.NULL and made.release(made))
 
 
 def from_arrow_stream(value):
-    """The lines of whatever gives arrays, one after the other, by __arrow_c_stream__: as pyarrow's chunked ones do."""
+    """Converts the lines of an object with __arrow_c_stream__, which yields several arrays, such as pyarrow's chunked
+    ones."""
     capsule = value.__arrow_c_stream__()
     stream = _struct(capsule, "ArrowArrayStream", b"arrow_array_stream")
 

@@ -1,4 +1,4 @@
-"""Maps: files in a style, drawn into arrays or into archives of tiles."""
+"""Maps: files drawn with a style, into arrays or archives of tiles."""
 
 import json
 import os
@@ -9,11 +9,11 @@ from ._core import ArgumentError, NotFoundError, as_path, as_text, default, ffi,
 from ._draw import ENCODINGS, METHODS, as_size, render_frame
 
 THEMES = {"light": lib.CAMBER_THEME_LIGHT, "dark": lib.CAMBER_THEME_DARK}
-SIMPLIFY_PX = 0.1  # as camber render has it
+SIMPLIFY_PX = 0.1  # as in camber render
 
 
 def styles():
-    """The names of the styles that ship."""
+    """Returns the names of the built-in styles."""
     names = []
     while (name := text_of(lib.camber_style_list(len(names)))) is not None:
         names.append(name)
@@ -21,7 +21,7 @@ def styles():
 
 
 def read_style(style, theme):
-    """(document as bytes, its name in messages, the file that its paths start from)"""
+    """Returns (document as bytes, its name in messages, the file that its paths are relative to)."""
     if isinstance(style, dict):
         return json.dumps(style).encode(), b"style", None
     path = as_path(style)
@@ -37,12 +37,12 @@ def read_style(style, theme):
 
 
 def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
-    """A view. own: the style's, which stands where neither center nor bbox is given."""
+    """Makes a view. own: the style's view, which is used if neither center nor bbox is given."""
     width, height = as_size(size)
     view = {"width": width, "height": height, "ratio": ratio, "bearing_deg": bearing, "pitch_deg": pitch}
     if bbox is not None:
         if center is not None or zoom is not None:
-            raise ArgumentError("there are a bbox and a center or zoom; give either")
+            raise ArgumentError("a bbox cannot be combined with a center or zoom; give one or the other")
         west, south, east, north = bbox
         view.update(kind=lib.CAMBER_VIEW_BBOX, west=west, south=south, east=east, north=north)
     elif center is not None or own is not None:
@@ -57,14 +57,14 @@ def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
 
 
 class Map:
-    """Files in a style. They are read once; draw() moves the view over them."""
+    """Files with a style. They are read once; draw() moves the view over them."""
 
     def __init__(self, *inputs, style=None, theme="light", layer=None, where=None, context=None):
         self._context = default(context)
         self._inputs = [as_path(path) for path in inputs]
         self._layer, self._where = as_text(layer), as_text(where)
         self._scene = self._mesh = self._features = None
-        self._read_for = None  # what the features are read for; None: everything
+        self._read_for = None  # the view that the features were read for; None: everything was read
         self._once = False
         theme = pick(THEMES, "theme", theme)
         text, name, self._base = (None, None, None) if style is None else read_style(style, theme)
@@ -75,7 +75,7 @@ class Map:
                 self._style = core.make(lib.camber_style_parse, core.pointer, text, len(text), name)
 
     def _read(self, core, view, once):
-        """Reads the files, whole or for one view; or the style's own sources, for this view."""
+        """Reads the files, completely or for one view; or the style's own sources, for this view."""
         wanted = None if self._inputs and not once else view
         if self._features is not None and self._read_for in (None, wanted):
             return
@@ -96,7 +96,7 @@ class Map:
         self._features, self._read_for = features, wanted
 
     def _move(self, core, view, simplify, once=False):
-        """Lets the scene show a view."""
+        """Moves the scene to a view."""
         self._read(core, view, once)
         if self._scene is not None and self._simplify == simplify:
             core.check(lib.camber_scene_move(self._scene, ffi.new("camber_view_desc *", view)))
@@ -115,7 +115,7 @@ class Map:
 
     def draw(self, *, center=None, zoom=None, bbox=None, bearing=None, pitch=None, size=(1024, 1024), ratio=1,
              simplify=SIMPLIFY_PX, method="strip", premultiplied=False, out=None):
-        """Draws a view into an array. Without center, zoom and bbox it shows all that the style draws."""
+        """Draws a view into an array. Without center, zoom and bbox it shows everything that the style draws."""
         view = self._view(center, zoom, bbox, bearing, pitch, size, ratio)
         with self._context._core as core:
             device, renderer, _ = self._context._open(core)
@@ -129,7 +129,7 @@ class Map:
 
     def lines(self, *, center=None, zoom=None, bbox=None, bearing=None, size=(1024, 1024), ratio=1,
               simplify=SIMPLIFY_PX):
-        """points and offsets, in pixels, of what a view shows: as draw() of this module takes them."""
+        """Returns the points and offsets, in pixels, of the lines in a view, as the function draw() takes them."""
         view = self._view(center, zoom, bbox, bearing, 0, size, ratio)
         with self._context._core as core:
             self._move(core, view, simplify)
@@ -139,20 +139,20 @@ class Map:
                 if lines.point_count else numpy.zeros(0, numpy.float32)
             offsets = numpy.frombuffer(ffi.buffer(lines.offsets, 4 * (lines.polyline_count + 1)), numpy.uint32) \
                 if lines.polyline_count else numpy.zeros(1, numpy.uint32)
-            made = points.reshape(-1, 2).copy(), offsets.copy()  # the scene's own go when it moves
+            made = points.reshape(-1, 2).copy(), offsets.copy()  # the scene frees its own when it moves
             lib.camber_scene_release_lines(self._scene)
             return made
 
     @property
     def attribution(self):
-        """Whom to name beside a picture; None: nobody is known."""
+        """The credit to show next to a picture; None if it is unknown."""
         with self._context._core as core:
             self._read_all(core)
             return text_of(lib.camber_features_get_attribution(self._features))
 
     @property
     def bounds(self):
-        """West, south, east, north of all lines, in degrees; None: there are none."""
+        """West, south, east and north of all lines, in degrees; None if there are no lines."""
         box = ffi.new("double[4]")
         with self._context._core as core:
             self._read_all(core)
@@ -165,7 +165,7 @@ class Map:
     def tiles(self, output, *, min_zoom=0, max_zoom=14, bbox=None, tile_size=256, ratio=1, format="png", quality=None,
               simplify=SIMPLIFY_PX, threads=0, keep_empty=False, force=False, resume=False, dry_run=False, name=None,
               description=None, attribution=None):
-        """Draws a pyramid of tiles into an archive; returns its counts as a dictionary."""
+        """Draws a pyramid of tiles into an archive, and returns its counts as a dictionary."""
         texts = {"output": as_text(output), "name": as_text(name), "description": as_text(description),
                  "attribution": as_text(attribution)}
         engine_desc = {"tile_size": tile_size, "ratio": ratio, "simplify_px": simplify, "threads": threads}
@@ -187,12 +187,12 @@ class Map:
 
 
 def render(*inputs, style=None, theme="light", layer=None, where=None, context=None, **view):
-    """Draws files once, into an array. Files that have an index are read where the view needs them."""
+    """Draws files once, into an array. Only the part of indexed files that the view needs is read."""
     shown = Map(*inputs, style=style, theme=theme, layer=layer, where=where, context=context)
     shown._once = True
     return shown.draw(**view)
 
 
 def tiles(*inputs, output, style=None, theme="light", layer=None, where=None, context=None, **pyramid):
-    """Draws a pyramid of tiles of files into an archive; returns its counts as a dictionary."""
+    """Draws a pyramid of tiles from files into an archive, and returns its counts as a dictionary."""
     return Map(*inputs, style=style, theme=theme, layer=layer, where=where, context=context).tiles(output, **pyramid)

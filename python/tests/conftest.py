@@ -1,4 +1,4 @@
-"""Where things lie: the tool and the tree, which tests/tool/test_python.sh names."""
+"""The paths of the tool and the source tree, which tests/tool/test_python.sh sets."""
 
 import os
 import sys

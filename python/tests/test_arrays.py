@@ -1,4 +1,4 @@
-"""Arrays in and out: what is drawn is what the tool draws, and arrays that are wrong raise."""
+"""Arrays as input and output: pictures equal those of the tool, and invalid arrays raise errors."""
 
 import struct
 import subprocess
@@ -41,7 +41,7 @@ def test_alpha():
     assert (straight[..., 3] == premultiplied[..., 3]).all() and straight[..., 3].max() == 128
     assert set(numpy.unique(straight[straight[..., 3] > 0][:, 0])) == {255}
     assert (premultiplied[..., 0] == premultiplied[..., 3]).all()
-    # Each says the same to an encoder, and a PNG keeps it.
+    # All of them mean the same to an encoder, and a PNG keeps the values.
     assert camber.encode(straight) == camber.encode(premultiplied, premultiplied=True)
     assert (read_png(camber.encode(straight)) == straight).all()
 
@@ -159,7 +159,7 @@ def test_meshes():
     assert {(x, y) for x, y in kite.records[["x", "y"]].tolist()} >= {tuple(point) for point in POINTS.tolist()}
     again = camber.tessellate(POINTS, OFFSETS, method="kite")
     assert (again.records == kite.records).all() and not numpy.shares_memory(again.records, kite.records)
-    records = camber.tessellate(POINTS, OFFSETS).records  # the rest of its mesh is dropped
+    records = camber.tessellate(POINTS, OFFSETS).records  # the rest of its mesh is freed
     assert records.base is not None and (records == strip.records).all()
 
 
@@ -180,7 +180,7 @@ def test_networks():
             network.draw(**{**style, **wrong})
     with pytest.raises(ValueError):
         camber.Network(POINTS, OFFSETS, importance=[1, 2])
-    for wrong in {"width": [3, 6]}, {"color": ["#f00", "#00f"]}:  # which line would have which is not said
+    for wrong in {"width": [3, 6]}, {"color": ["#f00", "#00f"]}:  # it is undefined which line gets which
         with pytest.raises(ValueError, match="made without rows"):
             camber.Network(POINTS, OFFSETS).draw(**wrong)
     few = camber.Network(POINTS, OFFSETS, importance=[0, 0, 0, 0, 0, 0]).draw(width=2, simplify=1, size=(70, 66))

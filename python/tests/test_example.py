@@ -1,4 +1,5 @@
-"""The example: what it draws, and that others draw the same of the same lines. How long each takes, ./dev bench tells."""
+"""Tests the example's own drawing, and that other libraries draw the same lines in the same way. ./dev bench measures
+the times."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Lines of other libraries: GeoArrow by Arrow's C data interface, made here by hand; Shapely and GeoPandas."""
+"""Lines from other libraries: GeoArrow through Arrow's C data interface, made by hand here; Shapely and GeoPandas."""
 
 import ctypes
 import functools
@@ -44,7 +44,7 @@ new_capsule = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.c_char
 pointer_of = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)(
     ("PyCapsule_GetPointer", ctypes.pythonapi))
 NAMES = {Schema: b"arrow_schema", Array: b"arrow_array", Stream: b"arrow_array_stream"}
-given = []  # all that was made here, which lives until the last capsule has gone
+given = []  # everything made here, which must live until the last capsule is gone
 
 
 def address_of(function):
@@ -52,7 +52,7 @@ def address_of(function):
 
 
 def destroy(kind, capsule):
-    """What is not released yet goes with its capsule."""
+    """Releases whatever is left together with its capsule."""
     made = kind.from_address(pointer_of(capsule, NAMES[kind]))
     if made.release:
         RELEASE(made.release)(ctypes.addressof(made))
@@ -66,7 +66,7 @@ def capsule_of(made):
 
 
 class Given:
-    """Counts what is released, and spoils its memory then, so that a later look at it shows."""
+    """Counts releases, and overwrites the memory then, so that a later access is noticed."""
 
     def __init__(self):
         self.released = []
@@ -85,7 +85,7 @@ class Given:
 
 
 class Arrow(Given):
-    """An array of one level: its buffers (the first says what is there) and its children."""
+    """An array of one level: its buffers, of which the first is the validity bitmap, and its children."""
 
     def __init__(self, kind, length, buffers, children=(), offset=0, nulls=0):
         super().__init__()
@@ -111,7 +111,7 @@ class Arrow(Given):
 
 
 class Chunks(Given):
-    """Arrays, one after the other, as a stream; after them an error, where there is one."""
+    """A stream of several arrays, and optionally an error after them."""
 
     def __init__(self, *arrays, error=None):
         super().__init__()
@@ -210,7 +210,7 @@ def test_points_that_are_missing_split_a_line(interleaved):
     whole = points_of(points, interleaved, valid.copy())
     assert (camber.draw(Arrow("+l", 1, [None, offsets.copy()], [whole]), **WANTED) == camber.draw(split, **WANTED)).all()
     sides = [Arrow("g", 8, [missing, numpy.array(points[:, i])], nulls=int(missing is not None))
-             for i, missing in enumerate((None, valid))]  # y alone is missing
+             for i, missing in enumerate((None, valid))]  # only y is missing
     assert (camber.draw(Arrow("+l", 1, [None, offsets], [Arrow("+s", 8, [None], sides)]), **WANTED)
             == camber.draw(split, **WANTED)).all()
 
@@ -300,7 +300,7 @@ def test_geopandas():
     series = geopandas.GeoSeries([*(geometry.LineString(line) for line in LINES), None])
     wanted = camber.draw(LINES, **WANTED)
     assert (camber.draw(series, **WANTED) == wanted).all()
-    frame = geopandas.GeoDataFrame({"w": [2, 5, 9, 1]}, geometry=series)  # the last has no line, but a width
+    frame = geopandas.GeoDataFrame({"w": [2, 5, 9, 1]}, geometry=series)  # the last row has a width, but no line
     assert (camber.draw(frame, **WANTED) == wanted).all()
     style = {**WANTED, "width": frame.w}
     assert (camber.draw(frame, **style) == camber.draw(LINES, **{**style, "width": [2, 5, 9]})).all()

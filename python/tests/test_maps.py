@@ -1,4 +1,4 @@
-"""Maps and tiles of files, and what they say when something is wrong."""
+"""Maps and tiles from files, and the errors that they raise."""
 
 import json
 import subprocess
@@ -61,7 +61,7 @@ def test_tiles(city, tool, tmp_path):
 
 
 def test_tiles_of_a_context_that_nobody_keeps(city, tmp_path):
-    for turn in range(3):  # the device and the renderer must outlive the engine, which a sanitizer sees
+    for turn in range(3):  # the device and the renderer must outlive the engine, which a sanitizer checks
         counts = camber.Map(city, context=camber.Context()).tiles(tmp_path / ("%d.pmtiles" % turn), max_zoom=3)
         assert counts["tiles"] > 0
 

@@ -1,4 +1,4 @@
-"""Threads, processes, the log, and thousands of calls after which nothing has grown."""
+"""Threads, processes, the log, and thousands of calls, after which memory must not have grown."""
 
 import gc
 import logging
@@ -37,12 +37,13 @@ def test_two_threads_with_two_contexts_draw_at_once():
 
 BIG = numpy.random.default_rng(2).uniform(0, 2000, (400000, 2)).astype(numpy.float32)
 BIG_OFFSETS = numpy.arange(0, 400001, 4, dtype=numpy.uint32)
-DRAWS_MAX = 500  # only where a draw lets no other thread run, so many do not suffice
+DRAWS_MAX = 500  # a limit that is reached only if drawing lets no other thread run
 
 
 def steps_within_a_draw(step, wanted):
-    """Draws much, again and again, while another thread takes steps: how many of them, up to those wanted, it takes
-    within one of the draws. Python takes its lock from no thread that runs here: the other gets it in C code alone."""
+    """Draws a lot, repeatedly, while another thread takes steps. Returns how many steps, up to `wanted`, it takes
+    during one of the draws. The switch interval is long, so the other thread can only run while C code has released
+    Python's lock."""
     network, stop, count = camber.Network(BIG, BIG_OFFSETS, context=camber.Context()), threading.Event(), [0]
     interval, most = sys.getswitchinterval(), 0
 
@@ -70,7 +71,7 @@ def steps_within_a_draw(step, wanted):
 
 def test_draws_of_two_contexts_overlap():
     small = camber.Context()
-    # The first may have begun before.
+    # The first step may have begun earlier.
     assert steps_within_a_draw(lambda: camber.draw(POINTS, OFFSETS, size=(64, 64), context=small), 2) >= 2
 
 
@@ -96,7 +97,7 @@ def test_gl_is_free_for_the_next_thread():
         return kept.pop()
 
     first = run()
-    kept.clear()  # here its mesh is freed, for which GL must be current
+    kept.clear()  # frees its mesh here, which requires its GL context to be current
     assert (run() == first).all() and len(kept) == 1
 
 
@@ -106,7 +107,7 @@ def test_a_device_that_does_not_open_leaves_no_surface():
         with pytest.raises(ValueError):
             context.device
         gc.collect()
-        # This opens no surface; a sanitizer sees it when it uses the one that is freed.
+        # This opens no surface. A sanitizer notices if it uses the freed one.
         assert camber.encode(numpy.zeros((4, 4, 4), numpy.uint8), context=context)
 
 
@@ -155,7 +156,7 @@ def test_a_log_handler_that_draws_is_told(city, tmp_path):
 
     handler, logger = Handler(), logging.getLogger("camber")
     logger.addHandler(handler)
-    logger.setLevel(logging.DEBUG)  # failures are told at this level
+    logger.setLevel(logging.DEBUG)  # failures are logged at this level
     try:
         with pytest.raises(FileNotFoundError):
             camber.render("/nowhere", context=context)
@@ -215,7 +216,7 @@ def resident_bytes():
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-CALLS = int(os.environ.get("CAMBER_CALLS", "2000"))  # tests/tool/test_python.sh asks for more under a sanitizer
+CALLS = int(os.environ.get("CAMBER_CALLS", "2000"))  # tests/tool/test_python.sh asks for more with a sanitizer
 
 
 def test_thousands_of_calls():

@@ -189,9 +189,9 @@ static camber_status resume(reading *r) {
     if (!records)
         return CAMBER_ERROR_MEMORY;
     /* The size of the file is not known yet, so contents are read up to its end. */
-    camber_soft_log kept;
+    camber_saved_log kept;
     r->contents->written_bytes = INT64_MAX;
-    camber_log_soften(r->units->context, &kept);
+    camber_log_demote_errors(r->units->context, &kept);
     camber_status status = read_units(r, records);
     camber_log_restore(r->units->context, &kept);
     if (status == CAMBER_OK)

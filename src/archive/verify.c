@@ -122,7 +122,7 @@ typedef struct found {
 /* Opens and verifies the archive, and turns error messages into findings. */
 static camber_status run(camber_verify *v, const char *path) {
     kept_log log = {""};
-    const camber_soft_log before = {v->context->desc.log, v->context->desc.log_user};
+    const camber_saved_log before = {v->context->desc.log, v->context->desc.log_user};
     v->context->desc.log = keep_error;
     v->context->desc.log_user = &log;
     camber_status status = camber_archive_open(v->context, path, &v->archive);

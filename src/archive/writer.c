@@ -102,12 +102,12 @@ static camber_status open_locked(camber_archive_writer *writer) {
 /* A run that was killed just after it completed its archive has left its temporary files. The next writer that notices
  * removes them. */
 static void open_leftovers(camber_archive_writer *writer) {
-    camber_soft_log kept;
+    camber_saved_log kept;
     struct stat about;
     if (stat(writer->temporary_paths[TEMPORARY_TILES], &about) != 0 &&
         stat(writer->temporary_paths[TEMPORARY_UNITS], &about) != 0)
         return;
-    camber_log_soften(writer->context, &kept);
+    camber_log_demote_errors(writer->context, &kept);
     (void)open_locked(writer); /* if another process is writing them, they are in use */
     camber_log_restore(writer->context, &kept);
     writer->keeps = false;
@@ -136,7 +136,7 @@ static camber_status look_at_existing(camber_archive_writer *writer) {
     struct stat about;
     const camber_archive_desc *desc = &writer->desc;
     camber_archive *there = NULL;
-    camber_soft_log kept;
+    camber_saved_log kept;
     if (lstat(writer->path, &about) != 0)
         return CAMBER_OK;
     camber_status status = look_at_folder(writer, &about);
@@ -145,7 +145,7 @@ static camber_status look_at_existing(camber_archive_writer *writer) {
     if (!desc->resume)
         return camber_fail(writer->context, CAMBER_ERROR_IO,
                            "%s: exists; name another file, or replace it with --force", writer->path);
-    camber_log_soften(writer->context, &kept);
+    camber_log_demote_errors(writer->context, &kept);
     status = camber_archive_open(writer->context, writer->path, &there);
     camber_log_restore(writer->context, &kept);
     if (status == CAMBER_OK)

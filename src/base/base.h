@@ -68,12 +68,12 @@ void camber_log(camber_context *context, camber_log_level level, const char *for
 /* Logs an error and returns status, so that a failure is one line: return camber_fail(...). */
 camber_status camber_fail(camber_context *context, camber_status status, const char *format, ...) CAMBER_PRINTF(3, 4);
 /* Logs errors as information until the log is restored. For attempts that have a fallback. */
-typedef struct camber_soft_log {
+typedef struct camber_saved_log {
     camber_log_fn *log;
     void *user;
-} camber_soft_log;
-void camber_log_soften(camber_context *context, camber_soft_log *kept);
-void camber_log_restore(camber_context *context, const camber_soft_log *kept);
+} camber_saved_log;
+void camber_log_demote_errors(camber_context *context, camber_saved_log *kept);
+void camber_log_restore(camber_context *context, const camber_saved_log *kept);
 void camber_progress(camber_context *context, const char *stage, double fraction);
 
 /* Says who named a file: the caller, or a style, whose files must be inside the context's root. */

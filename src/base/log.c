@@ -32,20 +32,20 @@ camber_status camber_fail(camber_context *context, camber_status status, const c
     return status;
 }
 
-static void log_softly(void *user, camber_log_level level, const char *message) {
-    const camber_soft_log *kept = user;
+static void log_demoted(void *user, camber_log_level level, const char *message) {
+    const camber_saved_log *kept = user;
     kept->log(kept->user, level == CAMBER_LOG_ERROR ? CAMBER_LOG_INFO : level, message);
 }
 
-void camber_log_soften(camber_context *context, camber_soft_log *kept) {
-    *kept = (camber_soft_log){context->desc.log, context->desc.log_user};
+void camber_log_demote_errors(camber_context *context, camber_saved_log *kept) {
+    *kept = (camber_saved_log){context->desc.log, context->desc.log_user};
     if (!kept->log)
         return;
-    context->desc.log = log_softly;
+    context->desc.log = log_demoted;
     context->desc.log_user = kept;
 }
 
-void camber_log_restore(camber_context *context, const camber_soft_log *kept) {
+void camber_log_restore(camber_context *context, const camber_saved_log *kept) {
     context->desc.log = kept->log;
     context->desc.log_user = kept->user;
 }

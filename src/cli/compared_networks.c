@@ -1,11 +1,12 @@
-/* Reads the files of compare into networks, and projects one at a time: polylines in pixels are one network, maps are
- * one for each --where. The view is fitted to all of them together. */
+/* Reads the files of compare into networks, and projects one network at a time. Polylines in pixels are one network; a
+ * map is one network for each --where. The view is fitted to all networks together. */
 #include "cli/compared_networks.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Wide enough that joins have a shape: a main road of a street map. At 2 px an arc is a pixel's corner. */
+/* Wide enough for joins to have a shape: the width of a main road on a street map. At 2 px an arc would be smaller than
+ * a pixel. */
 #define WIDTH_PX 8.0
 
 /* ---- Polylines in pixels ---- */
@@ -47,7 +48,7 @@ static camber_compared_network polylines_network(const camber_compared_networks 
 /* ---- Maps ---- */
 
 #ifdef CAMBER_MAP
-/* Every line alike: what the methods are compared on is the network's geometry, not a map's design. */
+/* All lines have the same style, because the methods are compared on the network's geometry, not on a map's design. */
 static camber_status open_style(camber_compared_networks *networks) {
     static const char format[] =
         "{\"version\": 8, \"sources\": {}, \"layers\": [{\"id\": \"network\", \"type\": \"line\", \"source\": \"s\","
@@ -58,7 +59,7 @@ static camber_status open_style(camber_compared_networks *networks) {
     return camber_style_parse(networks->session->context, json, (size_t)size, "the networks' style", &networks->style);
 }
 
-/* Reads every input by one filter. */
+/* Reads every input with the same filter. */
 static camber_status read_features(camber_compared_networks *networks, const char *where, camber_features **features) {
     const camber_options *options = networks->session->options;
     camber_status status = camber_features_create(networks->session->context, networks->style, features);
@@ -87,7 +88,7 @@ static char *any_of(const char *const *wheres, size_t count) {
     return text;
 }
 
-/* Finds the view that shows all networks together, which one of them may not reach. */
+/* Finds the view that shows all networks together. A single network may cover only a part of it. */
 static camber_status fit_view(camber_compared_networks *networks) {
     const camber_options *options = networks->session->options;
     if (networks->count < 2 || networks->view.kind != CAMBER_VIEW_FIT)

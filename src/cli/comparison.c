@@ -1,5 +1,5 @@
-/* The comparison of the methods fan, kite and strip. Each network is tessellated and drawn by each method several times
- * for the times, once more for the picture, and its triangles again to count repeated pixels. The pictures are compared
+/* Compares the methods fan, kite and strip. Each network is tessellated and drawn with each method: several times for
+ * the timings, once more for the picture, and its triangles again to count repeated pixels. The pictures are compared
  * with the exact coverage of the lines. The results are rows of figures and metrics, and their average. */
 #include "cli/comparison.h"
 #include "validate/batches.h"
@@ -15,9 +15,9 @@
 
 #define WARM_UPS 3
 
-_Static_assert(CAMBER_FIGURE_TIGHT_JOINS - CAMBER_FIGURE_TURNS == CAMBER_TURN_CLASSES, "a figure a class of turns");
+_Static_assert(CAMBER_FIGURE_TIGHT_JOINS - CAMBER_FIGURE_TURNS == CAMBER_TURN_CLASSES, "one figure per class of turns");
 _Static_assert(CAMBER_METRIC_REPEATED_ELSEWHERE - CAMBER_METRIC_REPEATED_AT_PLAIN == CAMBER_JOIN_ROOMS,
-               "a metric for each kind of joins");
+               "one metric per kind of join");
 _Static_assert(CAMBER_METHODS <= CAMBER_PICTURES_MAX, "a picture a method");
 
 const camber_method camber_methods_shown[CAMBER_METHODS] = {CAMBER_METHOD_FAN, CAMBER_METHOD_KITE, CAMBER_METHOD_STRIP};
@@ -52,8 +52,8 @@ const camber_metric_info camber_metrics[CAMBER_METRIC_COUNT] = {
 
 /* ---- Progress ---- */
 
-/* How far the comparison is: networks have equal shares, and in each come first the methods, then the exact coverage.
- */
+/* The progress of the comparison. Networks have equal shares; in each share the methods come first, then the exact
+ * coverage. */
 typedef struct position {
     camber_comparison *comparison;
     size_t network;
@@ -96,7 +96,7 @@ static camber_status draw(const experiment *e, bool keep, camber_frame_stats *st
                                 .passes = &pass,
                                 .pass_count = 1,
                                 .coverage = (camber_coverage)c->session->options->coverage};
-    /* Black on a transparent picture: the alpha of a pixel is its coverage. */
+    /* Black on a transparent picture: the alpha value of a pixel is its coverage. */
     camber_levels to = {c->levels[e->method], frame.width, 3};
     return camber_renderer_render(c->session->renderer, &frame, keep ? camber_levels_take : NULL, &to, stats);
 }
@@ -141,7 +141,8 @@ static void count_mesh(const experiment *e, const camber_mesh_data *mesh) {
 
 /* ---- Pixels ---- */
 
-/* Draws ranges of indices and counts, for each by itself, how often it draws a pixel again. map receives where. */
+/* Draws ranges of indices, and counts for each range how often it draws a pixel again. map receives the positions of
+ * these pixels. */
 static camber_status count_ranges(const experiment *e, const camber_index_range *ranges, size_t count, uint8_t *map,
                                   camber_overdraw *overdraw) {
     camber_comparison *c = e->comparison;
@@ -161,7 +162,7 @@ static camber_status count_ranges(const experiment *e, const camber_index_range 
     return status;
 }
 
-/* Counts the pixels that the joins of a kind draw again; c->repeated keeps those that no join draws again. */
+/* Counts the pixels that joins of one kind draw again. c->repeated keeps the pixels that no join draws again. */
 static camber_status count_joins(const experiment *e, const camber_mesh_joins *joins, camber_join_room room) {
     camber_comparison *c = e->comparison;
     camber_index_range *ranges = malloc((joins->count + 1) * sizeof *ranges);
@@ -199,7 +200,7 @@ static camber_status count_pixels(const experiment *e, const camber_mesh_data *m
     return status;
 }
 
-/* Leaves out the numbers that only GL has: kernels have no draw calls and no fragments. */
+/* Marks metrics that exist only in GL as missing: kernels have no draw calls and no fragments. */
 static void leave_out_gl(const experiment *e) {
     double *metrics = e->row->metrics[e->method];
     metrics[CAMBER_METRIC_DRAW_CALLS_16_BIT] = metrics[CAMBER_METRIC_DRAW_CALLS] = NAN;

@@ -1,8 +1,9 @@
-/* Prints the completion scripts for bash and zsh from the table of options, so that they offer what the parser takes.
+/* Prints the completion scripts for bash and zsh from the table of options, so that they offer exactly what the parser
+ * accepts.
  *
- * The script for bash is three tables and a function. The tables are shell functions: the options of a verb, the values
- * of an option, and the operands of a verb. The function finds out what the cursor is on, and looks that up. Two words
- * stand for paths in the tables: @files and @folders.
+ * The script for bash consists of three tables and a function. The tables are shell functions: the options of a verb,
+ * the values of an option, and the operands of a verb. The function determines what is at the cursor, and looks it up.
+ * In the tables, the words @files and @folders stand for paths.
  *
  * The script for zsh has one call of _arguments for each verb; zsh does the rest. */
 #include "cli/completion.h"
@@ -76,7 +77,7 @@ static void print_bash_value(const camber_option_spec *spec, FILE *file) {
         break;
     case CAMBER_OPTION_DEVICE: fputs("cpu gpu", file); break;
     case CAMBER_OPTION_CHOICE: print_choice(spec->argument, file); break;
-    default: break; /* numbers and texts: the user knows them */
+    default: break; /* numbers and texts cannot be completed */
     }
     fputs("' ;;\n", file);
 }
@@ -157,7 +158,7 @@ static void print_bash(FILE *file) {
 
 /* ---- zsh ---- */
 
-/* For the inside of single quotes in a description of _arguments or _describe. */
+/* Escapes text for single quotes in a description of _arguments or _describe. */
 static void print_escaped(const char *text, FILE *file) {
     for (; *text; text++)
         switch (*text) {
@@ -170,7 +171,7 @@ static void print_escaped(const char *text, FILE *file) {
         }
 }
 
-/* The action by which zsh completes an option's value. */
+/* Prints the action with which zsh completes an option's value. */
 static void print_zsh_value(const camber_option_spec *spec, camber_verb verb, FILE *file) {
     const char *argument = camber_option_argument(spec, verb);
     if (!argument)
@@ -193,7 +194,7 @@ static void print_zsh_value(const camber_option_spec *spec, camber_verb verb, FI
     }
 }
 
-/* As in '(-o --output)'{-o+,--output=}'[file to write]:OUT:_files'. */
+/* Prints, for example, '(-o --output)'{-o+,--output=}'[file to write]:OUT:_files'. */
 static void print_zsh_option(const camber_option_spec *spec, camber_verb verb, FILE *file) {
     const char *name = spec->name, *is = spec->argument ? "=" : "";
     fputs(" \\\n            ", file);

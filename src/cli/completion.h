@@ -1,17 +1,17 @@
-/* Completion of the command line in shells. */
+/* Shell completion of the command line. */
 #ifndef CAMBER_CLI_COMPLETION_H
 #define CAMBER_CLI_COMPLETION_H
 
 #include <stdio.h>
 
-/* In the order of --completion's words. */
+/* In the order of the words of --completion. */
 typedef enum camber_shell {
     CAMBER_SHELL_BASH = 0,
     CAMBER_SHELL_ZSH,
 } camber_shell;
 
-/* Prints a script that completes verbs, options, their values and files. A user's shell sources it, or finds it in the
- * shell's folder of completions, where installing camber puts it. */
+/* Prints a script that completes verbs, options, their values and files. Users source it, or the shell finds it in its
+ * folder of completions, where installing camber puts it. */
 void camber_completion_print(camber_shell shell, FILE *file);
 
 #endif

@@ -65,7 +65,7 @@ bool camber_environment_set(const camber_options *options) {
     set = setenv("CPL_TMPDIR", camber_environment_temporary(), 0) == 0 && set;
     /* Otherwise Mesa prints warnings about missing GPUs among the errors. */
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
-    /* Gives each of PoCL's threads a core of its own: left alone, two of them often share one. */
+    /* Gives each of PoCL's threads a core of its own; otherwise two of them often share one. */
     set = (!may_pin() || setenv("POCL_AFFINITY", "1", 0) == 0) && set;
     /* For a PoCL whose binaries the library does not know (src/gpu/opencl/pocl.c): each kernel is built once for all
      * sizes of work-groups, so that the cache can keep it. */
@@ -75,7 +75,7 @@ bool camber_environment_set(const camber_options *options) {
     return setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0) == 0 && set;
 }
 
-/* Asked before a driver starts: a driver that cannot open its files reports no device, if anything. */
+/* Called before a driver starts, because a driver that cannot open its files reports no device, or nothing at all. */
 bool camber_environment_has_descriptors(void) {
     int copies[LEAST_DESCRIPTORS], count = 0;
     while (count < LEAST_DESCRIPTORS && (copies[count] = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0)

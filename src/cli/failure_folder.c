@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SCALE = 8 }; /* a pixel's side in the picture, px */
+enum { SCALE = 8 }; /* size of a pixel in the picture, px */
 
 static bool is_empty(const char *folder) {
     DIR *directory = opendir(folder);
@@ -25,7 +25,7 @@ int camber_failure_folder_check(const camber_session *session) {
     if (!folder)
         return CAMBER_EXIT_DONE;
     if (stat(folder, &info) != 0) {
-        /* It is made for the first picture, so that a run without failures leaves nothing. */
+        /* The folder is created with the first picture, so that a run without failures leaves nothing behind. */
         const int made = mkdir(folder, 0777);
         if (made == 0)
             rmdir(folder);
@@ -47,7 +47,7 @@ int camber_failure_folder_check(const camber_session *session) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Returns an exit status, its line printed. */
+/* Returns an exit status; on failure a line has been printed. */
 static int write_image(camber_session *session, const camber_failure_image *image, const char *path) {
     const char *folder = session->options->pictures;
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)

@@ -1,4 +1,4 @@
-/* The folder of --pictures: pictures of what validate found wrong. */
+/* The folder of --pictures, with pictures of validate's failures. */
 #ifndef CAMBER_CLI_FAILURE_FOLDER_H
 #define CAMBER_CLI_FAILURE_FOLDER_H
 
@@ -7,12 +7,13 @@
 
 typedef struct camber_failure_folder {
     camber_session *session;
-    int exit_status; /* of a picture that could not be written, whose line is printed */
+    int exit_status; /* the error, already printed, if a picture could not be written */
 } camber_failure_folder;
 
-/* Whether the folder can be written to: known before the work. Returns an exit status, its line printed. */
+/* Checks before the work starts that the folder can be written to. Returns an exit status; on failure a line has been
+ * printed. */
 int camber_failure_folder_check(const camber_session *session);
-/* A camber_validation_host's write_image: user is a camber_failure_folder. */
+/* The write_image function of a camber_validation_host; user is a camber_failure_folder. */
 camber_status camber_failure_folder_write(void *user, const camber_failure_image *image, char **path);
 
 #endif

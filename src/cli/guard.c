@@ -44,14 +44,14 @@ static void remove_files(camber_guard *guard) {
 static _Atomic(camber_guard *) guard_of_faults;
 
 /* Another thread may be adding or removing a file right now, which takes less than a second. If the fault stopped that
- * very thread, waiting ends in vain. Either way the list no longer changes afterwards. */
+ * very thread, waiting is useless. In either case the list does not change afterwards. */
 static void wait_for_others(camber_guard *guard) {
     for (int i = 0; i < 1000 && atomic_load(&guard->locked); i++)
         poll(NULL, 0, 1);
 }
 
-/* Calls only functions that POSIX allows in a handler. The handler stays installed while it runs, so that a fault of a
- * second thread does not end the process in between. */
+/* Calls only functions that POSIX allows in a handler. The handler stays installed while it runs, so that a fault in a
+ * second thread does not end the process meanwhile. */
 static void end_by_fault(int number) {
     camber_guard *guard = atomic_load(&guard_of_faults);
     if (guard) {
@@ -65,7 +65,7 @@ static void end_by_fault(int number) {
     raise(number); /* end as without a handler, with a core file if the system writes one */
 }
 
-/* Installs the handler only where there is none: sanitizers report faults by handlers of their own. */
+/* Installs the handler only if none is installed, because sanitizers report faults with handlers of their own. */
 static void meet_faults(camber_guard *guard) {
     struct sigaction action = {.sa_handler = end_by_fault, .sa_flags = SA_ONSTACK};
     sigemptyset(&action.sa_mask);
@@ -101,7 +101,7 @@ static void leave_faults(void) {
 
 /* ---- Signals from outside ---- */
 
-/* There is no notice when a driver starts LLVM, so the thread looks every now and then. */
+/* A driver that starts LLVM does not announce it, so the thread checks periodically. */
 static void *wait_for_signal(void *user) {
     camber_guard *guard = user;
     const struct timespec pause = {.tv_nsec = 100000000};
@@ -132,8 +132,8 @@ static void choose_signals(camber_guard *guard) {
         struct sigaction action;
         if (sigaction(number, NULL, &action) != 0)
             continue;
-        /* A signal that is ignored, as under nohup or a shell's &, or that a profiler handles stays theirs. SIGTERM is
-         * waited for in any case, because it also ends the guard's thread, and then dropped. */
+        /* A signal that is ignored, as under nohup or a shell's &, or that a profiler handles, is left to them. The
+         * thread waits for SIGTERM in any case, because it also ends the guard's thread, and drops it then. */
         const bool ends = action.sa_handler == SIG_DFL;
         if (ends || number == SIGTERM)
             sigaddset(&guard->signals, number);
@@ -157,7 +157,7 @@ bool camber_guard_start(camber_guard *guard, bool erase_bar) {
     return false;
 }
 
-/* A SIGTERM sent to the thread wakes it; the mark tells it from one that comes from outside. */
+/* A SIGTERM sent to the thread wakes it; the mark distinguishes it from one that comes from outside. */
 void camber_guard_stop(camber_guard *guard) {
     camber_guard_lock(guard);
     guard->stopping = true;

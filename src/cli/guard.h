@@ -21,11 +21,10 @@ typedef struct camber_guard {
     sigset_t signals, ignored, before;
     pthread_t thread;
     bool stopping;
-    void (*look)(void *user); /* called by the thread now and then, with the guard locked. NULL: nothing */
+    void (*look)(void *user); /* called by the thread periodically, with the guard locked; may be NULL */
     void *look_user;
-    /* Takes a signal from outside, with the guard locked. Returns whether it does; else the process ends. NULL: it
-     * ends.
-     */
+    /* Handles a signal from outside, with the guard locked. Returns true if it did; otherwise the process ends. NULL:
+     * the process ends. */
     bool (*heed)(void *user, int number);
     void *heed_user;
     _Atomic(camber_guard_handler *)
@@ -34,14 +33,14 @@ typedef struct camber_guard {
     _Atomic(char *) paths[CAMBER_GUARD_FILES]; /* NULL: free */
 } camber_guard;
 
-/* Starts the guard; call it before other threads start. Only one guard may run. false: no thread could be made, and
- * signals end the process as they do by default. */
+/* Starts the guard; call it before other threads start. Only one guard may run. Returns false if no thread could be
+ * created; signals then end the process as they do by default. */
 bool camber_guard_start(camber_guard *guard, bool erase_bar);
 /* Call it only if start returned true. */
 void camber_guard_stop(camber_guard *guard);
 
-/* Puts the guard's handler of aborts before one that a driver has installed. The guard does so every now and then; call
- * it when a driver has certainly been opened. Any thread may call it. */
+/* Puts the guard's handler of aborts before one that a driver has installed. The guard does this periodically; call it
+ * when a driver has certainly been opened. Any thread may call it. */
 void camber_guard_go_first(camber_guard *guard);
 
 /* Between these two, no signal from outside ends the process. */
@@ -50,8 +49,8 @@ void camber_guard_unlock(camber_guard *guard);
 
 /* With the guard locked: removes the files and ends the process. */
 void camber_guard_end(camber_guard *guard, int exit_status);
-/* Call both with the guard locked. add keeps the pointer: free it after remove, when the guard is unlocked. false:
- * there are CAMBER_GUARD_FILES already. */
+/* Call both with the guard locked. add keeps the pointer: free it after remove, when the guard is unlocked. add returns
+ * false if there are already CAMBER_GUARD_FILES. */
 bool camber_guard_add(camber_guard *guard, char *path);
 void camber_guard_remove(camber_guard *guard, const char *path);
 

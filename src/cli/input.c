@@ -1,6 +1,6 @@
-/* The input of a verb: a map (files, a style, a view of them) or a file of polylines in pixels. Opening reads it;
- * projecting makes the polylines, strokes and rows that the kernels read. The functions at the end give either kind in
- * the same form. Standard input goes to a temporary file first, because OGR seeks. */
+/* The input of a verb: a map (files, a style, a view of them) or a file of polylines in pixels. Opening reads it.
+ * Projecting makes the polylines, strokes and rows that the kernels read. The functions at the end return either kind
+ * in the same form. Standard input is copied to a temporary file first, because OGR seeks. */
 #include "cli/input.h"
 
 #include "base/open_file.h"
@@ -16,7 +16,8 @@
 
 /* ---- Polylines in pixels ---- */
 
-/* NULL with errno; errno is 0 for a device or a pipe, which may have no end. A folder fails when it is read. */
+/* Returns NULL with errno on failure; errno is 0 for a device or a pipe, which may be endless. A folder can be opened,
+ * but reading it fails. */
 static FILE *open_regular(const char *path) {
     struct stat about;
     const int opened = camber_open_file(path, &about);
@@ -200,7 +201,7 @@ static int open_style(camber_input *input) {
                                    &input->base_path);
 }
 
-/* Takes from the style the parts of the view that the options leave open. */
+/* Takes the parts of the view that the options do not set from the style. */
 static void take_view(camber_input *input) {
     const camber_options *options = input->session->options;
     const camber_view_desc own = camber_style_get_view(input->style);
@@ -220,8 +221,8 @@ static void take_view(camber_input *input) {
     }
 }
 
-/* Opens the device while files are read. A view that fits the data has no zoom yet, so the kernels that it will need
- * are unknown. */
+/* Opens the device while files are read. If the view is fitted to the data, the zoom is not known yet, so the kernels
+ * that it will need are unknown, too. */
 static void start_opening(const camber_input *input) {
     const camber_view_desc *view = &input->view;
     const double zoom = view->kind == CAMBER_VIEW_CENTER ? view->zoom : NAN;
@@ -257,7 +258,7 @@ static int read_file(camber_input *input, const char *path) {
     return camber_report_status(session->report, status);
 }
 
-/* Verbs that draw one picture read what it needs. */
+/* Verbs that draw one picture read only what it needs. */
 static int read_for_view(const camber_input *input, bool *done) {
     const camber_options *options = input->session->options;
     if (input->session->read_for)
@@ -278,6 +279,15 @@ static int read_fonts(const camber_input *input) {
     const camber_fonts_desc desc = {.folders = options->fonts, .folder_count = options->font_count};
     return camber_report_status(input->session->report,
                                 camber_features_read_fonts(input->features, &desc, input->base_path));
+}
+
+/* With --verbose: says where the time of reading went. */
+static void say_times(const camber_input *input) {
+    const camber_features_times times = camber_features_get_times(input->features);
+    if (input->session->report->verbose)
+        camber_report_say(input->session->report,
+                          "reading: files %.1f ms, joining lines %.1f, importance of points %.1f", times.file_ms,
+                          times.merge_ms, times.weigh_ms);
 }
 
 static int open_map(camber_input *input) {
@@ -311,6 +321,7 @@ static int open_map(camber_input *input) {
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
     input->read_ms = camber_now_ms() - start_ms;
+    say_times(input);
     return CAMBER_EXIT_DONE;
 }
 
@@ -328,7 +339,7 @@ static camber_status project_new(camber_input *input, const camber_scene_desc *d
     return status == CAMBER_OK ? camber_scene_project(input->scene) : status;
 }
 
-/* Lines are checked as lines alone, and areas with all that is drawn. */
+/* Lines are checked without areas, and areas are checked with everything that is drawn. */
 static camber_status project_validated(camber_input *input, camber_scene_desc desc) {
     const camber_status status = project_new(input, &desc);
     if (status != CAMBER_OK || !has_areas(input->scene))
@@ -339,7 +350,7 @@ static camber_status project_validated(camber_input *input, camber_scene_desc de
     return project_new(input, &desc);
 }
 
-/* One picture is drawn, of the network: its lines are counted, and go. */
+/* Only one picture of the network is drawn, so its lines are counted and then freed. */
 static camber_status project_once(camber_input *input, const camber_scene_desc *desc) {
     camber_status status = camber_scene_create_last(input->features, desc, &input->scene);
     if (status != CAMBER_OK)
@@ -351,9 +362,18 @@ static camber_status project_once(camber_input *input, const camber_scene_desc *
     return status;
 }
 
-static camber_status project_map(camber_input *input) {
-    if (input->scene)
-        return camber_scene_move(input->scene, &input->view);
+/* With --verbose: says what the scene has in memory for its view and others. */
+static void say_network(const camber_input *input) {
+    camber_camera camera;
+    camber_tessellation_desc desc;
+    const camber_polylines_stats stats =
+        camber_network_get_stats(camber_scene_get_network(input->scene, &camera, &desc));
+    if (input->session->report->verbose)
+        camber_report_say(input->session->report, "network: %zu polyline%s, %zu of %zu points", stats.polylines,
+                          camber_plural(stats.polylines), stats.kept_points, stats.points);
+}
+
+static camber_status make_scene(camber_input *input) {
     const camber_verb verb = input->session->options->verb;
     const camber_scene_desc desc = {.view = input->view,
                                     .simplify_px = input->session->options->simplify_px,
@@ -361,6 +381,15 @@ static camber_status project_map(camber_input *input) {
     if (verb == CAMBER_VERB_VALIDATE)
         return project_validated(input, desc);
     return verb == CAMBER_VERB_RENDER ? project_once(input, &desc) : project_new(input, &desc);
+}
+
+static camber_status project_map(camber_input *input) {
+    if (input->scene)
+        return camber_scene_move(input->scene, &input->view);
+    const camber_status status = make_scene(input);
+    if (status == CAMBER_OK)
+        say_network(input);
+    return status;
 }
 #endif
 
@@ -403,7 +432,8 @@ int camber_input_project(camber_input *input) {
     return camber_report_status(input->session->report, status);
 }
 
-/* Whether the library has already said why nothing is drawn: no feature passed the filter, or the style draws none. */
+/* Whether the library has already reported why nothing is drawn: no feature passed the filter, or the style draws
+ * none. */
 static bool knows_why_empty(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (!input->features)
@@ -416,7 +446,7 @@ static bool knows_why_empty(const camber_input *input) {
 #endif
 }
 
-/* Where nothing at all is in a view that the options place, its numbers may be the other way round. */
+/* If the view is placed by options and contains nothing at all, its coordinates may have been swapped. */
 static const char *likely_cause(const camber_input *input) {
 #ifdef CAMBER_MAP
     const camber_view_kind placed = input->session->options->view.kind;
@@ -538,7 +568,7 @@ camber_status camber_input_tessellate(const camber_input *input, camber_mesh *me
     camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
     camber_guard_go_first(input->session->guard);
 #ifdef CAMBER_MAP
-    /* Verbs that draw project on the device. Verbs that prove something use the polylines, which they compare with. */
+    /* Verbs that draw project on the device. Verbs that check results need the polylines to compare with. */
     const camber_verb verb = input->session->options->verb;
     if (input->scene && (verb == CAMBER_VERB_RENDER || verb == CAMBER_VERB_BENCH))
         return camber_scene_tessellate(input->scene, mesh, desc.method);

@@ -45,7 +45,7 @@ static int run_guarded(void *user) {
     session->guard = &guard;
     const int status = run(session);
     if (guarded && status != CAMBER_EXIT_DONE && camber_session_is_opening(session)) {
-        /* A run that has failed needs no device, and does not wait until one is open. */
+        /* After a failure no device is needed, so do not wait until it has been opened. */
         fflush(NULL);
         camber_guard_lock(&guard);
         camber_guard_end(&guard, status);
@@ -65,8 +65,7 @@ int main(int argc, char **argv) {
     camber_environment_fill_streams();
     int status = camber_options_parse(argc, argv, &options, message, sizeof message);
     camber_report_open(&report, &options);
-    /* A reader that has gone away, and a file that may grow no further, appear as failed writes and are reported like
-     * any other. */
+    /* A reader that has gone away, and a file at its size limit, appear as failed writes and are reported as such. */
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     if (status != CAMBER_EXIT_DONE) {

@@ -1,4 +1,4 @@
-/* argv becomes camber_options: each argument by the table of options, then all of them together (options_check.c).
+/* Turns argv into camber_options: each argument with the table of options, then all of them together (options_check.c).
  * --help is printed from the same table. */
 #include "cli/options_table.h"
 
@@ -9,14 +9,14 @@
 #include <string.h>
 #include <strings.h>
 
-/* A tenth of a pixel does not show, and drops a fifth to a third of a city's points. */
+/* A tenth of a pixel is not visible, and drops a fifth to a third of a city's points. */
 #define DRAWN_SIMPLIFY_PX 0.1
 
-enum { NAME_LETTERS = 32 }; /* of the longest option that a mistyped one is compared with */
+enum { NAME_LETTERS = 32 }; /* longest option name that a mistyped one is compared with */
 
 /* ---- Help ---- */
 
-/* NULL: the verb has no note of its own. */
+/* Returns NULL if the verb has no note of its own. */
 static const camber_option_note *find_note(const camber_option_spec *spec, camber_verb verb) {
     for (size_t i = 0; verb != CAMBER_VERB_NONE && i < sizeof spec->notes / sizeof *spec->notes; i++)
         if (spec->notes[i].verbs & 1 << verb)
@@ -79,7 +79,8 @@ void camber_options_help(camber_verb verb, FILE *file) {
 
 /* ---- Values ---- */
 
-/* Finite decimal numbers only: strtod alone also takes blanks, hexadecimal, inf and nan. *text moves behind. */
+/* Parses finite decimal numbers only: strtod also accepts blanks, hexadecimal, inf and nan. *text moves past the
+ * number. */
 static bool parse_number(const char **text, double *value) {
     const size_t span = strspn(*text, "0123456789+-.eE");
     char *end;
@@ -91,7 +92,7 @@ static bool parse_number(const char **text, double *value) {
     return true;
 }
 
-/* Exactly count numbers with commas between. */
+/* Parses exactly count numbers, separated by commas. */
 static bool parse_numbers(const char *text, size_t count, double *values) {
     for (size_t i = 0; i < count; i++) {
         if (i > 0 && *text++ != ',')
@@ -102,7 +103,7 @@ static bool parse_numbers(const char *text, size_t count, double *values) {
     return *text == 0;
 }
 
-/* Up to nine digits: enough to tell that it is too large. */
+/* Parses up to nine digits: enough to recognise a number that is too large. */
 static bool parse_count(const char **text, uint32_t *value) {
     const size_t digits = strspn(*text, "0123456789");
     if (digits < 1 || digits > 9)
@@ -197,7 +198,7 @@ bool camber_options_parse_place(const char *text, camber_tiles_place *place) {
     return true;
 }
 
-/* Files have it as UTF-8. */
+/* The text is stored in files, which use UTF-8. */
 static int parse_words(const camber_option_reader *p, const camber_option_spec *spec, const char *text,
                        const char **value) {
     json_t *checked = json_string(text);
@@ -209,7 +210,7 @@ static int parse_words(const camber_option_reader *p, const camber_option_spec *
 }
 
 static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
-    /* Only one of two outputs would be written. */
+    /* With two outputs, only one would be written. */
     if (spec->offset == offsetof(camber_options, output) && p->options->output)
         return camber_options_refuse(p, "-o %s: is the second output, after -o %s; give one of them", text,
                                      p->options->output);
@@ -279,7 +280,7 @@ static bool takes(const camber_option_spec *spec, camber_verb verb) {
     return spec->verbs & 1 << verb;
 }
 
-/* How many letters of a name were added, left out, changed or swapped with their neighbour. */
+/* Returns how many letters of a name were added, left out, changed or swapped with their neighbour. */
 static size_t count_slips(const char *typed, size_t length, const char *name) {
     size_t rows[3][NAME_LETTERS + 1], *above = rows[0], *row = rows[1], *spare = rows[2];
     const size_t width = strlen(name);
@@ -305,7 +306,7 @@ static size_t count_slips(const char *typed, size_t length, const char *name) {
     return row[width];
 }
 
-/* The verb's option that a name was most likely meant to be. NULL: none is close. */
+/* Returns the verb's option that was most likely meant; NULL if none is close. */
 static const char *find_meant(camber_verb verb, const char *typed, size_t length) {
     const char *meant = NULL;
     size_t least = length / 3 + 1;
@@ -328,7 +329,7 @@ static int unknown_option(const camber_option_reader *p, const char *name) {
                                  gap, verb_name(verb));
 }
 
-/* --name, --name=value, --name value. *at moves over a value in an argument of its own. */
+/* Parses --name, --name=value or --name value. *at moves past a value in an argument of its own. */
 static int parse_long(const camber_option_reader *p, int argc, char **argv, int *at) {
     const char *name = argv[*at] + 2;
     const size_t length = strcspn(name, "=");
@@ -347,7 +348,7 @@ static int parse_long(const camber_option_reader *p, int argc, char **argv, int 
     return unknown_option(p, argv[*at]);
 }
 
-/* -q, -qf, -o OUT, -oOUT. */
+/* Parses -q, -qf, -o OUT or -oOUT. */
 static int parse_short(const camber_option_reader *p, int argc, char **argv, int *at) {
     for (const char *letter = argv[*at] + 1; *letter; letter++) {
         const camber_option_spec *spec = NULL;
@@ -369,7 +370,7 @@ static int parse_short(const camber_option_reader *p, int argc, char **argv, int
     return CAMBER_EXIT_DONE;
 }
 
-/* "help" and "version" are what --help and --version are; a verb may stand behind the first. */
+/* "help" and "version" mean the same as --help and --version; "help" may be followed by a verb. */
 static int parse_verb(const camber_option_reader *p, const char *text) {
     camber_options *options = p->options;
     if (strcmp(text, "help") == 0) {

@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-/* Exit statuses. Values come from sysexits.h, which POSIX does not have, so they are named here. */
+/* Exit statuses. Their values come from sysexits.h, which is not in POSIX, so they are defined here. */
 enum {
     CAMBER_EXIT_DONE = 0,
     CAMBER_EXIT_CHECK = 1, /* a check of validate or of tiles verify failed */
@@ -34,7 +34,7 @@ typedef enum camber_verb {
     CAMBER_VERB_SERVE,
 } camber_verb;
 
-/* Formats of OUT, in the order in which --help has them. */
+/* Formats of OUT, in the order of --help. */
 typedef enum camber_format {
     CAMBER_FORMAT_PNG = 0,
     CAMBER_FORMAT_PNG8,
@@ -42,7 +42,7 @@ typedef enum camber_format {
     CAMBER_FORMAT_GLB,
 } camber_format;
 
-/* Pictures alone have an encoding. */
+/* Only pictures have an encoding. */
 static inline camber_encoding camber_format_encoding(int format) {
     return format == CAMBER_FORMAT_WEBP   ? CAMBER_ENCODING_WEBP
            : format == CAMBER_FORMAT_PNG8 ? CAMBER_ENCODING_PNG8
@@ -51,71 +51,71 @@ static inline camber_encoding camber_format_encoding(int format) {
 
 enum { CAMBER_OPTIONS_MOST = 128 };
 
-/* Choices hold the index of the word in the list that --help shows, which is also the value of the enum in camber.h;
- * -1: not given. Texts point into argv; NULL: not given. */
+/* A choice is the index of the word in the list that --help shows, which is also the value of the enum in camber.h; -1:
+ * not given. Strings point into argv; NULL: not given. */
 typedef struct camber_options {
     camber_verb verb;
-    const char **inputs; /* input_count */
+    const char **inputs; /* input_count of them */
     size_t input_count;
-    const char **wheres; /* where_count, each as --where gave it */
+    const char **wheres; /* where_count of them: the value of each --where */
     size_t where_count;
     bool help, version, json, quiet, verbose, force, warm, full;
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
     const char *attribution; /* "": none */
-    const char *where;       /* the first */
-    const char **fonts; /* font_count folders, each as --fonts gave it */
+    const char *where;       /* the first --where */
+    const char **fonts;      /* font_count folders, one for each --fonts */
     size_t font_count;
-    const char *language; /* of names. NULL: as they are */
+    const char *language; /* of names; NULL: the local ones */
     bool no_labels;
-    const char *root;        /* a style reads no file outside this folder. NULL: any file */
+    const char *root; /* a style reads only files inside this folder; NULL: any file */
     bool allow_remote, allow_vrt;
-    int completion; /* camber_shell whose completion is to be printed; -1: none */
-    int format;     /* camber_format. -1: nothing is written */
+    int completion; /* camber_shell whose completion is printed; -1: none */
+    int format;     /* camber_format; -1: nothing is written */
     int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
-    double zoom, bearing_deg, pitch_deg; /* NAN where not given */
+    double zoom, bearing_deg, pitch_deg; /* NAN: not given */
     double simplify_px, width_px, fan_tolerance_px;
-    const char *color, *fill; /* of what no rule of a built-in style takes. NULL: the style's own */
-    double width;             /* of its lines, CSS px. 0: the style's own */
-    uint32_t threads;         /* 0: as many as there are */
-    uint64_t memory_bytes;    /* memory limit of the run without its libraries. 0: the library's default */
-    uint32_t quality;         /* WebP's, 1 to 100. 0: the library's default */
+    const char *color, *fill; /* colours of features that no rule of a built-in style matches; NULL: the style's own */
+    double width;             /* width of such lines, CSS px; 0: the style's own */
+    uint32_t threads;         /* 0: one per core */
+    uint64_t memory_bytes;    /* memory limit of the run, without its libraries; 0: the library's default */
+    uint32_t quality;         /* of WebP, 1 to 100; 0: the library's default */
     uint32_t runs;
-    uint32_t windows; /* windows of each picture that are compared with exact coverage */
-    const char *only; /* part of the names of the groups of checks that are made. NULL: all */
+    uint32_t windows; /* number of windows of each picture that are compared with exact coverage */
+    const char *only; /* only groups of checks whose name contains this text are run; NULL: all */
     /* Tiles: */
     uint32_t min_zoom, max_zoom;
-    bool has_zooms;             /* at least one of them was given */
+    bool has_zooms;             /* at least one of the two was given */
     int tile_size;              /* 0: 256, 1: 512 */
-    camber_tiles_place *places; /* place_count, each as --tile gave it */
+    camber_tiles_place *places; /* place_count of them: the value of each --tile */
     size_t place_count;
-    const char *renewed; /* a file of tiles to renew */
+    const char *renewed; /* a file with tiles to redraw */
     const char *region, *name, *description, *shard;
-    const char *schedule; /* a file, which a dry run writes and others read */
+    const char *schedule; /* a file that a dry run writes and other runs read */
     uint32_t shards;
     bool resume, keep_empty, dry_run;
     /* Serving: */
     const char *listen, *metrics, *public_url, *cors;
     const char *renderd, *cache_dir;
-    const char *edit; /* the style's file, which is watched; style is the same then */
+    const char *edit; /* the style's file, which is watched for changes; style has the same value then */
     uint64_t cache_bytes;
     uint32_t most_px, most_ratio;
-    bool given[CAMBER_OPTIONS_MOST]; /* by the option's number in the table */
+    bool given[CAMBER_OPTIONS_MOST]; /* indexed by the option's position in the table */
 } camber_options;
 
-/* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. With --help, --version or
- * --completion nothing else needs to be complete. Free the options with camber_options_free in any case. */
+/* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with a one-line message. With --help, --version or
+ * --completion, the other arguments may be incomplete. Free the options with camber_options_free in any case. */
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size);
-/* Checks options against each other; camber_options_parse calls it. verb is the name of the verb. */
+/* Checks options against each other; called by camber_options_parse. verb is the name of the verb. */
 int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size);
-/* A tile as zoom/column/row. */
+/* Parses a tile of the form zoom/column/row. */
 bool camber_options_parse_place(const char *text, camber_tiles_place *place);
-/* "show", "verify" or "merge", which tiles is to do; NULL: it is to draw. */
+/* Returns the action of the verb tiles: "show", "verify" or "merge"; NULL: it draws. */
 const char *camber_options_tiles_action(const camber_options *options);
-/* Checks the options of serve; camber_options_check calls it. */
+/* Checks the options of serve; called by camber_options_check. */
 int camber_options_check_serve(camber_options *options, char *message, size_t message_size);
-/* Checks the options of tiles; camber_options_check calls it. */
+/* Checks the options of tiles; called by camber_options_check. */
 int camber_options_check_tiles(camber_options *options, char *message, size_t message_size);
 void camber_options_free(camber_options *options);
 

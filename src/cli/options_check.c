@@ -1,5 +1,6 @@
-/* Checks the options together, once each has a value by itself: which exclude each other, which need another, and that
- * no file is read and written. The first rule that is broken becomes one line: the option, the reason and the cure. */
+/* Checks the options together, after each has been parsed: which ones exclude each other, which ones need another, and
+ * that no file is both read and written. The first rule that is broken produces one line: the option, the reason and
+ * the cure. */
 #include "cli/input.h"
 #include "cli/options.h"
 #include "cli/options_files.h"
@@ -25,7 +26,7 @@ static const struct {
 
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
-/* Checks the picture that is to be written, whose format is known. */
+/* Checks the picture that will be written. Its format is known. */
 static int check_picture(const camber_option_reader *p) {
     const camber_options *options = p->options;
     const camber_encoding encoding = camber_format_encoding(options->format);
@@ -52,11 +53,11 @@ static int check_picture(const camber_option_reader *p) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Finds the format by the extension where --format is not given. Both together must agree. */
+/* Determines the format from the extension if --format is not given. If both are given, they must agree. */
 static int check_format(const camber_option_reader *p, bool out) {
     camber_options *options = p->options;
     const bool glb = options->verb == CAMBER_VERB_TESSELLATE;
-    int named = -1; /* by the extension */
+    int named = -1; /* the format of the extension */
     for (int i = FORMAT_COUNT - 1; i >= 0; i--)
         if (!out && camber_path_ends_with(options->output, formats[i].extension))
             named = i;
@@ -106,7 +107,7 @@ static int check_view(const camber_option_reader *p) {
     if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
         return camber_options_refuse(
             p, "--bbox and --center or --zoom: cannot be combined; give the box, or the centre and zoom");
-    /* A style that is drawn from its own sources gives the missing one. */
+    /* if the style's own sources are drawn, the style supplies the missing one */
     const bool own = options->style && options->input_count == 0;
     if (!own && options->has_center != !isnan(options->zoom))
         return camber_options_refuse(
@@ -178,7 +179,7 @@ static int check_inputs(const camber_option_reader *p) {
     return CAMBER_EXIT_DONE;
 }
 
-/* style SUBCOMMAND FILE. */
+/* Checks style SUBCOMMAND FILE. */
 static int check_style(const camber_option_reader *p) {
     const camber_options *options = p->options;
     if (options->input_count == 0 ||
@@ -194,7 +195,7 @@ static int check_style(const camber_option_reader *p) {
     return CAMBER_EXIT_DONE;
 }
 
-/* With --draw cl no GL is loaded, so an option that names a part of GL would have no effect. */
+/* With --draw cl no GL library is loaded, so an option that selects a part of GL would have no effect. */
 static int check_draw(const camber_option_reader *p) {
     const camber_options *options = p->options;
     const bool named = options->backend != CAMBER_BACKEND_AUTO;

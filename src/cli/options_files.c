@@ -1,6 +1,6 @@
-/* Finds files that the command line names twice: to be read and to be written, or to be written by two options. Files
- * are compared by device and inode, so that links do not hide it. Parts of an input, such as the .dbf of a .shp, count
- * as inputs. */
+/* Finds files that the command line uses twice: for reading and for writing, or as the output of two options. Files are
+ * compared by device and inode, so that links are recognised. Parts of an input, such as the .dbf of a .shp, count as
+ * inputs. */
 #define _XOPEN_SOURCE 700
 
 #include "cli/options_files.h"
@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A file that exists is identified by its device and inode. One that does not exist is identified by its folder's, and
+/* An existing file is identified by its device and inode, and a file that does not exist by those of its folder, and
  * its name. */
 typedef struct file {
     const char *path, *role;
@@ -22,7 +22,7 @@ typedef struct file {
 
 enum { MOST_OUTPUTS = 5, LONGEST_PATH = 4096 };
 
-/* ---- Which file it is ---- */
+/* ---- Identifying files ---- */
 
 static bool take_info(file *it, const struct stat *info) {
     it->device = info->st_dev;
@@ -42,7 +42,7 @@ static bool find_existing(file *it) {
     return stat(it->path, &info) == 0 && S_ISREG(info.st_mode) && take_info(it, &info);
 }
 
-/* Finds the file behind /vsigzip/FILE, /vsizip/FILE/member and the like. */
+/* Finds the actual file of /vsigzip/FILE, /vsizip/FILE/member and the like. */
 static bool find_archive(file *it) {
     char path[LONGEST_PATH];
     const char *rest = it->path, *slash;
@@ -88,7 +88,7 @@ static bool is_same(const file *a, const file *b) {
            (!a->name || strcmp(a->name, b->name) == 0);
 }
 
-/* ---- Which files there are ---- */
+/* ---- Listing files ---- */
 
 typedef struct checked {
     const camber_options *options;
@@ -115,7 +115,7 @@ static bool add_output(checked *c, const char *path, const char *role) {
     return false;
 }
 
-/* --pictures names a folder, in which files are called check-NUMBER.png. */
+/* --pictures names a folder, whose files are called check-NUMBER.png. */
 static bool is_picture(const checked *c, const file *input, const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *folder = c->options->pictures;
     char picture[LONGEST_PATH];
@@ -136,9 +136,9 @@ static bool meets_output(const checked *c, const char *path, const char *role) {
     return is_picture(c, &it, path) && tell(c, path, role, "--pictures");
 }
 
-/* ---- Formats of several files ---- */
+/* ---- Formats with several files ---- */
 
-/* Extensions of formats that keep several files beside each other, with the same stem. Names may be in lower or upper
+/* Extensions of formats that use several files with the same stem in one folder. Names may be in lower or upper
  * case. */
 static const char *const families[][12] = {
     {".shp", ".shx", ".dbf", ".prj", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".idm", ".ind"},

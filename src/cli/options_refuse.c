@@ -1,4 +1,4 @@
-/* Refusing options, and words for it. */
+/* Rejects options, and words the messages. */
 #include "cli/options_table.h"
 #include <jansson.h>
 #include <math.h>

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* ADDRESS:PORT, with an address of IPv4, of IPv6 in brackets, or localhost; the server reads it fully. */
+/* Checks the form ADDRESS:PORT; ADDRESS is an IPv4 address, an IPv6 address in brackets, or localhost. The server
+ * parses it fully. */
 static bool is_address(const char *text) {
     const char *colon = strrchr(text, ':');
     if (!colon || colon == text || strlen(colon + 1) < 1 || strlen(colon + 1) > 5)
@@ -11,7 +12,7 @@ static bool is_address(const char *text) {
     return strspn(colon + 1, "0123456789") == strlen(colon + 1);
 }
 
-/* http or https, a host, maybe a path, and nothing that would end a header or a text of JSON. */
+/* Checks for http or https, a host, an optional path, and no character that would end a header or a JSON string. */
 static bool is_url(const char *text) {
     const char *host = strncmp(text, "http://", 7) == 0 ? text + 7 : strncmp(text, "https://", 8) == 0 ? text + 8 : "";
     if (!*host || *host == '/' || strlen(text) > 200)
@@ -57,7 +58,7 @@ int camber_options_check_serve(camber_options *options, char *message, size_t me
             p, "--renderd: needs a folder for its tiles; also give --cache-dir FOLDER, which is mod_tile's TileDir");
     if (options->edit)
         options->style = options->edit;
-    /* A style's own sources are read once, at a zoom at which all that they have is so wide, or their highest. */
+    /* A style's own sources are read once: at the zoom at which all their data has this width, or at their highest. */
     options->view.width = options->view.height = options->input_count ? 1024 : 30000;
     options->view.kind = CAMBER_VIEW_FIT;
     options->view.zoom = options->view.bearing_deg = options->view.pitch_deg = 0.0;

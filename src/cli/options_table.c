@@ -1,6 +1,6 @@
-/* The table of verbs and options. A line of it is an option: which verbs take it, what it takes, where its value goes
- * in camber_options, and what --help says. Parsing, --help, completion and the check of the man page read nothing else.
- */
+/* The table of verbs and options. Each line is an option: which verbs accept it, its type of value, the member of
+ * camber_options that stores it, and its help text. The parser, --help, completion and the check of the man page use
+ * only this table. */
 #include "cli/options_table.h"
 
 enum {
@@ -34,7 +34,7 @@ enum {
 #else
     MAPS = 0,
 #endif
-    SEEN = MAPS & ~PYRAMIDS, /* one view of a map */
+    SEEN = MAPS & ~PYRAMIDS, /* have a single view of a map */
     STYLED = MAPS & ~COMPARE,
     LABELLED = MAPS & RENDER,
     SIGNED = MAPS & (RENDER | TESSELLATE | PYRAMIDS),

@@ -1,4 +1,4 @@
-/* Checks the options of `camber tiles`: of its actions, which take an archive, and of drawing. */
+/* Checks the options of `camber tiles`, for its actions on archives and for drawing. */
 #include "cli/options_table.h"
 
 #include "cli/options_files.h"
@@ -27,7 +27,7 @@ static int check_archive_name(const camber_option_reader *p) {
 
 /* ---- show, verify, merge ---- */
 
-/* The first option that only drawing takes. NULL: none was given. */
+/* Returns the first given option that applies only to drawing; NULL if there is none. */
 static const char *find_drawing(const camber_options *options) {
     static const char *const all[] = {"output", "force", "json", "quiet", "verbose", "help", "version"};
     for (size_t i = 0; i < camber_option_count; i++) {
@@ -106,8 +106,8 @@ static int check_encoding(const camber_option_reader *p) {
     return CAMBER_EXIT_DONE;
 }
 
-/* The view that a style's own sources are read for: once, at the highest zoom; lower ones are drawn of the same lines.
- */
+/* Sets the view for which a style's own sources are read: once, at the highest zoom. Lower zooms are drawn from the
+ * same lines. */
 static void set_view(camber_options *options) {
     static const double WIDEST_PX = 30000.0;
     camber_view_desc *view = &options->view;
@@ -119,7 +119,7 @@ static void set_view(camber_options *options) {
     view->zoom = view->bearing_deg = view->pitch_deg = 0.0;
 }
 
-/* A schedule is known by the files that it was made of. */
+/* A schedule is identified by the files that it was made from. */
 static int check_schedule(const camber_option_reader *p) {
     const camber_options *options = p->options;
     if (!options->schedule)
@@ -158,7 +158,7 @@ static int check_run(const camber_option_reader *p) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Whether the first input is more likely a verb of tiles that is mistyped: a bare word, and no file. */
+/* Whether the first input is more likely a mistyped action of tiles: a bare word that is not a file. */
 static bool is_mistyped(const camber_options *options) {
     const char *first = options->input_count ? options->inputs[0] : "";
     return *first && !strpbrk(first, "./:-") && access(first, F_OK) != 0;

@@ -1,6 +1,6 @@
-/* Writes files so that they appear whole or not at all: to a temporary file in the same folder, which is synced and
- * renamed when it is complete. The guard removes it if the process ends before. Also copies standard input to a
- * temporary file for readers that seek. */
+/* Writes files atomically: to a temporary file in the same folder, which is synced and renamed when it is complete. The
+ * guard removes it if the process ends earlier. Also copies standard input to a temporary file for readers that
+ * seek. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "cli/output.h"
@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A hidden name beside path. It is short enough for every file system that path fits. */
+/* Makes a hidden name in the folder of path. It is short enough for every file system that allows path. */
 static char *temporary_name(const char *path, unsigned attempt, const char *suffix) {
     const char *slash = strrchr(path, '/');
     const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
@@ -35,7 +35,7 @@ static void remove_temporary(camber_guard *guard, char *path) {
     free(path);
 }
 
-/* Creates a file beside path and tells the guard of it. Returns its descriptor, or -1 with errno. */
+/* Creates a file in the folder of path and registers it with the guard. Returns its descriptor, or -1 with errno. */
 static int create_beside(camber_guard *guard, const char *path, const char *suffix, mode_t mode, char **made) {
     for (unsigned attempt = 0; attempt < 100; attempt++) {
         char *name = temporary_name(path, attempt, suffix);
@@ -95,14 +95,14 @@ static int open_stream(camber_output *output, int descriptor) {
     return cannot_create(output, cause);
 }
 
-/* Looks at a file that exists at path. It touches nothing, but opens a device or a pipe. */
+/* Examines an existing file at path. It changes nothing, but opens a device or a pipe. */
 static int look_at_existing(camber_output *output, mode_t *mode, bool *in_place) {
     struct stat info;
     const char *path = output->path;
     if (!output->force)
         return camber_report_fail(output->report, CAMBER_EXIT_CREATE,
                                   "%s: exists; name another file, or replace it with --force", path);
-    if (stat(path, &info) != 0) { /* a link to no file is replaced */
+    if (stat(path, &info) != 0) { /* a dangling link is replaced */
         output->target = strdup(path);
         return CAMBER_EXIT_DONE;
     }
@@ -204,7 +204,7 @@ int camber_output_publish(camber_output *output) {
     if (cause == EEXIST)
         return camber_report_fail(
             output->report, CAMBER_EXIT_CREATE,
-            "%s: another program has created it meanwhile; name another file, or replace it with --force",
+            "%s: another program has created this file in the meantime; name another file, or replace it with --force",
             output->path);
     if (cause)
         return cannot_create(output, cause);
@@ -226,8 +226,8 @@ void camber_output_discard(camber_output *output) {
 
 /* ---- Standard input ---- */
 
-/* Some drivers of OGR choose by extension. An SQLite file is a set of tiles, or a GeoPackage if it has GP at byte 68.
- */
+/* Some OGR drivers depend on the extension. An SQLite file is an MBTiles archive, unless it has GP at byte 68, which
+ * marks a GeoPackage. */
 static const char *suffix_of(const char *head, size_t size) {
     if (size >= 2 && memcmp(head, "\x1f\x8b", 2) == 0)
         return ".in.gz";
@@ -243,7 +243,7 @@ static int cannot_spool(camber_report *report, const char *folder, int cause) {
                                            : camber_file_cure(cause, "set TMPDIR to a folder that you may write to"));
 }
 
-/* Copies the rest of standard input after the block that has been read. Returns errnos; 0: no failure. */
+/* Copies the rest of standard input after the block that has been read. The results are errnos; 0: no failure. */
 static void copy_input(FILE *file, char *block, size_t size, size_t capacity, int *unread, int *unwritten) {
     *unread = *unwritten = 0;
     while (size > 0 && !*unwritten) {

@@ -1,5 +1,5 @@
-/* Draws a frame and writes it. A PNG takes rows as they are drawn, so that a picture of any size fits in memory; other
- * formats need all of them, which are held. */
+/* Draws a frame and writes it. A PNG is written row by row as it is drawn, so a picture of any size fits in memory.
+ * Other formats need the whole picture in memory. */
 #include "cli/picture.h"
 
 #include <stdlib.h>
@@ -13,9 +13,9 @@ typedef struct writer {
     /* One of these: */
     camber_png *png;
     camber_encoder *encoder;
-    uint8_t *rgba; /* the rows that the encoder is to get */
+    uint8_t *rgba; /* the rows for the encoder */
     double write_ms;
-    camber_status status; /* of the first write that failed */
+    camber_status status; /* status of the first write that failed */
 } writer;
 
 static camber_status keep_rows(writer *w, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
@@ -30,7 +30,7 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     w->status = w->png ? camber_png_write_rows(w->png, rgba, row_count) : keep_rows(w, rgba, first_row, row_count);
     w->write_ms += camber_now_ms() - start_ms;
     camber_report_progress(w->report, "writing", (double)(first_row + row_count) / w->height);
-    /* The error that the drawing stops is not reported: the failed write has been. */
+    /* When a write has failed, drawing stops with an error. It is not reported, because the failed write has been. */
     w->report->sealed = w->status != CAMBER_OK;
     return w->status == CAMBER_OK;
 }

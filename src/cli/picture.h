@@ -9,8 +9,8 @@ typedef struct camber_picture_times {
     double write_ms; /* compression and writing */
 } camber_picture_times;
 
-/* Draws a frame and writes it in the format that the options name. Returns an exit status, its line printed. times may
- * be NULL. */
+/* Draws a frame and writes it in the format that the options select. times may be NULL. Returns an exit status; on
+ * failure a line has been printed. */
 int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times);
 
 #endif

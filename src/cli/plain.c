@@ -1,4 +1,4 @@
-/* Writes --color, --fill and --width into a built-in style, as the defaults of the state that its plain layers read. */
+/* Writes --color, --fill and --width into a built-in style, as defaults of the state that its plain layers read. */
 #include "cli/plain.h"
 
 #ifdef CAMBER_MAP
@@ -15,7 +15,7 @@ typedef struct answer {
     size_t size;
 } answer;
 
-/* A longer answer is no colour's. */
+/* Fails if the answer is too long to be a colour. */
 static bool collect(void *user, const void *bytes, size_t size_bytes) {
     answer *to = user;
     if (size_bytes > sizeof to->text - to->size)
@@ -25,7 +25,7 @@ static bool collect(void *user, const void *bytes, size_t size_bytes) {
     return true;
 }
 
-/* Whether the style language takes the text for a colour. */
+/* Whether the text is a colour of the style language. */
 static bool is_color(camber_session *session, const char *text) {
     json_t *question = json_pack("{s:[s,s], s:[[{},{}]]}", "expression", "to-color", text, "inputs");
     char *json = question ? json_dumps(question, JSON_COMPACT) : NULL;
@@ -41,7 +41,7 @@ static bool is_color(camber_session *session, const char *text) {
     return good;
 }
 
-/* value is taken over. */
+/* Takes ownership of value. */
 static bool set(json_t *state, const char *name, json_t *value) {
     return json_object_set_new(json_object_get(state, name), "default", value) == 0;
 }

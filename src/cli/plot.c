@@ -1,5 +1,5 @@
-/* Draws the averages of a comparison as bars: writes a script and runs gnuplot, which writes the SVG or PNG to the
- * output. Errors of gnuplot become one line of ours. */
+/* Draws the averages of a comparison as a bar chart: writes a script and runs gnuplot, which writes an SVG or PNG to
+ * the output. Errors of gnuplot are reported in one line. */
 #define _XOPEN_SOURCE 700 /* posix_spawn */
 
 #include "cli/plot.h"
@@ -69,14 +69,14 @@ static void send(int descriptor, const char *text) {
         if (written < 0 && errno == EINTR)
             continue;
         if (written < 0)
-            return; /* gnuplot has ended; its exit status tells why */
+            return; /* gnuplot has ended; its exit status says why */
         text += written;
         left -= (size_t)written;
     }
 }
 
 /* Sends the script to the child and waits for its end. The script fits into the pipe, so neither waits for the other.
- * line receives the first line of its errors. Returns its exit status; -1: a signal ended it. */
+ * line receives the first line of its errors. Returns its exit status; -1 if a signal ended it. */
 static int finish(const child *made, const char *script, char *line, size_t line_size) {
     send(made->input, script);
     close(made->input);
@@ -156,7 +156,7 @@ static void put_panel(const camber_comparison *c, const panel *p, FILE *script) 
     fputs("$bars << END\n", script);
     for (int i = 0; i < CAMBER_METHODS; i++) {
         const double metric = c->average.metrics[i][p->metric], value = isnan(metric) ? 0 : metric;
-        char text[32] = "of GL alone";
+        char text[32] = "only in GL";
         if (!c->shown[i])
             continue;
         if (!isnan(metric))

@@ -1,5 +1,5 @@
-/* One line on standard error for each error and warning, which nothing in a file's name can break; a bar that erases
- * itself; JSON on standard output. A status of the library becomes an exit status here. */
+/* Prints each error and warning as one line on standard error, whatever characters a file's name contains; a progress
+ * bar that erases itself; and JSON on standard output. Also turns a status of the library into an exit status. */
 #include "cli/report.h"
 
 #include "base/whole_file.h"
@@ -20,8 +20,8 @@ void camber_report_open(camber_report *report, const camber_options *options) {
     report->terminal = report->bars;
 }
 
-/* A name of a file may hold anything: an error stays one line and sends nothing to the terminal. It is written at once,
- * so that no other thread's line, nor another process's, comes between. */
+/* A file name may contain any bytes: an error stays one line and sends no control characters to the terminal. It is
+ * written in one call, so that lines of other threads and processes cannot interleave with it. */
 static void print_line(camber_report *report, const char *prefix, const char *text) {
     char line[4160];
     size_t length = (size_t)snprintf(line, sizeof line - 1, "%s%s", prefix, text);
@@ -40,7 +40,8 @@ void camber_report_erase_bar(camber_report *report) {
     report->bar_ms = 0;
 }
 
-/* A line that stays: what takes so long, and that it is once. Another thread's bar may be there. */
+/* Prints a line that stays visible: what takes so long, and that it happens only once. Another thread's progress bar
+ * may be visible. */
 static void say_compiles(camber_report *report, const char *stage) {
     if (!report->terminal || report->said_compiles)
         return;
@@ -72,7 +73,7 @@ void camber_report_progress(void *user, const char *stage, double fraction) {
     fprintf(stderr, "\r\033[K%-14s [%s] %3d %%", stage, bar, fraction < 1 ? (int)(fraction * 100) : 100);
 }
 
-/* The message with standard input called so where its copy is meant. */
+/* Copies the message, and replaces the name of the temporary copy by "standard input". */
 static void name_input(const camber_report *report, const char *message, char *text, size_t size) {
     const char *found = report->spool ? strstr(message, report->spool) : NULL;
     if (found)
@@ -118,7 +119,7 @@ int camber_report_input(camber_report *report, int cause) {
                               strerror(cause));
 }
 
-/* Drivers that cannot have memory or write their files do not say so: they are not there, or do not compile. */
+/* Drivers that lack memory or cannot write files do not report it: no device appears, or compiling fails. */
 static void add_limits(char *text, size_t size) {
     static const struct {
         rlim_t small;

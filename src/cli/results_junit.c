@@ -1,5 +1,5 @@
-/* Writes the results of validate as JUnit XML. A suite is a device and a back end; a test case is a check. Text from
- * drivers is made valid XML: characters that XML cannot hold are replaced. */
+/* Writes the results of validate as JUnit XML. A suite is a device with a back end; a test case is a check. Text from
+ * drivers is made valid XML by replacing characters that XML does not allow. */
 #include "cli/results_text.h"
 
 #include <stdarg.h>
@@ -90,7 +90,7 @@ typedef struct counts {
     double ms;
 } counts;
 
-/* Counts the checks in the same suite as the given one; with NULL, all checks. */
+/* Counts the checks in the same suite as `one`; all checks if it is NULL. */
 static counts count_checks(const camber_results *results, const camber_check *one) {
     counts sum = {0};
     for (size_t i = 0; i < results->count; i++) {
@@ -110,7 +110,7 @@ static void put_counts(writer *w, counts sum) {
                sum.failures, sum.skipped, sum.ms / 1e3);
 }
 
-/* Writes the suite that a check opens; writes nothing if an earlier check has opened it. */
+/* Writes the suite whose first check this is; nothing if an earlier check belongs to the same suite. */
 static void put_suite(writer *w, const camber_results *results, size_t opener) {
     const camber_check *one = &results->list[opener];
     for (size_t i = 0; i < opener; i++)

@@ -22,7 +22,8 @@ size_t camber_character_size(const char *character) {
     return code < least[size - 2] || code > 0x10ffff || surrogate || code == 0xfffe || code == 0xffff ? 0 : size;
 }
 
-/* A name of a file may hold anything; a line stays a line. special: what takes a \ before it. */
+/* A file name may contain any bytes, but must not break the line. special: characters that are escaped with a
+ * backslash. */
 static void print_text(const char *text, const char *special) {
     while (*text) {
         const size_t size = camber_character_size(text);
@@ -90,12 +91,12 @@ static void print_check(void *user, const camber_check *check, size_t number) {
         printf("# %zu pixels: mean %.3f (at most %.2f), past 16: %.3f %% (%.2f), past 64: %.4f %% (%.3f), max %d\n",
                check->error.pixels, is->mean, most->mean, 100 * is->past_16, 100 * most->past_16, 100 * is->past_64,
                100 * most->past_64, check->error.max);
-    fflush(stdout); /* for who waits for the first failure */
+    fflush(stdout); /* so that a reader sees the first failure at once */
 }
 
 /* ---- Groups ---- */
 
-/* The group under way has so many checks of a result. */
+/* Counts the checks of the current group that have this result. */
 static size_t count_of(const camber_results *results, camber_result result) {
     size_t count = 0;
     for (size_t i = results->group_first; i < results->count; i++)
@@ -103,7 +104,7 @@ static size_t count_of(const camber_results *results, camber_result result) {
     return count;
 }
 
-/* One that failed shows what its first failure found, and names the others. */
+/* For a failed group, prints the findings of its first failure and the names of the others. */
 static void print_group(void *user, const camber_results *results) {
     camber_tap *tap = user;
     const camber_check *first = NULL;

@@ -1,5 +1,6 @@
-/* Opens the user's way to draw: --draw, --backend, --sharing and --device decide, or else whether GL is hardware. A
- * renderer may open on a thread beside the reading of files, with a context and a report of its own. */
+/* Opens what the options select for drawing: --draw, --backend, --sharing and --device decide, otherwise whether GL
+ * runs on hardware. A renderer can be opened on a second thread while files are read, with a context and a report of
+ * its own. */
 #include "cli/session.h"
 
 #ifdef CAMBER_MAP
@@ -11,13 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Meshes of tiles are small but at zooms that show much of the data; there parts of them take turns, as fast. */
+/* Meshes of tiles are small, except at zooms that show much of the data. There their parts are swapped in and out,
+ * which is just as fast. */
 static const uint64_t TILES_BYTES = 256 << 20;
-/* In so little whatever is read may be. */
+/* Any input can be read within this limit. */
 static const uint64_t LEAST_BUDGET_BYTES = 128 << 20;
 
 static camber_access access_of(const camber_options *options) {
-    const bool reads = options->resume || options->renewed; /* what is at the output already */
+    const bool reads = options->resume || options->renewed; /* these read the existing output */
     const char *const outputs[] = {reads ? NULL : options->output, options->dump, options->plot, options->junit};
     camber_access access = {.remote = options->allow_remote, .vrt = options->allow_vrt, .root = options->root};
     for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
@@ -31,7 +33,7 @@ static void show_progress(void *user, const char *stage, double fraction) {
     camber_report_progress(session->report, stage, fraction);
 }
 
-/* 0: the budget finds out. */
+/* 0: the budget determines it */
 static uint64_t find_most_bytes(const camber_session *session) {
     const uint64_t asked = session->options->memory_bytes;
     if (!session->whole)
@@ -73,8 +75,8 @@ static void say_draw(camber_session *session, camber_report *report, camber_rast
     camber_report_log(report, CAMBER_LOG_INFO, text);
 }
 
-/* Without a wish, kernels draw where GL would be a software rasteriser, or is not there; of compare, whose figures are
- * GL's own for the most part, where it is not there. A surface stays open where GL draws. */
+/* If the options do not decide, kernels draw unless GL runs on hardware. compare, whose figures mostly come from GL,
+ * uses kernels only if GL is not available. A surface stays open if GL draws. */
 static camber_status choose_draw(camber_session *session, camber_context *context, camber_report *report) {
     const camber_options *options = session->options;
     const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
@@ -88,7 +90,7 @@ static camber_status choose_draw(camber_session *session, camber_context *contex
         return status;
     if (status != CAMBER_OK) {
         say_draw(session, report, CAMBER_RASTERIZER_OPENCL, "no GL is here");
-        report->error[0] = 0; /* it is no failure */
+        report->error[0] = 0; /* this is not a failure */
         return CAMBER_OK;
     }
     const camber_surface_info info = camber_surface_get_info(session->surface);
@@ -140,13 +142,13 @@ static camber_status open_drawing(camber_session *session, camber_context *conte
     return status;
 }
 
-/* ---- Opening beside ---- */
+/* ---- Opening on a second thread ---- */
 
 struct camber_opener {
     camber_session *session;
     camber_context *context;
     camber_report report;
-    camber_report *told; /* report while the thread runs, then the session's */
+    camber_report *told; /* report while the thread runs, afterwards the session's */
     camber_status status;
     camber_outlook outlook;
     double pitch_deg;
@@ -154,14 +156,15 @@ struct camber_opener {
     bool running;
 };
 
-/* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. */
+/* Draws one line with the kernels and shaders that maps use, so that drivers compile them now, and not in the first
+ * frame. */
 static camber_status warm_up(const camber_opener *opener) {
     static const float lengths[] = {1, 1};
     const camber_session *session = opener->session;
     camber_context *context = opener->context;
     const bool rich = opener->outlook == CAMBER_OUTLOOK_RICH && session->draw == CAMBER_RASTERIZER_OPENCL;
-    /* Kernels that may not be needed take seconds where the cache lacks them, and milliseconds later where it has them.
-     */
+    /* Kernels that may not be needed are left out: compiling them takes seconds, while loading them later from the
+     * cache takes milliseconds. */
     const bool draws = session->draw == CAMBER_RASTERIZER_GL || opener->outlook != CAMBER_OUTLOOK_OPEN;
     const camber_dash dash = {lengths, 2};
     const double points[] = {2, 2, 14, 2, 14, 14};
@@ -212,7 +215,8 @@ static void *open_beside(void *user) {
     if (opener->status == CAMBER_OK)
         opener->status = open_drawing(opener->session, opener->context, &opener->report, CAMBER_NEEDS_RENDERER);
     const camber_status warm = opener->status == CAMBER_OK ? warm_up(opener) : CAMBER_OK;
-    /* The first frame fails in the same way, and tells it. A server must tell it before it says that it is ready. */
+    /* The first frame fails in the same way, and reports it. A server must report it before it says that it is
+     * ready. */
     if (opener->session->options->verb == CAMBER_VERB_SERVE && warm != CAMBER_OK)
         opener->status = warm;
     if (opener->session->surface)
@@ -235,7 +239,7 @@ void camber_session_start(camber_session *session, camber_outlook outlook, doubl
     if (prepare(session) != CAMBER_OK)
         return;
 #ifdef CAMBER_MAP
-    /* Before there are threads, which the loader would wait for. */
+    /* Must run before other threads start, because the loader would wait for them. */
     if (needs_gdal(session->options) && camber_gdal_load(session->context) != CAMBER_OK)
         return;
 #endif

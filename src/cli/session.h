@@ -1,7 +1,8 @@
-/* A session is what a verb runs on: the context, device, surface and renderer that the user's options ask for.
+/* A session holds what a verb runs on: the context, device, surface and renderer that the user's options select.
  *
- * It is no fixture (validate/fixture.h), which opens everything that a machine has: a session opens one of them, which
- * it chooses from the options and from whether GL is hardware; it says why, and opens on a thread beside reading. */
+ * Unlike a fixture (validate/fixture.h), which opens everything that a machine has, a session opens one of each. It
+ * chooses by the options and by whether GL runs on hardware, records why, and can open them on a second thread while
+ * files are read. */
 #ifndef CAMBER_CLI_SESSION_H
 #define CAMBER_CLI_SESSION_H
 
@@ -14,15 +15,15 @@ typedef enum camber_needs {
     CAMBER_NEEDS_RENDERER,
 } camber_needs;
 
-/* The kernels that a picture will need, as far as is known before its lines are. */
+/* The kernels that a picture will need, as far as they can be predicted before its lines are known. */
 typedef enum camber_outlook {
     CAMBER_OUTLOOK_PLAIN = 0, /* lines of one colour */
-    CAMBER_OUTLOOK_RICH,      /* dashes and the like */
-    CAMBER_OUTLOOK_OPEN,      /* the one or the other */
+    CAMBER_OUTLOOK_RICH,      /* dashes, images or other paints that need the rich variant */
+    CAMBER_OUTLOOK_OPEN,      /* either of the two */
 } camber_outlook;
 
-/* A renderer that opens on a thread of its own while a file is read. It has its own context and report, since those
- * serve one thread at a time. */
+/* A renderer that is opened on its own thread while a file is read. It has its own context and report, because each of
+ * these serves one thread at a time. */
 typedef struct camber_opener camber_opener;
 
 typedef struct camber_session {
@@ -30,8 +31,8 @@ typedef struct camber_session {
     camber_report *report;
     camber_guard *guard;
     camber_budget *budget;
-    /* A budget of which this session may hold what is left after those beside it, which hold beside_bytes. NULL: the
-     * options say what it may. */
+    /* A budget that is shared with others, which hold beside_bytes of it; this session may hold the rest. NULL: the
+     * options set the limit. */
     camber_budget *whole;
     uint64_t beside_bytes;
     camber_watch watch; /* its give_up may be set before the session is used */
@@ -39,33 +40,34 @@ typedef struct camber_session {
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer;
-    camber_rasterizer draw; /* what the renderer draws with, and why: once one was asked for */
+    camber_rasterizer draw; /* the chosen rasterizer, and why; valid once one has been needed */
     char draw_reason[256];
-    bool opens_beside;     /* camber_input_open starts a renderer, once it knows the style */
+    bool opens_beside;     /* camber_input_open starts opening a renderer as soon as it knows the style */
     camber_opener *opener; /* NULL: not started */
-    /* Tells a set of features, before files are read, what of them is needed; done: they need not be read. NULL: the
-     * verb and the view do. */
+    /* Called before files are read: says which parts of the features are needed. It sets done if the files need not be
+     * read at all. NULL: the verb and the view decide. */
     camber_status (*read_for)(void *user, camber_features *features, bool *done);
     void *read_for_user;
     double start_ms;
 } camber_session;
 
-/* Starts opening a renderer beside what the caller does next, and makes ready what a picture of this outlook and pitch
- * needs; camber_session_need(CAMBER_NEEDS_RENDERER) waits for it and tells how it went. */
+/* Starts opening a renderer on a second thread, and prepares what a picture with this outlook and pitch needs.
+ * camber_session_need(CAMBER_NEEDS_RENDERER) waits for it and reports failures. */
 void camber_session_start(camber_session *session, camber_outlook outlook, double pitch_deg);
-/* Whether that has begun, and camber_session_need has not waited for it. */
+/* Whether that has been started, and camber_session_need has not waited for it yet. */
 bool camber_session_is_opening(const camber_session *session);
 
-/* Opens what is needed and not open yet. Returns an exit status, its line printed. */
+/* Opens what is needed and not open yet. Returns an exit status; on failure a line has been printed. */
 int camber_session_need(camber_session *session, camber_needs needs);
-/* The same where it is no failure that something is missing. There is a context, and no renderer opens beside. */
+/* The same, if a missing device or GL is not an error. The session must have a context, and no renderer may be
+ * opening. */
 camber_status camber_session_open(camber_session *session, camber_needs needs);
 void camber_session_close(camber_session *session);
 
-/* The method that the options ask for, or the default. */
+/* Returns the method that the options select, or the default. */
 camber_method camber_session_method(const camber_session *session);
 
-/* "device", "gl_renderer", "draw", "draw_reason", "sharing" of what is open. */
+/* Adds "device", "gl_renderer", "draw", "draw_reason" and "sharing" of what is open. */
 void camber_session_describe(const camber_session *session, json_t *object);
 
 #endif

@@ -1,5 +1,6 @@
-/* Parts of a run, as engines for many machines number them. Each engine has variables of its own; that of an array of
- * jobs goes before those of processes within a job, and MPI's before the scheduler's that started it. */
+/* Determines the shard from the environment variables of systems that start many processes (called engines here).
+ * Variables of job arrays take precedence over those of processes within a job, and MPI's over those of the scheduler
+ * that started it. */
 #include "cli/shard.h"
 
 #include <stdlib.h>
@@ -9,7 +10,7 @@ enum { MOST_SHARDS = 65535 };
 
 /* Variables that number a process. */
 typedef struct engine {
-    const char *number, *first, *last, *step, *count; /* NULL: first is 0, step is 1, and the others are not told */
+    const char *number, *first, *last, *step, *count; /* NULL: first is 0, step is 1, and the others are unknown */
 } engine;
 
 static const engine engines[] = {
@@ -22,7 +23,7 @@ static const engine engines[] = {
     {"AWS_BATCH_JOB_ARRAY_INDEX", NULL, NULL, NULL, "AWS_BATCH_JOB_ARRAY_SIZE"},
 };
 
-/* A whole number up to MOST_SHARDS, and nothing behind it but end. */
+/* Parses a whole number up to MOST_SHARDS, which must be followed by `end`. */
 static bool parse(const char *text, char end, uint32_t *value, const char **rest) {
     const size_t digits = text ? strspn(text, "0123456789") : 0;
     if (digits < 1 || digits > 9 || text[digits] != end)
@@ -33,7 +34,7 @@ static bool parse(const char *text, char end, uint32_t *value, const char **rest
     return true;
 }
 
-/* A variable that is missing has the usual value; one that is no number is an error. */
+/* A missing variable has the usual value; one that is not a number is an error. */
 static bool read_variable(const char *name, uint32_t usual, uint32_t *value) {
     const char *text = name ? getenv(name) : NULL;
     *value = usual;
@@ -61,7 +62,8 @@ static int find_auto(const camber_options *options, camber_shard *shard, char *m
         return CAMBER_EXIT_USAGE;
     }
     step = step ? step : 1;
-    /* Some parts alone, as of a list with gaps that is to draw what failed before: which they are nobody can tell. */
+    /* If an array has gaps, for example because it repeats only the jobs that failed, the shards cannot be
+     * determined. */
     const bool gaps = last && count && (last < first || (last - first) / step + 1 != count);
     if (gaps || (options->shards && count && count != options->shards)) {
         snprintf(message, message_size,

@@ -7,8 +7,7 @@
 #include <stddef.h>
 #include <sys/resource.h>
 
-/* The usual limit of systems. PoCL has arrays of 64 KB on the stack, and the compilers behind it and behind GL need
- * more. */
+/* The usual limit of systems. PoCL has arrays of 64 KB on the stack, and the compilers that it and GL use need more. */
 enum { ENOUGH_BYTES = 8 << 20 };
 
 typedef struct job {
@@ -52,6 +51,6 @@ int camber_stack_run(int (*work)(void *user), void *user) {
     if (started)
         pthread_join(thread, NULL);
     else
-        do_job(&it); /* no thread could be made: work on this stack */
+        do_job(&it); /* no thread could be created, so work on this stack */
     return it.result;
 }

@@ -12,7 +12,7 @@
  * locks, files are neither marked nor removed. */
 bool camber_temp_files_spare(int descriptor) {
     struct stat info;
-    (void)flock(descriptor, LOCK_EX); /* waits for no longer than remove_one takes */
+    (void)flock(descriptor, LOCK_EX); /* waits only as long as remove_one takes */
     return fstat(descriptor, &info) != 0 || info.st_nlink > 0;
 }
 

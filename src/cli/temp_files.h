@@ -4,13 +4,13 @@
 
 #include <stdbool.h>
 
-/* Marks a new file as in use until all its descriptors are closed. false: another run has taken it for abandoned and
- * has removed it. */
+/* Marks a new file as in use until all its descriptors are closed. Returns false if another run has taken it for
+ * abandoned and removed it. */
 bool camber_temp_files_spare(int descriptor);
 
-/* Removes abandoned files in the folder of path: this user's files that are named like camber's (.camber-PID-N.tmp, or
- * .in and the like for copies of standard input) and that no run has marked. The process number in the name proves
- * nothing: another container may use it. */
+/* Removes abandoned files in the folder of path: files of this user with names like camber's (.camber-PID-N.tmp, or .in
+ * and the like for copies of standard input) that no run has marked. The process number in the name does not prove that
+ * the process is running, because another container may use the same number. */
 void camber_temp_files_remove(const char *path);
 
 #endif

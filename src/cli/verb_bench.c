@@ -9,7 +9,7 @@
 
 #define WARM_UPS 3
 
-/* The times of a run in ms; every member becomes a series. */
+/* The times of one run in ms; every member becomes a series. */
 typedef struct run_times {
     double tessellate, draw, frame, cull_count, project, classify, scan, emit;
     double shape, count, total, fill, cover; /* kernels that rasterize */
@@ -28,12 +28,12 @@ typedef struct job {
     camber_mesh *mesh;
     uint8_t *pixels;
     run_times *runs;
-    summary summaries[TIMES]; /* in the order of run_times */
+    summary summaries[TIMES]; /* in the order of the members of run_times */
     camber_frame_stats stats;
     uint32_t width, height;
 } job;
 
-/* Times a whole frame, from the lines to pixels in memory, and then its stages alone with their input already on the
+/* Times a whole frame, from the lines to pixels in memory, and then only its stages, with their input already on the
  * device. */
 static int time_run(job *j, run_times *times) {
     const double start_ms = camber_now_ms();
@@ -137,7 +137,7 @@ static int run(job *j) {
             camber_report_status(session->report, camber_mesh_create(session->device, session->renderer, &j->mesh));
     if (status == CAMBER_EXIT_DONE)
         status = measure(j);
-    /* A scene that has moved makes its polylines again. */
+    /* After a scene has moved, its polylines must be made again. */
     if (status == CAMBER_EXIT_DONE && !camber_input_polylines(&j->input))
         status = camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     if (status == CAMBER_EXIT_DONE && session->options->dump)

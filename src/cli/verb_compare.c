@@ -41,7 +41,7 @@ static json_t *row_json(const camber_comparison *c, const camber_comparison_row 
     return object;
 }
 
-/* Adds where to look: the pixel of each method's maximum error. */
+/* Adds the position of the pixel with each method's maximum error. */
 static void put_places(const camber_comparison *c, const camber_comparison_row *row, json_t *methods) {
     for (int i = 0; i < CAMBER_METHODS; i++) {
         const json_int_t at = (json_int_t)row->max_at[i], width = (json_int_t)c->networks.width;
@@ -115,7 +115,7 @@ static void put_number(double value, int decimals, int width) {
     printf("%*s", width, text);
 }
 
-/* The average of a count has a decimal if it is small. */
+/* The average of a count is printed with decimals if it is small. */
 static int decimals_of(const camber_metric_info *info, double value) {
     return info->decimals == 0 && value != floor(value) && value < 1000 ? 1 : info->decimals;
 }
@@ -134,7 +134,7 @@ static int name_width(const camber_comparison *c) {
     return width < NAME_COLUMNS ? (int)width : NAME_COLUMNS;
 }
 
-/* Row i: a network, or behind them their average if there are several. */
+/* Returns row i: a network, or after the networks their average, if there are several. */
 static const camber_comparison_row *row_at(const camber_comparison *c, size_t i) {
     return i < c->networks.count ? &c->rows[i] : &c->average;
 }
@@ -159,7 +159,7 @@ static void print_figures(const camber_comparison *c, int width) {
          "degrees");
 }
 
-/* Prints metrics first to end - 1: a row for each network and method, and then the ratios. */
+/* Prints metrics first to end - 1: one row for each network and method, then the ratios. */
 static void print_metrics(const camber_comparison *c, int width, int first, int end) {
     printf("\n%-*s  %-7s", width, "network", "method");
     for (int k = first; k < end; k++)

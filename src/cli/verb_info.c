@@ -1,5 +1,5 @@
-/* Runs `camber info`: prints devices, GL back ends, the path by which buffers are shared, versions and formats, as text
- * or JSON. A missing part is no failure: the reason is printed in its place. */
+/* Runs `camber info`: prints devices, GL back ends, how buffers are shared, versions and formats, as text or JSON. A
+ * missing part is not a failure: the reason is printed in its place. */
 #include "cli/verbs.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static json_t *device_json(const camber_device_info *info) {
                      (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing);
 }
 
-/* Takes the message of the last failure, so that it is not printed again. */
+/* Takes the message of the last failure out of the report, so that it is not printed again. */
 static json_t *take_error(camber_report *report, camber_status status) {
     json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_get_name(status));
     report->error[0] = 0;
@@ -27,10 +27,10 @@ static void add_devices(camber_session *session, json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "devices", list);
     const camber_device_info *info = NULL;
-    camber_status status = camber_device_list(session->context, 0, &info);
+    camber_status status = camber_device_list(session->context, NULL, 0, &info);
     for (size_t i = 1; status == CAMBER_OK && info; i++) {
         json_array_append_new(list, device_json(info));
-        status = camber_device_list(session->context, i, &info);
+        status = camber_device_list(session->context, NULL, i, &info);
     }
     if (status != CAMBER_OK)
         json_object_set_new(object, "devices_error", take_error(session->report, status));
@@ -64,7 +64,7 @@ static void add_backends(camber_session *session, json_t *object) {
     }
 }
 
-/* Adds what a picture would be drawn with, and why. */
+/* Adds the rasterizer that would draw a picture, and why. */
 static void add_choice(camber_session *session, json_t *object) {
     const camber_status status = camber_session_open(session, CAMBER_NEEDS_RENDERER);
     camber_session_describe(session, object);
@@ -161,7 +161,7 @@ int camber_verb_info(camber_session *session) {
     json_t *object = json_pack("{s:s}", "camber", camber_version());
     if (!object)
         return camber_report_json(session->report, NULL);
-    add_formats(object); /* first: libraries load faster before drivers have threads */
+    add_formats(object); /* must come first, because libraries load faster before drivers have started threads */
     add_devices(session, object);
     add_backends(session, object);
     add_choice(session, object);

@@ -1,5 +1,5 @@
-/* Runs `camber render`: reads the input, projects and tessellates it, and draws it into a PNG. A summary of counts and
- * times goes to standard error, or to standard output as JSON. */
+/* Runs `camber render`: reads the input, projects and tessellates it, and draws it into a picture. A summary of counts
+ * and times goes to standard error, or to standard output as JSON. */
 #include "cli/picture.h"
 #include "cli/verbs.h"
 
@@ -16,8 +16,8 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* The time that belongs to no stage: libraries, the device and its kernels, as far as they take longer than reading,
- * which goes on beside. Together with the stages it is the whole. */
+/* The time that belongs to no stage: loading libraries, and opening the device and its kernels while files are read, as
+ * far as it takes longer than reading. Together with the stages it is the whole. */
 static double start_ms(const job *j) {
     const camber_frame_stats *frame = &j->times.frame;
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - frame->draw_ms - frame->read_ms -
@@ -131,7 +131,7 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
                       camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
 }
 
-/* Prints how many rings were not as they should be; mostly none is. */
+/* Prints how many rings were invalid; usually none is. */
 static void print_rings(const job *j) {
     const camber_features_stats read = camber_features_get_stats(j->input.features);
     const struct {

@@ -1,9 +1,9 @@
 /* Runs `camber serve`: listens, reads the input, and then waits for signals while the server's threads draw.
  *
- * SIGHUP reads input and style again into a set of their own, which takes the place of the one before when it is whole.
- * What cannot be read leaves everything as it was: it is read on a thread of its own, which is left to itself where its
- * reader does not end, and both sets share the memory that the run may have. SIGTERM ends what is begun, and the run;
- * so does a device that is lost. */
+ * SIGHUP reads input and style again into a second set, which replaces the first when it is complete. If reading fails,
+ * nothing changes. The reading has a thread of its own, which is abandoned if its reader does not end. Both sets share
+ * the memory that the run may have. SIGTERM finishes the requests in progress and ends the run; so does the loss of the
+ * device. */
 #define _XOPEN_SOURCE 700
 
 #include "cli/input.h"
@@ -33,29 +33,29 @@ int camber_verb_serve(camber_session *session) {
 #include <string.h>
 #include <sys/stat.h>
 
-/* So many pictures one after the other that the device fails to draw say that it is lost. */
+/* If the device fails to draw LOST_PICTURES pictures in a row, it counts as lost. */
 enum { DEEPEST_ZOOM = 22, LOOK_MS = 200, BEAT_MS = 10000, LOST_PICTURES = 3 };
-/* A reading that is given up ends when it next needs memory. One whose library does not get there is left to itself. */
+/* A reading that is given up ends when it next needs memory. If its library never does, the thread is abandoned. */
 enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
 
 typedef struct reading reading;
 typedef struct rereading rereading;
 
-/* Signals ask for these, and changes of a style that is edited. */
+/* Requests of signals, and of changes to the style that is edited. */
 typedef struct wishes {
     pthread_mutex_t mutex;
     pthread_cond_t changed;
     bool reload, stop;
-    bool begins; /* the input is read for the first time: there is nothing to end yet */
+    bool begins; /* the input is being read for the first time, so there is nothing to finish yet */
     camber_guard *guard;
-    const char *edited;  /* a file that is watched. NULL: none */
-    struct stat about;   /* of it, as it was read last */
-    double beat_ms;      /* when those who listen were looked for */
-    int failed_pictures; /* one after the other. The thread that draws counts them */
-    bool lost;           /* the device is: a wish to stop */
-    bool given_up;       /* the reading that goes on takes too much time or memory */
-    reading *shown;      /* NULL: none yet */
-    rereading *left;     /* one that was given up and had not ended then. NULL: none */
+    const char *edited;  /* a file that is watched; NULL: none */
+    struct stat about;   /* its state when it was last read */
+    double beat_ms;      /* when listeners were last checked */
+    int failed_pictures; /* failures in a row, counted by the thread that draws */
+    bool lost;           /* the device is lost: a reason to stop */
+    bool given_up;       /* the current reading takes too much time or memory */
+    reading *current;    /* what is served; NULL: nothing yet */
+    rereading *left;     /* a reading that was given up and has not ended yet; NULL: none */
 } wishes;
 
 /* One reading of the input. The first one is on the verb's session, and later ones have sessions of their own. */
@@ -66,17 +66,17 @@ struct reading {
     camber_style *dark;
     camber_tiles_reader *reader;
     json_t *about; /* an archive's metadata */
-    camber_shown shown;
+    camber_server_content content;
     char name[256];
     wishes *wishes;
 };
 
-/* A reading on a thread of its own. The wishes' mutex guards what both threads use. */
+/* A reading on its own thread. The mutex of the wishes guards what both threads use. */
 struct rereading {
     reading *it;
     pthread_t thread;
     int status;
-    bool done, is_left; /* is_left: the thread closes the reading */
+    bool done, is_left; /* is_left: the thread itself closes the reading */
 };
 
 /* ---- Signals ---- */
@@ -102,7 +102,7 @@ static void set_heed(camber_session *session, wishes *w) {
     camber_guard_unlock(session->guard);
 }
 
-/* Whether the file that is edited was saved since it was looked at last. One that is not there is being saved. */
+/* Whether the edited file has been saved since it was last checked. If it is missing, it is just being saved. */
 static bool was_saved(wishes *w) {
     struct stat about;
     if (!w->edited || stat(w->edited, &about) != 0)
@@ -114,13 +114,13 @@ static bool was_saved(wishes *w) {
     return saved;
 }
 
-/* The mutex is held. */
+/* The caller holds the mutex. */
 static void wait_for_ms(wishes *w, long ms) {
     const struct timespec end = camber_time_in(ms);
     (void)pthread_cond_timedwait(&w->changed, &w->mutex, &end);
 }
 
-/* Waits a moment, or for a signal. The mutex is held. */
+/* Waits a moment, or for a signal. The caller holds the mutex. */
 static void wait_a_moment(wishes *w) {
     if (w->edited)
         wait_for_ms(w, LOOK_MS);
@@ -128,7 +128,7 @@ static void wait_a_moment(wishes *w) {
         pthread_cond_wait(&w->changed, &w->mutex);
 }
 
-/* Waits for a signal or a change. Returns whether to read again; false: to stop. */
+/* Waits for a signal or a change. Returns true if the input must be read again, and false if the server must stop. */
 static bool wait_for_wish(wishes *w, camber_server *server) {
     pthread_mutex_lock(&w->mutex);
     while (!w->stop && !w->reload) {
@@ -158,7 +158,7 @@ static void close_reading(void *owner) {
     free(it);
 }
 
-/* Whether a path is an archive of tiles. One of vector tiles is drawn, like any map: read_archive finds that out. */
+/* Whether a path is an archive of tiles. An archive of vector tiles is drawn like a map; read_archive detects that. */
 static bool is_archive(const camber_options *options) {
     const char *path = options->input_count ? options->inputs[0] : "";
     struct stat about;
@@ -169,7 +169,7 @@ static bool is_archive(const camber_options *options) {
     return options->input_count == 1 && !drawn && (named || folder);
 }
 
-/* The file that is shown; a style, where its own sources are. */
+/* The file that is shown: the input, or the style if its own sources are drawn. */
 static const char *source_of(const camber_options *options) {
     return options->input_count ? options->inputs[0] : options->style;
 }
@@ -184,7 +184,7 @@ static void find_name(reading *it) {
     json_t *text = options->name ? json_string(options->name) : own ? json_string(own) : json_stringn(name, length);
     snprintf(it->name, sizeof it->name, "%s", text ? json_string_value(text) : "map");
     json_decref(text);
-    it->shown.name = it->name;
+    it->content.name = it->name;
 }
 
 static void find_time(reading *it) {
@@ -192,8 +192,8 @@ static void find_time(reading *it) {
     struct stat about;
     for (size_t i = 0; i <= options->input_count; i++) {
         const char *path = i < options->input_count ? options->inputs[i] : options->style;
-        if (path && stat(path, &about) == 0 && about.st_mtime > it->shown.modified)
-            it->shown.modified = about.st_mtime;
+        if (path && stat(path, &about) == 0 && about.st_mtime > it->content.modified)
+            it->content.modified = about.st_mtime;
     }
 }
 
@@ -211,7 +211,8 @@ static void tell_picture(void *owner, camber_status status) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-/* Warns of a map in which nothing is drawn at any zoom. A style's own sources are read as they are asked for. */
+/* Warns if nothing of the map is drawn at any zoom. A style's own sources are read on demand, so they are not
+ * checked. */
 static void tell_nothing(const reading *it) {
     char why[1024];
     camber_input_say_missing(&it->input);
@@ -229,18 +230,18 @@ static int read_map(reading *it) {
     if (status != CAMBER_EXIT_DONE)
         return status;
     tell_nothing(it);
-    it->shown.chart = (camber_chart){.features = it->input.features,
-                                     .styles = {it->input.style, it->dark},
-                                     .simplify_px = options->simplify_px,
-                                     .coverage = (camber_coverage)options->coverage,
-                                     .threads = options->threads,
-                                     .drawn = tell_picture,
-                                     .close = close_reading,
-                                     .owner = it};
-    it->shown.is_dark = options->theme == CAMBER_THEME_DARK;
-    it->shown.attribution = it->input.attribution;
-    it->shown.has_bounds = camber_features_get_drawn_bounds(it->input.features, 0, DEEPEST_ZOOM, it->shown.bounds);
-    it->shown.max_zoom = DEEPEST_ZOOM;
+    it->content.source = (camber_map_source){.features = it->input.features,
+                                             .styles = {it->input.style, it->dark},
+                                             .simplify_px = options->simplify_px,
+                                             .coverage = (camber_coverage)options->coverage,
+                                             .threads = options->threads,
+                                             .drawn = tell_picture,
+                                             .close = close_reading,
+                                             .owner = it};
+    it->content.is_dark = options->theme == CAMBER_THEME_DARK;
+    it->content.attribution = it->input.attribution;
+    it->content.has_bounds = camber_features_get_drawn_bounds(it->input.features, 0, DEEPEST_ZOOM, it->content.bounds);
+    it->content.max_zoom = DEEPEST_ZOOM;
     return CAMBER_EXIT_DONE;
 }
 
@@ -265,20 +266,20 @@ static int read_archive(reading *it) {
     }
     it->about = json_loads(info->metadata, 0, NULL);
     const char *attribution = json_string_value(json_object_get(it->about, "attribution"));
-    it->shown.attribution = options->attribution ? options->attribution : attribution;
+    it->content.attribution = options->attribution ? options->attribution : attribution;
     const char *theme = json_string_value(json_object_get(it->about, "theme"));
-    it->shown.is_dark = theme && strcmp(theme, "dark") == 0;
-    it->shown.reader = it->reader;
-    it->shown.metadata = info->metadata;
-    it->shown.tileset = type == CAMBER_ROUTE_GLB && strcmp(info->format, "folder") == 0 ? options->inputs[0] : NULL;
-    it->shown.min_zoom = info->min_zoom;
-    it->shown.max_zoom = info->max_zoom;
-    it->shown.has_bounds = info->has_bounds;
-    it->shown.has_center = info->has_center;
-    memcpy(it->shown.bounds, info->bounds, sizeof info->bounds);
-    memcpy(it->shown.center, info->center, sizeof info->center);
-    it->shown.close = close_reading;
-    it->shown.owner = it;
+    it->content.is_dark = theme && strcmp(theme, "dark") == 0;
+    it->content.reader = it->reader;
+    it->content.metadata = info->metadata;
+    it->content.tileset = type == CAMBER_ROUTE_GLB && strcmp(info->format, "folder") == 0 ? options->inputs[0] : NULL;
+    it->content.min_zoom = info->min_zoom;
+    it->content.max_zoom = info->max_zoom;
+    it->content.has_bounds = info->has_bounds;
+    it->content.has_center = info->has_center;
+    memcpy(it->content.bounds, info->bounds, sizeof info->bounds);
+    memcpy(it->content.center, info->center, sizeof info->center);
+    it->content.close = close_reading;
+    it->content.owner = it;
     return CAMBER_EXIT_DONE;
 }
 
@@ -296,14 +297,14 @@ static int read_input(reading *it) {
 
 /* ---- Reading again ---- */
 
-/* Small blocks that were freed stay with the process otherwise, and count as its memory. */
+/* glibc keeps small freed blocks in the process otherwise, where they count as its memory. */
 static void give_memory_back(void) {
 #ifdef __GLIBC__
     malloc_trim(0);
 #endif
 }
 
-/* The guard is locked. */
+/* The caller holds the guard's lock. */
 static void give_up(void *user) {
     wishes *w = user;
     pthread_mutex_lock(&w->mutex);
@@ -312,17 +313,17 @@ static void give_up(void *user) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-/* Shares the verb's memory with what is shown. */
+/* Shares the verb's memory with the content that is served meanwhile. */
 static void begin_again(reading *it, const camber_session *verb) {
-    const reading *shown = it->wishes->shown;
+    const reading *current = it->wishes->current;
     it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose, .keeps = true};
     it->own = (camber_session){.options = verb->options,
                                .report = &it->report,
                                .guard = verb->guard,
                                .whole = verb->budget,
                                .watch = {.give_up = give_up, .give_up_user = it->wishes}};
-    if (shown && shown->session == &shown->own)
-        it->own.beside_bytes = camber_budget_get_held_bytes(shown->own.budget);
+    if (current && current->session == &current->own)
+        it->own.beside_bytes = camber_budget_get_held_bytes(current->own.budget);
     it->session = &it->own;
 }
 
@@ -345,7 +346,7 @@ static void *read_beside(void *user) {
     return NULL;
 }
 
-/* Waits until it is read, or given up and ended. false: it goes on. */
+/* Waits until the reading has finished, or has been given up and has ended. Returns false if it is still running. */
 static bool wait_for_reading(wishes *w, rereading *r) {
     pthread_mutex_lock(&w->mutex);
     while (!r->done && !w->given_up && !w->stop)
@@ -360,7 +361,7 @@ static bool wait_for_reading(wishes *w, rereading *r) {
     return !r->is_left;
 }
 
-/* false: a reading that was left goes on still. */
+/* Returns false if an abandoned reading is still running. */
 static bool join_left(wishes *w) {
     pthread_mutex_lock(&w->mutex);
     const bool done = !w->left || w->left->done;
@@ -373,7 +374,7 @@ static bool join_left(wishes *w) {
     return true;
 }
 
-/* Writes a line that says why a reading failed. */
+/* Writes a line that explains why a reading failed. */
 static void explain(const reading *it, bool given_up, int status, char *error, size_t error_size) {
     const char *why = given_up ? it->own.watch.line : it->report.error;
     const bool memory = !given_up && status == CAMBER_EXIT_INTERNAL;
@@ -381,7 +382,7 @@ static void explain(const reading *it, bool given_up, int status, char *error, s
              (int)error_size - 100, why, memory ? " (--memory)" : "");
 }
 
-/* Reads on a thread of its own. error gets what is wrong where it fails. */
+/* Reads on a thread of its own. If it fails, error receives the reason. */
 static int read_again(const camber_session *verb, reading *it, char *error, size_t error_size) {
     wishes *w = it->wishes;
     begin_again(it, verb);
@@ -418,16 +419,16 @@ static int read_again(const camber_session *verb, reading *it, char *error, size
         give_memory_back();
         return status;
     }
-    it->report.keeps = false; /* pictures that fail are told */
+    it->report.keeps = false; /* from now on failures of pictures are printed */
     camber_budget_allow(it->own.budget, camber_budget_get_most_bytes(verb->budget));
     return CAMBER_EXIT_DONE;
 }
 
-/* A hash of what tiles are drawn of, by which a folder keeps them. */
-static uint64_t hash_input(const camber_chart *chart) {
-    const double numbers[] = {chart->simplify_px, (double)chart->coverage,
-                              (double)camber_renderer_get_rasterizer(chart->renderer)};
-    uint64_t hash = camber_features_get_hash(chart->features);
+/* Returns a hash of everything that tiles are drawn from, by which a folder identifies them. */
+static uint64_t hash_input(const camber_map_source *source) {
+    const double numbers[] = {source->simplify_px, (double)source->coverage,
+                              (double)camber_renderer_get_rasterizer(source->renderer)};
+    uint64_t hash = camber_features_get_hash(source->features);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         uint64_t word;
         memcpy(&word, numbers + i, sizeof word);
@@ -436,7 +437,7 @@ static uint64_t hash_input(const camber_chart *chart) {
     return hash;
 }
 
-/* Pictures need a renderer, which opens beside the first reading. */
+/* Pictures need a renderer, which is opened during the first reading. */
 static int show(camber_session *verb, camber_server *server, wishes *w, bool first) {
     reading *it = calloc(1, sizeof *it);
     char error[1024] = "";
@@ -455,24 +456,24 @@ static int show(camber_session *verb, camber_server *server, wishes *w, bool fir
     }
     if (!it->reader)
         status = camber_session_need(verb, CAMBER_NEEDS_RENDERER);
-    it->shown.chart.renderer = verb->renderer;
-    it->shown.chart.device = verb->device;
+    it->content.source.renderer = verb->renderer;
+    it->content.source.device = verb->device;
     if (status == CAMBER_EXIT_DONE && !it->reader && verb->options->cache_dir && !verb->options->edit)
-        it->shown.chart.input = hash_input(&it->shown.chart);
-    if (status == CAMBER_EXIT_DONE && !camber_server_show(server, &it->shown))
+        it->content.source.input = hash_input(&it->content.source);
+    if (status == CAMBER_EXIT_DONE && !camber_server_show(server, &it->content))
         status = camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
     if (status != CAMBER_EXIT_DONE) {
         close_reading(it);
         return status;
     }
-    w->shown = it;
+    w->current = it;
     camber_server_tell(server, NULL);
     return CAMBER_EXIT_DONE;
 }
 
 /* ---- Serving ---- */
 
-/* Several threads tell lines; one call of stdio each keeps them whole. */
+/* Called by several threads; a single call of stdio keeps each line whole. */
 static void tell_request(void *user, const char *line) {
     (void)user;
     fprintf(stderr, "%s\n", line);
@@ -507,7 +508,7 @@ static int listen_there(camber_session *session, camber_server **server, char ur
     const char *failed = NULL;
     const int cause = camber_server_create(&desc, server, &failed);
     if (cause == EAGAIN)
-        failed = NULL; /* it is not the address */
+        failed = NULL; /* the address is not the cause */
     if (cause == EINVAL && failed)
         return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
                                   "%s: not an address; give a numeric one, as in 127.0.0.1:8080 or [::1]:8080", failed);
@@ -528,7 +529,7 @@ static int listen_there(camber_session *session, camber_server **server, char ur
     return CAMBER_EXIT_DONE;
 }
 
-/* Whoever listens at all addresses has clients to which that address says nothing. */
+/* A server that listens on all addresses has clients on other machines, which cannot use 127.0.0.1. */
 static void tell_public_url(camber_session *session, const camber_server *server) {
     const char *address = camber_server_get_address(server);
     if (!session->options->public_url && (strncmp(address, "0.0.0.0:", 8) == 0 || strncmp(address, "[::]:", 5) == 0))
@@ -538,7 +539,7 @@ static void tell_public_url(camber_session *session, const camber_server *server
             camber_server_get_url(server));
 }
 
-/* Programs get the addresses as soon as it listens: they ask /health when it serves. */
+/* Programs get the addresses as soon as the server listens; they ask /health whether it serves. */
 static int announce(camber_session *session, const camber_server *server) {
     if (!session->options->json)
         return CAMBER_EXIT_DONE;
@@ -593,7 +594,7 @@ int camber_verb_serve(camber_session *session) {
     char url[256];
     pthread_mutex_init(&w.mutex, NULL);
     pthread_cond_init(&w.changed, NULL);
-    (void)was_saved(&w); /* before it is read: a change while it is being read counts */
+    (void)was_saved(&w); /* before reading, so that a change during the reading counts */
     session->opens_beside = true;
     set_heed(session, &w);
     int status = listen_there(session, &server, url);

@@ -1,5 +1,5 @@
-/* Runs `camber tessellate`: reads the input, projects and tessellates it, and writes the mesh with its paints as a
- * binary glTF. */
+/* Runs `camber tessellate`: reads the input, projects and tessellates it, and writes the mesh with its paints as binary
+ * glTF. */
 #include "camber_proof.h"
 #include "cli/input.h"
 #include "cli/verbs.h"
@@ -26,7 +26,7 @@ static double start_ms(const job *j) {
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
 }
 
-/* A row gets the paint of the topmost pass that draws it: the fill, if there is a casing. */
+/* A row gets the paint of the topmost pass that draws it: the fill's if there is a casing. */
 static bool gather_paints(job *j, size_t count) {
     j->paints = calloc(count ? count : 1, sizeof *j->paints);
     if (!j->paints)
@@ -90,7 +90,7 @@ static int run(job *j) {
 
 static int print_json(const job *j) {
     const camber_session *session = j->session;
-    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
+    (void)camber_scene_project(j->input.scene); /* counts are 0 if memory for them is exhausted */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const camber_mesh_info *mesh = &j->data.info;
     json_t *object = json_pack(
@@ -121,7 +121,7 @@ static int print_json(const job *j) {
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
-    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
+    (void)camber_scene_project(j->input.scene); /* counts are 0 if memory for them is exhausted */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
     const size_t triangles = j->data.info.triangle_count;

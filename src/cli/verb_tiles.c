@@ -1,4 +1,4 @@
-/* The verb tiles: shows, verifies and merges archives of tiles; verb_tiles_draw.c draws them. */
+/* The actions of the verb tiles that show, verify and merge archives. verb_tiles_draw.c draws tiles. */
 #include "cli/verbs.h"
 
 #ifdef CAMBER_MAP
@@ -38,7 +38,7 @@ static int show_json(camber_report *report, const camber_tiles_info *info) {
     return camber_report_json(report, object);
 }
 
-/* Texts of a file may hold anything: control characters do not reach the terminal. */
+/* Texts in a file may contain anything; control characters are not sent to the terminal. */
 static void print_text(const char *name, const char *text) {
     printf("%-12s", name);
     for (; *text; text++)

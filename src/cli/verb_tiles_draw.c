@@ -26,17 +26,17 @@ typedef struct job {
     camber_tiles_place *places;
     size_t place_count;
     camber_tiles_engine *engine;
-    camber_tiles_schedule *schedule; /* NULL: the engine looks where lines are */
+    camber_tiles_schedule *schedule; /* NULL: the engine finds where lines are */
     camber_tiles_files files;
-    bool is_left; /* of an earlier run, which was cut off: what it had finished */
-    bool begun;   /* the archive is this run's */
+    bool is_left; /* the archive exists, with the finished units of an interrupted run */
+    bool begun;   /* the archive has been started by this run */
     camber_tiles_stats stats;
     double load_ms, total_ms;
 } job;
 
-/* ---- The tiles to be drawn ---- */
+/* ---- The tiles to draw ---- */
 
-/* Polygons are read as outlines, by a style that asks for them alone. */
+/* Polygons are read as outlines, with a style that selects only them. */
 static int read_region(job *j) {
     static const char style[] = "{\"version\":8,\"sources\":{},\"layers\":[{\"id\":\"region\",\"type\":\"line\","
                                 "\"filter\":[\"==\",[\"geometry-type\"],\"Polygon\"]}]}";
@@ -71,7 +71,7 @@ static int add_line(job *j, const char *path, char *line, size_t number) {
     return CAMBER_EXIT_DONE;
 }
 
-/* Takes the tiles of --tile, and those of the file that --renew names. */
+/* Takes the tiles given by --tile, and those in the file of --renew. */
 static int read_places(job *j) {
     const camber_options *options = j->session->options;
     const char *path = options->renewed;
@@ -98,7 +98,7 @@ static int read_places(job *j) {
     return status;
 }
 
-/* The name of the archive without its folder, its ending and its part. */
+/* Sets the name of the archive: the output without its folder, extension and shard. */
 static void find_name(job *j) {
     const camber_options *options = j->session->options;
     size_t length = strlen(options->output);
@@ -167,7 +167,7 @@ static camber_status read_for_part(void *user, camber_features *features, bool *
     return status == CAMBER_OK ? camber_tiles_schedule_load(j->schedule, features, done) : status;
 }
 
-/* Reads the schedule, or looks whether it can be written. */
+/* Reads the schedule, or checks that it can be written. */
 static int open_schedule(job *j) {
     camber_session *session = j->session;
     const camber_options *options = session->options;
@@ -194,8 +194,8 @@ static int open_engine(job *j) {
     return camber_report_status(session->report, camber_tiles_engine_create(j->input.features, &desc, &j->engine));
 }
 
-/* Tells of what a run that ends early has finished: it stays. Takes no signal. A terminal or a pipe that takes nothing
- * must not keep the process from ending. */
+/* If a run ends early, reports that its finished tiles are kept. It does not handle the signal itself. A terminal or
+ * pipe that accepts no output must not keep the process from ending. */
 static bool tell_kept(void *user, int number) {
     const job *j = user;
     struct stat about;
@@ -216,7 +216,7 @@ static void heed_signals(job *j, bool heeds) {
     camber_guard_unlock(guard);
 }
 
-/* The archive is this run's alone. What an earlier one has left goes. */
+/* From now on the archive belongs to this run. The remains of an earlier run are removed. */
 static void begin(void *user) {
     job *j = user;
     if (j->is_left)
@@ -228,7 +228,8 @@ static void begin(void *user) {
     heed_signals(j, true);
 }
 
-/* Whether points take so much memory that they go when they can, for which PMTiles are copied at the end. */
+/* Whether points take so much memory that they should be freed as early as possible, although PMTiles must then be
+ * copied at the end. */
 static bool has_many_points(const job *j) {
     enum { MANY_POINTS = 1 << 23 };
     return camber_features_get_stats(j->input.features).points > MANY_POINTS;
@@ -266,7 +267,7 @@ static camber_tiles_draw_desc describe(job *j) {
                                     .user = j};
 }
 
-/* West and east changed places, most likely: that is the world without the box that was meant. */
+/* West and east have probably been swapped: the result is the world without the intended box. */
 static void warn_wide(const job *j) {
     const camber_view_desc *view = &j->session->options->view;
     const double width = view->east + 360.0 - view->west;
@@ -283,7 +284,7 @@ static int draw(job *j) {
     if (status == CAMBER_EXIT_DONE)
         status = read_places(j);
     if (status == CAMBER_EXIT_DONE && session->options->renewed && j->place_count == 0)
-        return CAMBER_EXIT_DONE; /* no tile has expired */
+        return CAMBER_EXIT_DONE; /* the list of tiles is empty */
     if (status == CAMBER_EXIT_DONE)
         warn_wide(j);
     if (status != CAMBER_EXIT_DONE)
@@ -372,7 +373,7 @@ static int print_json(const job *j) {
     return camber_report_json(j->session->report, object);
 }
 
-/* A part of several may well have nothing. */
+/* Warns if there are no tiles. One shard of several may well have none. */
 static void warn_empty(const job *j) {
     const camber_options *options = j->session->options;
     if (j->stats.done || j->stats.units || j->shard.count || options->renewed)
@@ -386,14 +387,15 @@ static void warn_empty(const job *j) {
                                            : "");
 }
 
-/* Tiles of --renew that the archive is not to get. */
+/* Warns of tiles in the list of --renew that are outside the archive. */
 static void warn_left_out(const job *j) {
     const uint64_t count = j->stats.left_out;
     if (count)
         camber_report_warn(j->session->report,
-                           "%s: %llu tile%s of the list lie%s outside its zooms and bounds, and left out (--min-zoom, "
-                           "--max-zoom and --bbox give others)",
-                           j->output, (unsigned long long)count, camber_plural((size_t)count), count == 1 ? "s" : "");
+                           "%s: %llu tile%s of the list %s outside its zooms and bounds, and left out; to include such "
+                           "tiles, give --min-zoom, --max-zoom or --bbox",
+                           j->output, (unsigned long long)count, camber_plural((size_t)count),
+                           count == 1 ? "is" : "are");
 }
 
 static void print_text(const job *j) {
@@ -406,7 +408,7 @@ static void print_text(const job *j) {
     }
     const bool dry = j->session->options->dry_run;
     char size[64] = "";
-    if (!dry || !j->session->options->schedule) /* which tries no picture */
+    if (!dry || !j->session->options->schedule) /* a dry run for a schedule draws no samples */
         snprintf(size, sizeof size, ", %s%.1f MB", dry ? "about " : "", (double)stats->bytes / 1e6);
     camber_report_say(report, "%s: %s%llu tile%s in %llu metatile%s, %llu points%s", j->output,
                       dry ? "would have " : "", (unsigned long long)stats->tiles, camber_plural((size_t)stats->tiles),

@@ -1,5 +1,5 @@
-/* camber validate: every check on everything that is here. The checks are src/validate's; this file reads what they are
- * to check, and prints what they find. */
+/* Runs `camber validate`: every check on all devices and back ends of the machine. The checks are in src/validate; this
+ * file reads their input, and prints their results. */
 #include "cli/failure_folder.h"
 #include "cli/input.h"
 #include "cli/results_text.h"
@@ -16,7 +16,7 @@ typedef struct run {
     camber_validation validation;
 } run;
 
-/* ---- Answers to the checks ---- */
+/* ---- Callbacks of the checks ---- */
 
 static void take_message(void *user, char *text, size_t size) {
     const run *r = user;
@@ -39,7 +39,7 @@ static void show_progress(void *user, double fraction) {
 
 static camber_validation_desc describe(run *r) {
     const camber_options *options = r->session->options;
-    const bool bars = options->json || !isatty(STDOUT_FILENO); /* lines of TAP are progress enough */
+    const bool bars = options->json || !isatty(STDOUT_FILENO); /* lines of TAP already show the progress */
     return (camber_validation_desc){
         .context = r->session->context,
         .host = {.take_message = take_message,
@@ -107,7 +107,7 @@ static bool is_given(const camber_options *options) {
     return options->polylines || options->input_count || options->style;
 }
 
-/* Opens what the options name, so that what forbids it is known before the work. */
+/* Opens what the options name, so that errors show before the work starts. */
 static int prepare(run *r) {
     camber_session *session = r->session;
     const camber_options *options = session->options;
@@ -145,7 +145,7 @@ static int check(run *r) {
     return status;
 }
 
-/* Returns CAMBER_EXIT_CHECK where a check failed. */
+/* Returns CAMBER_EXIT_CHECK if a check failed. */
 static int print(run *r) {
     camber_session *session = r->session;
     const camber_results *results = &r->validation.results;

@@ -1,4 +1,4 @@
-/* The verbs. Each returns an exit status, its line printed. */
+/* The verbs. Each returns an exit status; on failure a line has been printed. */
 #ifndef CAMBER_CLI_VERBS_H
 #define CAMBER_CLI_VERBS_H
 

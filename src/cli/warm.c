@@ -1,6 +1,6 @@
-/* Runs info --warm: compiles and saves every kernel before anybody waits for it. PoCL compiles one kernel at a time in
- * a process, so several processes compile a share each. If one fails, this process compiles its share: it goes through
- * all kernels at the end, and prints the result. */
+/* Runs info --warm: compiles and saves every kernel in advance. PoCL compiles one kernel at a time in a process, so
+ * several processes compile a share of the kernels each. If one of them fails, this process compiles its share: it goes
+ * through all kernels at the end, and prints the result. */
 #define _GNU_SOURCE /* sched_getaffinity */
 
 #include "cli/verbs.h"
@@ -21,22 +21,22 @@ static unsigned count_processes(const camber_options *options) {
     return wanted < PROCESSES_MAX ? wanted : PROCESSES_MAX;
 }
 
-static camber_status warm_share(camber_session *session, unsigned share, unsigned shares, camber_warmed *warmed) {
+static camber_status warm_share(camber_session *session, unsigned share, unsigned shares, camber_warm_result *result) {
     const camber_status status = camber_session_open(session, CAMBER_NEEDS_DEVICE);
-    return status == CAMBER_OK ? camber_device_warm(session->device, share, shares, warmed) : status;
+    return status == CAMBER_OK ? camber_device_warm(session->device, share, shares, result) : status;
 }
 
 static pid_t start_share(camber_session *session, unsigned share, unsigned shares) {
-    camber_warmed warmed;
+    camber_warm_result result;
     const pid_t process = fork();
     if (process != 0)
         return process;
     pthread_sigmask(SIG_SETMASK, &session->guard->before, NULL);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    _exit(warm_share(session, share, shares, &warmed) == CAMBER_OK ? 0 : 1);
+    _exit(warm_share(session, share, shares, &result) == CAMBER_OK ? 0 : 1);
 }
 
-/* Must run before this process opens a device: a fork would not have the threads of its driver. */
+/* Must run before this process opens a device, because a forked process would not have the threads of its driver. */
 static void warm_side_by_side(camber_session *session) {
     pid_t processes[PROCESSES_MAX];
     const unsigned shares = count_processes(session->options);
@@ -51,34 +51,34 @@ static void warm_side_by_side(camber_session *session) {
     camber_report_erase_bar(session->report);
 }
 
-static json_t *describe(camber_session *session, const camber_warmed *warmed, double ms) {
+static json_t *describe(camber_session *session, const camber_warm_result *result, double ms) {
     json_t *object = json_pack("{s:s, s:o, s:o, s:o, s:o}", "camber", camber_version(), "folder",
-                               camber_json_text(warmed->folder), "programs", camber_json_count(warmed->programs),
-                               "compiled", camber_json_count(warmed->built), "ms", camber_json_ms(ms));
+                               camber_json_text(result->folder), "programs", camber_json_count(result->programs),
+                               "compiled", camber_json_count(result->built), "ms", camber_json_ms(ms));
     if (object)
         camber_session_describe(session, object);
     return object;
 }
 
 int camber_warm(camber_session *session) {
-    camber_warmed warmed;
+    camber_warm_result result;
     const double begin_ms = camber_now_ms();
     warm_side_by_side(session);
-    const camber_status status = warm_share(session, 0, 1, &warmed);
+    const camber_status status = warm_share(session, 0, 1, &result);
     if (status != CAMBER_OK)
         return camber_report_status(session->report, status);
-    if (!warmed.folder[0])
+    if (!result.folder[0])
         return camber_report_fail(
             session->report, CAMBER_EXIT_CREATE,
             "kernels: there is no writable folder to keep them in; set XDG_CACHE_HOME or CAMBER_KERNELS to one");
-    if (warmed.kept < warmed.programs)
+    if (result.kept < result.programs)
         return camber_report_fail(session->report, CAMBER_EXIT_IO,
-                                  "%s: %zu of %zu programs could not be saved; free some space", warmed.folder,
-                                  warmed.programs - warmed.kept, warmed.programs);
+                                  "%s: %zu of %zu programs could not be saved; free some space", result.folder,
+                                  result.programs - result.kept, result.programs);
     const double ms = camber_now_ms() - begin_ms;
     if (session->options->json)
-        return camber_report_json(session->report, describe(session, &warmed, ms));
-    printf("kernels   %zu programs for %s, ready in %.1f s\n          %s\n", warmed.programs,
-           camber_device_get_info(session->device).name, ms / 1e3, warmed.folder);
+        return camber_report_json(session->report, describe(session, &result, ms));
+    printf("kernels   %zu programs for %s, ready in %.1f s\n          %s\n", result.programs,
+           camber_device_get_info(session->device).name, ms / 1e3, result.folder);
     return camber_report_flush(session->report);
 }

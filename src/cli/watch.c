@@ -1,6 +1,7 @@
-/* Ends a run, or a reading that a run can do without, which takes too much memory, or whose reader works too long
- * without a result. Libraries such as GDAL cannot be stopped from within a call, so the guard's thread looks now and
- * then and ends the process. Our own memory is counted by the budget; this looks at the memory of the whole process. */
+/* Ends a run that takes too much memory, or whose reader works too long without a result; or ends only a reading that
+ * the run can do without. Libraries such as GDAL cannot be stopped from within a call, so the guard's thread checks
+ * periodically and ends the process. The budget counts our own memory; this file checks the memory of the whole
+ * process. */
 #define _GNU_SOURCE /* pthread_getcpuclockid */
 
 #include "cli/watch.h"
@@ -23,7 +24,7 @@ static void unlock(camber_watch *watch) {
     camber_guard_unlock(watch->guard);
 }
 
-/* ---- Looking ---- */
+/* ---- Checking ---- */
 
 static uint64_t resident_bytes(void) {
     unsigned long long all, resident = 0;
@@ -35,7 +36,7 @@ static uint64_t resident_bytes(void) {
     return resident * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Ends the process, or what is watched. */
+/* Ends the process, or only what is being watched. */
 static void end(camber_watch *watch, int exit_status) {
     if (!watch->give_up)
         camber_guard_end(watch->guard, camber_report_fail(watch->report, exit_status, "%s", watch->line));
@@ -43,7 +44,7 @@ static void end(camber_watch *watch, int exit_status) {
         watch->give_up(watch->give_up_user);
 }
 
-/* A reading that was given up may hold on to memory within a library; at twice the limit the process ends. */
+/* After a reading has been given up, a library may still hold its memory. At twice the limit the process ends. */
 static void look_at_memory(camber_watch *watch) {
     const uint64_t held = resident_bytes();
     if (held <= LIBRARIES_BYTES)
@@ -102,7 +103,7 @@ void camber_watch_stop(camber_watch *watch) {
         watch->guard->look = watch->before ? look : NULL;
         watch->guard->look_user = watch->before;
     }
-    for (; top; top = top->before) /* a later one may look already */
+    for (; top; top = top->before) /* a watch that was started later may already be active */
         if (top->before == watch)
             top->before = watch->before;
     unlock(watch);

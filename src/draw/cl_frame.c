@@ -150,17 +150,19 @@ camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *fr
 }
 
 /* Whether kernels can write a picture in place: in whole tiles, without gaps, in memory that they reach. */
-static bool can_be_in_place(const camber_renderer *renderer, const camber_frame *frame, const camber_place *place) {
+static bool can_be_in_place(const camber_renderer *renderer, const camber_frame *frame,
+                            const camber_pixel_target *place) {
     return renderer->share.device->host_memory && first_area(renderer, frame).width == frame->width &&
            frame->width % CAMBER_TILE_PX == 0 && frame->height % CAMBER_TILE_PX == 0 &&
            place->stride_bytes == place->row_bytes && (uintptr_t)place->rgba % CAMBER_PIXELS_ALIGNMENT == 0;
 }
 
-camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, camber_place *place,
+camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, camber_pixel_target *place,
                                     camber_frame_stats *stats) {
     destination to = {.place = place->rgba};
-    return can_be_in_place(renderer, frame, place) ? render_to(renderer, frame, &to, stats)
-                                                   : camber_cl_render(renderer, frame, camber_place_rows, place, stats);
+    return can_be_in_place(renderer, frame, place)
+               ? render_to(renderer, frame, &to, stats)
+               : camber_cl_render(renderer, frame, camber_pixel_target_rows, place, stats);
 }
 
 camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,

@@ -20,11 +20,14 @@ void camber_cl_tables_free(camber_cl_tables *t) {
     camber_free(t->context, t->rows);
 }
 
-/* Returns the number of a brush: that of an equal one from brush first on, or of a new one. */
-static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_brush *brush,
+/* Returns the number of a brush: that of an equal one from brush first on, or of a new one. The fill below it is the
+ * last one so far. */
+static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_brush *wanted,
                                const camber_brush_ext *brush_ext, uint32_t *number) {
+    camber_brush brush = *wanted;
+    brush.fill = t->fill;
     for (size_t i = t->brush_count; i > first && i + BRUSHES_BACK > t->brush_count; i--)
-        if (memcmp(t->brushes + i - 1, brush, sizeof *brush) == 0 &&
+        if (memcmp(t->brushes + i - 1, &brush, sizeof brush) == 0 &&
             memcmp(t->brush_ext + i - 1, brush_ext, sizeof *brush_ext) == 0) {
             *number = (uint32_t)(i - 1);
             return CAMBER_OK;
@@ -33,9 +36,9 @@ static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_b
         !camber_grow(t->context, &t->brush_ext, &t->ext_capacity, t->brush_count + 1, sizeof *t->brush_ext))
         return CAMBER_ERROR_MEMORY;
     *number = (uint32_t)t->brush_count;
-    t->is_rich = t->is_rich || brush_ext->features || brush->mode == CAMBER_BRUSH_MASKED;
+    t->is_rich = t->is_rich || brush_ext->features || brush.mode == CAMBER_BRUSH_MASKED;
     t->brush_ext[t->brush_count] = *brush_ext;
-    t->brushes[t->brush_count++] = *brush;
+    t->brushes[t->brush_count++] = brush;
     return CAMBER_OK;
 }
 
@@ -205,27 +208,10 @@ static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list
 
 /* ---- Fills ---- */
 
-/* Adds an input that fills the picture, with a row of its own. */
-static camber_status add_fill_input(camber_cl_tables *t, const camber_brush *brush, const camber_brush_ext *brush_ext) {
-    uint32_t number = 0;
-    if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
-                     CAMBER_RASTER_ROW_WORDS * sizeof *t->rows) ||
-        !camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))
-        return CAMBER_ERROR_MEMORY;
-    const camber_status status = use_brush(t, t->brush_count, brush, brush_ext, &number);
-    if (status != CAMBER_OK)
-        return status;
-    float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count;
-    row[0] = CAMBER_FILL_PX;
-    row[1] = row[2] = 0.0f;
-    memcpy(row + 3, &number, sizeof number);
-    t->inputs[t->input_count++] = (camber_raster_input){.first_row = t->row_count++};
-    return CAMBER_OK;
-}
-
 /* Removes everything below, which an opaque fill hides. */
-static void hide_runs(camber_cl_tables *t) {
+static void drop_hidden_inputs(camber_cl_tables *t) {
     t->input_count = 0;
+    t->fill = 0;
     t->is_rich = false;
 }
 
@@ -237,7 +223,7 @@ static void put_over(const float color[4], float below[4]) {
 static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list, const camber_fill_paint *fill) {
     const camber_color c = fill->color;
     const float color[4] = {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
-    const camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = c.a};
+    const camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = c.a, .mode = CAMBER_BRUSH_AREA};
     camber_brush_ext brush_ext = {0};
     bool is_opaque = true;
     if (fill->has_image) {
@@ -249,9 +235,9 @@ static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list,
         put_over(color, t->sky);
     }
     if (is_opaque && c.a >= 1.0f)
-        hide_runs(t);
-    if (fill->has_image || t->input_count > 0)
-        return add_fill_input(t, &brush, &brush_ext);
+        drop_hidden_inputs(t);
+    if (fill->has_image || t->input_count > 0 || t->fill > 0)
+        return use_brush(t, t->brush_count, &brush, &brush_ext, &t->fill);
     put_over(color, t->background);
     return CAMBER_OK;
 }
@@ -263,7 +249,7 @@ static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *l
     const camber_brush_ext no_more = {0};
     uint32_t number;
     camber_status status =
-        use_brush(t, 0, &no_brush, &no_more, &number); /* there has to be one, even if nothing is drawn */
+        use_brush(t, 0, &no_brush, &no_more, &number); /* there has to be one, with which a tile begins */
     for (size_t i = 0; i < list->command_count && status == CAMBER_OK; i++) {
         const camber_draw_command *command = list->commands + i;
         status = command->mesh ? add_lines(t, list, command) : add_fill(t, list, &command->fill);
@@ -271,9 +257,11 @@ static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *l
     if (status == CAMBER_OK && !camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
                                             CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
         status = CAMBER_ERROR_MEMORY;
-    if (status == CAMBER_OK)
-        memset(t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count, 0, CAMBER_RASTER_ROW_WORDS * sizeof *t->rows);
-    return status;
+    if (status != CAMBER_OK)
+        return status;
+    memset(t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count, 0, CAMBER_RASTER_ROW_WORDS * sizeof *t->rows);
+    t->brushes[0].fill = t->fill;
+    return CAMBER_OK;
 }
 
 static void set_view(const camber_plane_view *view, const float sky[4], camber_raster_scene *scene) {

@@ -13,12 +13,12 @@
 
 /* ---- cl_frame.c ---- */
 
-struct camber_place;
+struct camber_pixel_target;
 /* Draws a frame, whose list is in the renderer, and hands over its rows. */
 camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
-camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame, struct camber_place *place,
-                                    camber_frame_stats *stats);
+camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame,
+                                    struct camber_pixel_target *place, camber_frame_stats *stats);
 /* Calls draw for each area of a frame, from the top down, instead of drawing it. */
 typedef camber_status camber_area_fn(camber_renderer *renderer, const camber_raster_scene *scene,
                                      const camber_raster_area *area, void *user);
@@ -63,6 +63,7 @@ typedef struct camber_cl_tables {
     size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity,
         change_count, change_capacity;
     uint32_t *fill_images; /* position of each fill's image in the side table. 0: not there. NULL: there are none */
+    uint32_t fill;         /* brush of the last fill so far that is no part of the background. 0: none */
     bool is_rich;          /* a brush has features */
     camber_cl_images images;
     uint32_t layers;     /* so far */

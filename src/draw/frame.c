@@ -17,7 +17,7 @@ camber_status camber_renderer_resolve(camber_renderer *renderer, const camber_fr
 
 /* Draws a frame. place: memory that all rows go to. NULL: they are passed to rows. */
 static camber_status render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
-                            camber_place *place, camber_frame_stats *stats) {
+                            camber_pixel_target *place, camber_frame_stats *stats) {
     camber_frame_stats made;
     camber_status status = camber_renderer_resolve(renderer, frame);
     if (status == CAMBER_OK)
@@ -37,7 +37,7 @@ camber_status camber_renderer_render(camber_renderer *renderer, const camber_fra
 camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame, uint8_t *rgba,
                                           size_t stride_bytes, camber_frame_stats *stats) {
     const size_t row_bytes = 4 * (size_t)frame->width;
-    camber_place place = {rgba, row_bytes, stride_bytes ? stride_bytes : row_bytes};
+    camber_pixel_target place = {rgba, row_bytes, stride_bytes ? stride_bytes : row_bytes};
     assert(rgba && place.stride_bytes >= row_bytes);
-    return render(renderer, frame, camber_place_rows, &place, &place, stats);
+    return render(renderer, frame, camber_pixel_target_rows, &place, &place, stats);
 }

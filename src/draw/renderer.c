@@ -128,8 +128,8 @@ camber_status camber_mesh_create(camber_device *device, camber_renderer *rendere
     return CAMBER_OK;
 }
 
-bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const camber_place *place = user;
+bool camber_pixel_target_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const camber_pixel_target *place = user;
     for (size_t i = 0; i < row_count; i++)
         memcpy(place->rgba + (first_row + i) * place->stride_bytes, rgba + i * place->row_bytes, place->row_bytes);
     return true;

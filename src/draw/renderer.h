@@ -11,13 +11,13 @@
 #include "residency/mesh.h"
 
 /* The caller's memory that a picture is written to. */
-typedef struct camber_place {
+typedef struct camber_pixel_target {
     uint8_t *rgba;
     size_t row_bytes, stride_bytes;
-} camber_place;
+} camber_pixel_target;
 
 /* A camber_rows_fn that copies rows to such memory. */
-bool camber_place_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
+bool camber_pixel_target_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
 struct camber_renderer {
     camber_share share;

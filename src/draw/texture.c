@@ -72,10 +72,10 @@ static camber_status draw_area(camber_renderer *renderer, const camber_raster_sc
     if (status != CAMBER_OK)
         return status;
     status = camber_raster_draw_into(renderer->raster, scene, area, pixels->buffer);
-    camber_soft_log kept = {0};
+    camber_saved_log kept = {0};
     const bool told = status != CAMBER_OK; /* logging another error would give a second message */
     if (told)
-        camber_log_soften(renderer->share.device->context, &kept);
+        camber_log_demote_errors(renderer->share.device->context, &kept);
     /* If memory was short, meshes of another surface may have released buffers, which made its context current. */
     camber_status finished = camber_surface_make_current(renderer->share.surface);
     if (finished == CAMBER_OK)

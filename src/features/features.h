@@ -89,6 +89,9 @@ camber_status camber_features_create_for(camber_context *context, const camber_s
 /* Whether reading the same files for another style would give the same set: all features come from files, and the other
  * style reads the same from them. */
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
+/* Frees the points of the lines, which take most of a set's memory, after its last scene was made: no other can be made
+ * or moved, and nothing more can be read. */
+void camber_features_release_points(camber_features *features);
 
 /* ---- Marks: the state to return to if reading fails half way ---- */
 

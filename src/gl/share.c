@@ -94,8 +94,8 @@ camber_status camber_share_choose(camber_share *share, camber_sharing wanted, co
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         if (wanted != CAMBER_SHARING_AUTO && wanted != paths[i]->sharing)
             continue;
-        camber_soft_log kept;
-        camber_log_soften(context, &kept); /* one log line per path that does not work is enough */
+        camber_saved_log kept;
+        camber_log_demote_errors(context, &kept); /* one log line per path that does not work is enough */
         status = try_path(share, paths[i]);
         camber_log_restore(context, &kept);
         if (status == CAMBER_OK) {

@@ -134,8 +134,8 @@ static camber_status open_backend(camber_context *context, const camber_surface_
 /* Tries a back end. It is not an error if it is missing, as long as another may work. */
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
                                  const camber_surface_desc *desc, camber_surface **surface) {
-    camber_soft_log kept;
-    camber_log_soften(context, &kept);
+    camber_saved_log kept;
+    camber_log_demote_errors(context, &kept);
     const camber_status status = open_backend(context, ops, desc, surface);
     camber_log_restore(context, &kept);
     if (status == CAMBER_ERROR_MEMORY) /* then no other is tried */

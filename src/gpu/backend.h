@@ -71,5 +71,7 @@ camber_status camber_check_drivers(camber_context *context);
 enum { CAMBER_DEVICES_MAX = 64 };
 /* Returns how many devices were found. *failed receives the last call that failed, if any did. */
 size_t camber_find_devices(camber_found_device found[CAMBER_DEVICES_MAX], camber_failed_call *failed);
+/* Returns whether match, as in camber_device_desc, names the device. */
+bool camber_device_matches(const camber_device_info *info, const char *match);
 
 #endif

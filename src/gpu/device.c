@@ -7,30 +7,8 @@
 
 #include "kernels/layout.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
-
-static bool contains_ignoring_case(const char *text, const char *part) {
-    for (; *text; text++) {
-        size_t i = 0;
-        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
-            i++;
-        if (!part[i])
-            return true;
-    }
-    return *part == 0;
-}
-
-bool camber_device_info_matches(const camber_device_info *info, const char *match) {
-    if (!match)
-        return true;
-    if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
-        return info->type == CAMBER_DEVICE_TYPE_CPU;
-    if (contains_ignoring_case("gpu", match) && strlen(match) == 3)
-        return info->type == CAMBER_DEVICE_TYPE_GPU;
-    return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match);
-}
 
 static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
@@ -57,7 +35,7 @@ static camber_status choose_device(camber_device *device, const camber_device_de
         const camber_device_info info = found[i].info;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
-        if (!camber_device_info_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
+        if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
             continue;
         best = rank(&info);
         *chosen = found[i];

@@ -1,11 +1,13 @@
-/* Finds the devices of all back ends.
+/* Finds the devices of all back ends, and those among them that a word names.
  *
  * Main idea: drivers set themselves up when they are first called. This must happen once, under a lock, and not in a
  * child that was forked afterwards. */
 #include "gpu/backend.h"
 
+#include <ctype.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <string.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -66,9 +68,35 @@ static camber_status list_devices(camber_context *context) {
     return CAMBER_OK;
 }
 
-camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info) {
+static bool contains_ignoring_case(const char *text, const char *part) {
+    for (; *text; text++) {
+        size_t i = 0;
+        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (!part[i])
+            return true;
+    }
+    return *part == 0;
+}
+
+bool camber_device_matches(const camber_device_info *info, const char *match) {
+    if (!match)
+        return true;
+    if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
+        return info->type == CAMBER_DEVICE_TYPE_CPU;
+    if (contains_ignoring_case("gpu", match) && strlen(match) == 3)
+        return info->type == CAMBER_DEVICE_TYPE_GPU;
+    return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match);
+}
+
+camber_status camber_device_list(camber_context *context, const char *match, size_t n,
+                                 const camber_device_info **info) {
     const camber_status status = context->devices ? CAMBER_OK : list_devices(context);
-    if (status == CAMBER_OK)
-        *info = n < context->device_count ? context->devices + n : NULL;
-    return status;
+    if (status != CAMBER_OK)
+        return status;
+    *info = NULL;
+    for (size_t i = 0; i < context->device_count && !*info; i++)
+        if (camber_device_matches(context->devices + i, match) && n-- == 0)
+            *info = context->devices + i;
+    return CAMBER_OK;
 }

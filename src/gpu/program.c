@@ -190,8 +190,8 @@ static camber_status ensure_nth(camber_device *device, unsigned n, camber_progra
 
 /* Builds programs share, share + shares, share + 2 * shares and so on, so that several processes can compile at the
  * same time. */
-camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warmed *warmed) {
-    camber_warmed all = {0};
+camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warm_result *result) {
+    camber_warm_result all = {0};
     camber_status status = CAMBER_OK;
     if (shares == 0 || share >= shares)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT, "share %u of %u; it must be below their number",
@@ -210,7 +210,7 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
     }
     camber_cache_share(device->context, false);
     if (status == CAMBER_OK)
-        *warmed = all;
+        *result = all;
     return status;
 }
 

@@ -393,23 +393,25 @@ static void move_fills(camber_scene *scene) {
             scene->pair_passes.passes[i].fill = patterns->fills[fill++].fill;
 }
 
-/* Sets the meshes of passes. Labels' are companions, which camber_scene_tessellate made. */
+/* Sets the meshes of passes. Those of labels are companions of the scene's mesh. camber_scene_tessellate has made them;
+ * without it they are empty, and their passes draw nothing. */
 static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
     camber_mesh *meshes[] = {mesh, NULL, NULL};
     for (size_t i = 0; i < list->count; i++) {
         for (size_t k = 1; k <= list->meshes[i] && !meshes[k]; k++)
             if (camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
-                meshes[k] = mesh; /* it draws nothing that it does not hold */
+                meshes[k] = NULL;
         list->passes[i].mesh = meshes[list->meshes[i]];
+        list->passes[i].kind = list->passes[i].mesh || !list->meshes[i] ? list->passes[i].kind : CAMBER_PASS_FILL;
     }
 }
 
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
-    const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
-    assert(holds_network || scene->is_projected);
+    const bool of_network = mesh && camber_mesh_get_info(mesh).of_network;
+    assert(of_network || scene->is_projected);
     if (!scene->own && (scene->zoom->has_images || scene->zoom->has_area_images))
         move_fills(scene);
-    const camber_pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
+    const camber_pass_list *list = of_network ? &scene->pair_passes : &scene->passes;
     set_meshes(list, mesh);
     return (camber_frame){.width = scene->view.width,
                           .height = scene->view.height,

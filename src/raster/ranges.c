@@ -59,8 +59,6 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
     const size_t *changes = input->change_count ? scene->changes + input->first_change : NULL;
     size_t change = 0;
     camber_status status = CAMBER_OK;
-    if (!input->mesh)
-        return add_range(list, (camber_slot_range){.end = 1, .first_row = input->first_row});
     for (size_t i = 0; i < input->mesh->part_count && status == CAMBER_OK; i++) {
         const camber_mesh_part *part = input->mesh->parts + i;
         const size_t end = part->first_polyline + part->polyline_count;
@@ -122,16 +120,13 @@ unsigned camber_raster_variant(const camber_raster_scene *scene) {
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_slot_range *range,
                                            const camber_raster_area *area) {
     const camber_mesh *mesh = range->mesh;
-    const camber_mesh_part *part = mesh ? mesh->parts + range->part : NULL;
     return (camber_setup_args){
         .first = (uint32_t)range->first,
         .end = (uint32_t)range->end,
-        .slot_count = part ? (uint32_t)part->slot_count : 0,
-        .has_arc_length = mesh && mesh->mesh_info.has_arc_length,
+        .slot_count = (uint32_t)mesh->parts[range->part].slot_count,
+        .has_arc_length = mesh->mesh_info.has_arc_length,
         .linear = scene->linear,
-        .makes = !mesh            ? CAMBER_MAKES_FILL
-                 : range->is_area ? CAMBER_MAKES_EDGES
-                                  : CAMBER_MAKES_SEGMENTS,
+        .makes_edges = range->is_area,
         .among_edges = range->among_edges,
         .base = (uint32_t)range->base,
         .first_row = (uint32_t)range->first_row,

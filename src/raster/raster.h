@@ -8,8 +8,7 @@
  * - 0: only brushes.
  * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
  *   float4s that it refers to. setup also writes arc lengths. A brush without features gets the same bytes as from the
- *   plain
- *   variant.
+ *   plain variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
  * In kernels #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED select a variant; the twin contains all of them, and
@@ -26,15 +25,15 @@
 /* Polylines [first, end) of a mesh, drawn with a table of rows. At each change, the number of the brush goes up by one,
  * counted from the row's brush. So polygons with many fills are drawn in their order. */
 typedef struct camber_raster_input {
-    camber_mesh
-        *mesh; /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
+    camber_mesh *mesh;
     size_t first, end;
     size_t first_row; /* where its table begins among all rows */
     bool is_area;     /* the polylines are rings to fill: rows that are drawn have a half width of CAMBER_EDGE_PX */
     size_t first_change, change_count; /* of the scene */
 } camber_raster_input;
 
-/* Everything that is drawn, in drawing order. Brushes of one layer are consecutive, and so are those of one group. */
+/* Everything that is drawn, in drawing order, with brushes in the same order; fills of the picture are only brushes.
+ * Brushes of one layer are consecutive, and so are those of one group. */
 typedef struct camber_raster_scene {
     /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number is stored as the bits of a camber_u32 */
     const float *rows;
@@ -123,7 +122,7 @@ void camber_raster_stages_free(camber_context *context, camber_raster_stages *st
 
 /* Slots of one part that are drawn with one table of rows. */
 typedef struct camber_slot_range {
-    camber_mesh *mesh; /* NULL: a fill, which has one slot */
+    camber_mesh *mesh;
     size_t part;
     size_t first, end; /* the slots [first, end) of the part */
     size_t base;       /* where its segments begin, a multiple of 16 */

@@ -82,16 +82,15 @@ static bool cut_range(const camber_raster *raster, camber_slot_range *range) {
     return range->first < range->end;
 }
 
-/* Starts setup for ranges of one part with that many work-items. part is NULL for fills, which have no points. */
+/* Starts setup for ranges of one part with that many work-items. */
 static camber_status set_up(camber_raster *raster, const camber_setup_args *args, uint32_t count, size_t items,
                             const camber_mesh_part *part) {
     const camber_status status = camber_raster_put(raster, BUFFER_SETUPS, args, count * sizeof *args);
-    camber_buffer *nothing = raster->buffers[BUFFER_ROWS];
-    const camber_kernel_arg arguments[] = {CAMBER_ARG_BUFFER(part ? part->x : nothing),
-                                           CAMBER_ARG_BUFFER(part ? part->y : nothing),
-                                           CAMBER_ARG_BUFFER(part ? part->info : nothing),
-                                           CAMBER_ARG_BUFFER(part ? part->joins : nothing),
-                                           CAMBER_ARG_BUFFER(part ? part->arc_lengths : nothing),
+    const camber_kernel_arg arguments[] = {CAMBER_ARG_BUFFER(part->x),
+                                           CAMBER_ARG_BUFFER(part->y),
+                                           CAMBER_ARG_BUFFER(part->info),
+                                           CAMBER_ARG_BUFFER(part->joins),
+                                           CAMBER_ARG_BUFFER(part->arc_lengths),
                                            BUFFER(BUFFER_ROWS),
                                            BUFFER(BUFFER_SEGMENTS),
                                            BUFFER(BUFFER_BOXES),
@@ -109,7 +108,7 @@ static camber_status set_up(camber_raster *raster, const camber_setup_args *args
 static camber_status set_up_part(camber_raster *raster, const listed_scene *p, size_t first, size_t end) {
     const size_t an_item = CAMBER_SETUP_SLOTS(raster->device->lanes);
     camber_mesh *mesh = p->list.ranges[first].mesh;
-    camber_mesh_part *part = mesh ? mesh->parts + p->list.ranges[first].part : NULL;
+    camber_mesh_part *part = mesh->parts + p->list.ranges[first].part;
     camber_setup_args *args = raster->setups + first;
     camber_status status = CAMBER_OK;
     size_t items = 0;
@@ -118,8 +117,8 @@ static camber_status set_up_part(camber_raster *raster, const listed_scene *p, s
         camber_slot_range range = p->list.ranges[i];
         if (!cut_range(raster, &range))
             continue;
-        if (part) /* edges of rings have no joins */
-            status = range.is_area ? camber_part_ensure_made(mesh, part) : camber_part_ensure_points(mesh, part);
+        /* edges of rings have no joins */
+        status = range.is_area ? camber_part_ensure_made(mesh, part) : camber_part_ensure_points(mesh, part);
         args[count] = camber_raster_setup_args(p->scene, &range, &raster->band);
         args[count++].first_item = (uint32_t)items;
         items += (range.end - range.first + an_item - 1) / an_item;
@@ -329,10 +328,10 @@ static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_
 /* Lays out the planes of a spill: five for the brush and the picture, three for unions or two for areas, four for the
  * group and for the layer, and one for masks. */
 static camber_spill_args plan_spill(const camber_raster *raster, const camber_raster_scene *scene) {
-    bool unions = false, areas = false, groups = false, layers = false, masks = false;
+    const bool areas = raster->end_edge > 0; /* that have edges, unlike fills of the picture */
+    bool unions = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
         unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION;
-        areas = areas || camber_brush_is_area(scene->brushes + i);
         groups = groups || scene->brushes[i].group;
         layers = layers || scene->brushes[i].layer;
         masks = masks || scene->brushes[i].mode == CAMBER_BRUSH_MASKED;

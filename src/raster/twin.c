@@ -46,12 +46,8 @@ typedef struct three_points {
 } three_points;
 
 static three_points points_of(const camber_part_points *part, const camber_setup_args *r, int64_t slot) {
-    if (!part->x) /* a fill has no points */
-        return (three_points){.b = {CAMBER_FILL_PX, 0.0f, CAMBER_FILL_JOIN, 0},
-                              .before = {-CAMBER_FILL_PX, 0.0f, CAMBER_FILL_JOIN, 0},
-                              .ends = slot == 0};
     three_points p = {point_at(part, slot + 1, r), point_at(part, slot, r), point_at(part, slot - 1, r), false};
-    p.ends = slot < r->end && ends_segment(&p.b, r->makes == CAMBER_MAKES_EDGES);
+    p.ends = slot < r->end && ends_segment(&p.b, r->makes_edges);
     return p;
 }
 
@@ -102,7 +98,7 @@ static void put_segment(const camber_twin *t, const camber_part_points *part, co
                         size_t segment) {
     const three_points points = points_of(part, r, slot);
     const point b = points.b, p = points.first;
-    const bool is_edge = r->makes == CAMBER_MAKES_EDGES, ends = points.ends;
+    const bool is_edge = r->makes_edges, ends = points.ends;
     const bool is_dot = !is_edge && camber_join_kind(b.join) == CAMBER_KIND_DOT;
     const point a = is_dot ? b : points.before;
     const float *row =
@@ -143,8 +139,7 @@ static camber_status make_segments(const camber_twin *t, const camber_range_list
     for (size_t p = 0; p < list->count && status == CAMBER_OK; p++) {
         const camber_setup_args r = camber_raster_setup_args(t->scene, ranges + p, t->area);
         camber_part_points part = {0};
-        if (ranges[p].mesh)
-            status = camber_part_read_points(ranges[p].mesh, ranges[p].mesh->parts + ranges[p].part, &part);
+        status = camber_part_read_points(ranges[p].mesh, ranges[p].mesh->parts + ranges[p].part, &part);
         const size_t count = (ranges[p].end - ranges[p].first + 15) / 16 * 16;
         for (size_t i = 0; i < count && status == CAMBER_OK; i++)
             put_segment(t, &part, &r, (int64_t)(ranges[p].first + i), ranges[p].base + i);

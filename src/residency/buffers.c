@@ -22,7 +22,7 @@ static void release_inputs(const camber_device *device, camber_mesh_part *part, 
     list_input(part, buffers);
     for (size_t i = 0; i < count; i++)
         camber_buffer_release(device, buffers[i]);
-    part->lent = false;
+    part->borrowed = false;
 }
 
 /* Releases the input buffers that classify reads or writes, and keeps those of source lines. */
@@ -74,8 +74,8 @@ void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
         from->buffers[i] = (camber_shared_buffer){0};
     }
     part->slot_capacity = from->slot_capacity;
-    part->lent = from->lent;
-    from->lent = false;
+    part->borrowed = from->borrowed;
+    from->borrowed = false;
     part->source_line = from->source_line;
     from->source_line = (camber_source_line_buffers){0};
     part->host_bases = from->host_bases;
@@ -88,15 +88,15 @@ void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
     from->uploaded = from->made = false;
 }
 
-bool camber_part_has_input(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, bool lent) {
+bool camber_part_has_input(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, bool borrowed) {
     return slots <= part->slot_capacity && (!mesh->mesh_info.has_arc_length || part->arc_lengths) &&
-           (lent || (part->x && !part->lent));
+           (borrowed || (part->x && !part->borrowed));
 }
 
-camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool lent) {
+camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool borrowed) {
     const camber_device *device = mesh->device;
     const bool has_arc_length = mesh->mesh_info.has_arc_length;
-    if (camber_part_has_input(mesh, part, slots, lent))
+    if (camber_part_has_input(mesh, part, slots, borrowed))
         return CAMBER_OK;
     const bool uploaded =
         part->uploaded && part->source_line.x; /* slots were uploaded to the source lines' buffers, which are kept */
@@ -119,7 +119,7 @@ camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *
         {&part->arc_lengths, sizeof(camber_arc_length) * slots},
     };
     const size_t count = has_arc_length ? INPUTS : INPUTS - 2;
-    for (size_t i = lent ? POINT_INPUTS : 0; i < count && status == CAMBER_OK; i++)
+    for (size_t i = borrowed ? POINT_INPUTS : 0; i < count && status == CAMBER_OK; i++)
         status = camber_buffer_create(device, CAMBER_BUFFER_OWN, wanted[i].size_bytes, NULL, wanted[i].buffer);
     if (status != CAMBER_OK) {
         release_slots(device, part);

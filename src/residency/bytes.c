@@ -25,7 +25,7 @@ uint64_t camber_source_line_bytes(bool has_arc_length, size_t slots) {
 }
 
 uint64_t camber_part_input_bytes(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const bool own = part->x && !part->lent;
+    const bool own = part->x && !part->borrowed;
     return camber_input_bytes(mesh->device, part->arc_lengths != NULL, part->slot_capacity) -
            (own ? 0 : camber_point_bytes(part->slot_capacity));
 }

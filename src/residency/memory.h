@@ -4,6 +4,16 @@
 
 #include "residency/mesh.h"
 
+typedef struct camber_mesh_memory {
+    size_t parts;          /* groups of consecutive polylines with buffers of their own: 1 if there is room */
+    size_t resident_parts; /* parts that need not be tessellated again to be read or drawn */
+    size_t remade_parts;   /* parts that were tessellated again since the last tessellation */
+    uint64_t held_bytes;   /* bytes of the mesh that count against the device's memory limit */
+} camber_mesh_memory;
+
+/* bytes.c: adds up what a mesh and its parts hold. */
+camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh);
+
 /* bytes.c: these recount what a part, a section or a mesh holds, after buffers have been made or released. */
 void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_section_count_bytes(const camber_mesh *mesh, camber_section *section);
@@ -23,10 +33,10 @@ void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);
 void camber_part_release_points(camber_mesh *mesh, camber_mesh_part *part);
 /* Moves the buffers of one part to another that has none. */
 void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from);
-/* Whether the input buffers are large enough, including those of arc lengths if they are needed. lent: points are
+/* Whether the input buffers are large enough, including those of arc lengths if they are needed. borrowed: points are
  * borrowed, and need no buffers of the part's own. */
-bool camber_part_has_input(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, bool lent);
-camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool lent);
+bool camber_part_has_input(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots, bool borrowed);
+camber_status camber_part_make_input(const camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool borrowed);
 /* Makes the buffers of source lines. */
 camber_status camber_part_make_source_lines(const camber_mesh *mesh, camber_mesh_part *part, size_t slots);
 

@@ -45,7 +45,7 @@ typedef struct camber_mesh_part {
     uint32_t *chunk_bases; /* one for each chunk, and one after the last */
     size_t chunk_capacity;
     bool uploaded;
-    bool lent; /* x, y and info are borrowed (zero copy): kernels read the polylines' arrays in place */
+    bool borrowed; /* x, y and info are borrowed (zero copy): kernels read the polylines' arrays in place */
     camber_buffer *x, *y, *info, *joins, *offsets, *sums, *bases;
     /* only with arc lengths: sums of chunks, and one camber_arc_length per slot */
     camber_buffer *lengths, *arc_lengths;
@@ -128,9 +128,8 @@ struct camber_mesh {
     bool wide;          /* a row is so wide that joins may be flat */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
-    bool has_camera;    /* the last tessellation was of a network; pitch_deg is its camera's */
-    double pitch_deg;
-    bool empty; /* nothing to draw: not tessellated yet, failed, or without any point or vertex */
+    double pitch_deg;   /* of the network's camera */
+    bool empty;         /* nothing to draw: not tessellated yet, failed, or without any point or vertex */
 };
 
 enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };

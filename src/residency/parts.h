@@ -28,7 +28,7 @@ camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uin
 
 /* reserve.c: these make a part's buffers large enough, and evict others if necessary. This one: the input and
  * host_bases, for that many slots. */
-camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool lent);
+camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool borrowed);
 /* The same for slots that a kernel makes, whose number it sets: for a network a quarter more if the device has plenty
  * of memory. */
 camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part *part, size_t slots);

@@ -2,18 +2,18 @@
 #include "residency/memory.h"
 #include "residency/parts.h"
 
-camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool lent) {
+camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots, bool borrowed) {
     const camber_device *device = mesh->device;
     const uint64_t wanted = camber_part_slots_bytes(mesh, part, slots);
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
-    const uint64_t needed = wanted - (lent ? camber_point_bytes(slots) : 0);
+    const uint64_t needed = wanted - (borrowed ? camber_point_bytes(slots) : 0);
     const uint64_t there = slots > part->slot_capacity ? camber_part_input_bytes(mesh, part) : 0;
     camber_status status = CAMBER_OK;
-    if (!camber_part_has_input(mesh, part, slots, lent))
+    if (!camber_part_has_input(mesh, part, slots, borrowed))
         status = camber_mesh_make_room(mesh, part, needed > there ? needed - there : 0);
     if (status == CAMBER_OK)
-        status = camber_part_make_input(mesh, part, slots, lent);
+        status = camber_part_make_input(mesh, part, slots, borrowed);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
         status = CAMBER_ERROR_MEMORY;

@@ -30,8 +30,8 @@ static void release_polylines(camber_mesh *mesh) {
 }
 
 void camber_mesh_let_go(camber_mesh *mesh) {
-    const bool lent = mesh->part_count > 0 && mesh->parts[0].lent;
-    if (mesh->device->memory_bytes == 0 && !lent)
+    const bool borrowed = mesh->part_count > 0 && mesh->parts[0].borrowed;
+    if (mesh->device->memory_bytes == 0 && !borrowed)
         release_polylines(mesh);
 }
 
@@ -177,8 +177,4 @@ camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, co
     return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->has_arc_length,
                                                                camera->pitch_deg > 0.0, &mesh->held->program)
                                : status;
-}
-
-bool camber_mesh_holds_network(const camber_mesh *mesh, const camber_network *network) {
-    return mesh->done && mesh->serial == network->serial;
 }

@@ -10,7 +10,7 @@ static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *
 void camber_mesh_return_points(camber_mesh *mesh) {
     for (size_t i = 0; i < mesh->part_capacity; i++) {
         camber_mesh_part *part = mesh->parts + i;
-        if (!part->lent)
+        if (!part->borrowed)
             continue;
         camber_device_settle(mesh->device); /* then nothing maps them any more */
         part->uploaded = false;
@@ -30,7 +30,7 @@ static camber_status borrow_points(camber_mesh *mesh, camber_mesh_part *part, si
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays && status == CAMBER_OK; i++)
         status =
             camber_buffer_create(mesh->device, CAMBER_BUFFER_BORROWED, 4 * words, arrays[i].words, arrays[i].buffer);
-    part->lent = true;
+    part->borrowed = true;
     return status;
 }
 
@@ -44,11 +44,11 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
         return CAMBER_OK;
     const camber_source_line_buffers *source_line = &part->source_line;
     const size_t words = part->given_count + 2, first = part->first_slot;
-    const bool lent =
+    const bool borrowed =
         device->host_memory && !mesh->has_offsets && mesh->part_count == 1 && words <= polylines->slot_count + 2;
     camber_status status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, part->given_count)
-                                             : camber_part_reserve(mesh, part, part->given_count, lent);
-    if (status == CAMBER_OK && lent)
+                                             : camber_part_reserve(mesh, part, part->given_count, borrowed);
+    if (status == CAMBER_OK && borrowed)
         status = borrow_points(mesh, part, words);
     const size_t end = part->first_polyline + part->polyline_count;
     /* The words of a part are the one before its first slot, its slots, and sentinels. The last part takes sentinels
@@ -61,7 +61,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     } arrays[] = {{mesh->has_offsets ? source_line->x : part->x, polylines->x + first},
                   {mesh->has_offsets ? source_line->y : part->y, polylines->y + first},
                   {mesh->has_offsets ? source_line->info : part->info, polylines->info + first}};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays && !lent; i++) {
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays && !borrowed; i++) {
         if (status == CAMBER_OK)
             status = camber_buffer_write_later(device, arrays[i].buffer, 0, 4 * given, arrays[i].bytes);
         if (status == CAMBER_OK && given < words)

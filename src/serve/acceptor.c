@@ -1,4 +1,4 @@
-/* A thread that accepts the connections of a socket, and ends as the socket is shut down. */
+/* A thread that accepts the connections of a socket, and ends when the socket is shut down. */
 #define _GNU_SOURCE /* accept4 */
 
 #include "serve/acceptor.h"
@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LOOK_MS = 20 }; /* whether there is room again */
+enum { LOOK_MS = 20 }; /* how often it checks whether there is room again */
 
 struct camber_acceptor {
     camber_acceptor_desc desc;
@@ -38,7 +38,7 @@ static void *accept_all(void *user) {
         else if (connection >= 0)
             desc->take(desc->user, connection);
         else if (lacks_descriptors(cause))
-            nanosleep(&pause, NULL); /* until something is closed */
+            nanosleep(&pause, NULL); /* until a connection is closed */
         else if (cause != EINTR && cause != ECONNABORTED)
             break;
     }

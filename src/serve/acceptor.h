@@ -6,17 +6,18 @@
 
 /* Both are called by the acceptor's thread. */
 typedef struct camber_acceptor_desc {
-    int socket;                               /* it listens, and blocks; the acceptor closes it */
-    bool (*has_room)(void *user);             /* without it connections wait in the system's queue. NULL: always */
-    void (*take)(void *user, int connection); /* which is the callee's from then on */
+    int socket; /* a blocking socket that listens; the acceptor closes it */
+    /* while it returns false, connections wait in the system's queue. NULL: always true */
+    bool (*has_room)(void *user);
+    void (*take)(void *user, int connection); /* takes ownership of the connection */
     void *user;
 } camber_acceptor_desc;
 
 typedef struct camber_acceptor camber_acceptor;
 
-/* Returns 0 or an errno; then the socket is closed, too. */
+/* Returns 0 or an errno; the socket is closed even if it fails. */
 int camber_acceptor_create(const camber_acceptor_desc *desc, camber_acceptor **acceptor);
-/* Stops listening; when it returns, no connection is taken any more. */
+/* Stops listening. No connection is accepted after it has returned. */
 void camber_acceptor_destroy(camber_acceptor *acceptor);
 
 #endif

@@ -1,4 +1,4 @@
-/* Numeric addresses and the sockets that listen there. */
+/* Numeric addresses, and sockets that listen at them. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/address.h"

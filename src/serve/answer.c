@@ -1,8 +1,8 @@
 /* Requests and their answers.
  *
- * A request is parsed from its path as it came. Tiles that are not in memory are asked of the drawing: the connection
- * sleeps until a thread of the drawing wakes it, and the request is then answered as any other. Every answer is a body
- * that is held while it is sent. Nothing of a request is repeated in an answer. */
+ * The path is parsed exactly as it was received. If a tile is not in memory, it is requested from the draw queue. The
+ * connection is suspended until a thread of the queue resumes it, and the request is then answered like any other.
+ * Every answer has a body, which is held while it is sent. No part of a request is repeated in an answer. */
 #define _GNU_SOURCE /* POLLRDHUP */
 
 #include "serve/answer.h"
@@ -21,12 +21,12 @@ enum { LARGEST_UNPACKED_BYTES = 64 << 20 };
 typedef struct request {
     camber_listener *listener;
     struct MHD_Connection *connection;
-    camber_client *client; /* has the path, too */
+    camber_client *client; /* contains the path, too */
     char method[8];
     camber_route_request route;
-    camber_ask ask;
+    camber_tile_request tile_request;
     bool begun, asked, refused;
-    int status; /* that was answered. 0: none yet */
+    int status; /* the status that was sent; 0: none yet */
     size_t sent_bytes;
 } request;
 
@@ -34,8 +34,8 @@ typedef struct reply {
     int status;
     camber_body *body; /* held for the answer */
     const char *media_type, *cache_control;
-    bool has_page, has_variants; /* it is the page's; another client may get it compressed */
-    bool is_stream;              /* it has no body of its own */
+    bool has_page, has_variants; /* it needs the page's headers; it may be sent compressed to other clients */
+    bool is_stream;              /* it is an event stream, and body is NULL */
     char last_modified[CAMBER_DATE_SIZE];
 } reply;
 
@@ -86,7 +86,7 @@ static void add_headers(const request *r, const reply *a, struct MHD_Response *r
         add(response, MHD_HTTP_HEADER_CONNECTION, "close");
 }
 
-/* Sends the answer, and gives its body back. */
+/* Sends the answer, and releases its body. */
 static enum MHD_Result send_answer(request *r, reply *a) {
     static char nothing[1];
     if (a->status == 200 && is_known(r, a))
@@ -120,7 +120,7 @@ static enum MHD_Result send_error(request *r, int status) {
     return send_answer(r, &a);
 }
 
-/* Sends one of two bodies, of which the second is compressed and may be NULL. */
+/* Sends one of two bodies. The second is compressed, and may be NULL. */
 static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bodies[2]) {
     const bool gzip = bodies[1] && camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
     a->has_variants = bodies[1] != NULL;
@@ -130,17 +130,17 @@ static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bod
 
 /* ---- Tiles ---- */
 
-/* Holds nothing but the body that is given back. */
-static camber_view_of_shown look(camber_server *server, bool dark, camber_body *bodies[2]) {
+/* Returns the current content, and holds only the bodies that it returns. */
+static camber_content_view look(camber_server *server, bool dark, camber_body *bodies[2]) {
     pthread_mutex_lock(&server->mutex);
-    const camber_view_of_shown view = server->view;
+    const camber_content_view view = server->view;
     for (int i = 0; bodies && i < 2; i++)
         bodies[i] = view.tilejson[dark][i] ? camber_body_hold(view.tilejson[dark][i]) : NULL;
     pthread_mutex_unlock(&server->mutex);
     return view;
 }
 
-static enum MHD_Result send_tile(request *r, const camber_view_of_shown *view, camber_body *body) {
+static enum MHD_Result send_tile(request *r, const camber_content_view *view, camber_body *body) {
     reply a = {.status = 200,
                .body = body,
                .media_type = camber_route_get_media_type(r->route.type),
@@ -149,7 +149,8 @@ static enum MHD_Result send_tile(request *r, const camber_view_of_shown *view, c
     return send_answer(r, &a);
 }
 
-/* Reads a tile, or finds it in memory. *body: NULL where the archive has none. false: it cannot be read. */
+/* Reads a tile of the archive, or finds it in memory. *body is NULL if the archive does not have it. Returns false if
+ * it cannot be read. */
 static bool find_stored(camber_server *server, const camber_route_request *route, camber_body **body) {
     const camber_tile_key key = camber_draw_queue_key(route);
     const camber_tiles_place place = {route->zoom, route->column, route->row};
@@ -167,13 +168,13 @@ static bool find_stored(camber_server *server, const camber_route_request *route
     return status == CAMBER_OK && (*body || size_bytes == 0);
 }
 
-/* No tile where there may be one is no error: browsers report each 404. */
+/* A missing tile within the zoom range is answered with 204, because browsers log every 404. */
 static enum MHD_Result send_nothing(request *r) {
     reply a = {.status = 204, .cache_control = "public, max-age=300"};
     return send_answer(r, &a);
 }
 
-static enum MHD_Result answer_stored(request *r, const camber_view_of_shown *view) {
+static enum MHD_Result answer_stored(request *r, const camber_content_view *view) {
     camber_body *body = NULL;
     if (r->route.ratio != 1 || r->route.dark || r->route.type != view->type)
         return send_error(r, 404);
@@ -188,7 +189,7 @@ static enum MHD_Result answer_stored(request *r, const camber_view_of_shown *vie
                .media_type = camber_route_get_media_type(r->route.type),
                .cache_control = "public, max-age=300"};
     memcpy(a.last_modified, view->last_modified, sizeof a.last_modified);
-    /* The bodies' own mark of compression belongs to whoever made them; the stored one has none. */
+    /* Other requests share the stored body, whose encoding is not set. A copy has the encoding that is sent. */
     const bool takes = camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
     camber_body *sent =
         takes ? camber_body_create(body->bytes, body->size_bytes) : camber_body_gunzip(body, LARGEST_UNPACKED_BYTES);
@@ -201,9 +202,9 @@ static enum MHD_Result answer_stored(request *r, const camber_view_of_shown *vie
     return send_answer(r, &a);
 }
 
-/* The tileset of a folder of mesh tiles. Its files are named by numbers. */
+/* Answers with the tileset of a folder of mesh tiles. Its files are identified by numbers only. */
 static enum MHD_Result answer_tileset(request *r) {
-    const camber_view_of_shown view = look(r->listener->server, false, NULL);
+    const camber_content_view view = look(r->listener->server, false, NULL);
     const bool is_root = r->route.route == CAMBER_ROUTE_TILESET;
     char name[64] = "tileset.json";
     if (!view.ready)
@@ -220,24 +221,24 @@ static enum MHD_Result answer_tileset(request *r) {
     return a.body ? send_answer(r, &a) : send_error(r, 404);
 }
 
-static void wake(camber_ask *ask) {
-    const request *r = ask->user;
+static void wake(camber_tile_request *tile_request) {
+    const request *r = tile_request->user;
     MHD_resume_connection(r->connection);
 }
 
-/* A client that has closed its side takes no answer any more. */
-static bool has_left(const camber_ask *ask) {
-    const request *r = ask->user;
+/* Whether the client has closed its end of the connection, so that nobody would receive the answer. */
+static bool has_left(const camber_tile_request *tile_request) {
+    const request *r = tile_request->user;
     struct pollfd look_at = {.fd = r->client->socket, .events = POLLRDHUP};
     return poll(&look_at, 1, 0) == 1 && look_at.revents & (POLLRDHUP | POLLHUP | POLLERR);
 }
 
-/* The connection sleeps from before it is asked, since the answer may be there at once. */
-static enum MHD_Result ask(request *r) {
+/* The connection is suspended before the request is queued, because the answer may arrive at once. */
+static enum MHD_Result request_tile(request *r) {
     r->asked = true;
-    r->ask = (camber_ask){.request = r->route, .done = wake, .is_gone = has_left, .user = r};
+    r->tile_request = (camber_tile_request){.request = r->route, .done = wake, .is_gone = has_left, .user = r};
     MHD_suspend_connection(r->connection);
-    if (!camber_draw_queue_ask(r->listener->server->drawing, &r->ask)) {
+    if (!camber_draw_queue_add(r->listener->server->queue, &r->tile_request)) {
         r->refused = true;
         MHD_resume_connection(r->connection);
     }
@@ -246,12 +247,12 @@ static enum MHD_Result ask(request *r) {
 
 static enum MHD_Result answer_drawn(request *r) {
     camber_server *server = r->listener->server;
-    const camber_view_of_shown view = look(server, r->route.dark, NULL);
+    const camber_content_view view = look(server, r->route.dark, NULL);
     const bool is_tile = r->route.route == CAMBER_ROUTE_TILE;
-    if (r->asked && !r->refused && r->ask.result == CAMBER_ASK_DONE)
-        return send_tile(r, &view, r->ask.body);
+    if (r->asked && !r->refused && r->tile_request.result == CAMBER_TILE_REQUEST_DONE)
+        return send_tile(r, &view, r->tile_request.body);
     if (r->asked)
-        return send_error(r, !r->refused && r->ask.result == CAMBER_ASK_FAILED ? 500 : 503);
+        return send_error(r, !r->refused && r->tile_request.result == CAMBER_TILE_REQUEST_FAILED ? 500 : 503);
     if (!view.ready || server->stopping)
         return send_error(r, 503);
     if (view.is_archive)
@@ -260,7 +261,7 @@ static enum MHD_Result answer_drawn(request *r) {
         (r->route.type == CAMBER_ROUTE_WEBP && !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
         return send_error(r, 404);
     camber_body *body = is_tile ? camber_tile_cache_get(server->cache, camber_draw_queue_key(&r->route)) : NULL;
-    return body ? send_tile(r, &view, body) : ask(r);
+    return body ? send_tile(r, &view, body) : request_tile(r);
 }
 
 /* ---- The other routes ---- */
@@ -279,7 +280,7 @@ static enum MHD_Result answer_page(request *r) {
 
 static enum MHD_Result answer_tilejson(request *r) {
     camber_body *bodies[2];
-    const camber_view_of_shown view = look(r->listener->server, r->route.dark, bodies);
+    const camber_content_view view = look(r->listener->server, r->route.dark, bodies);
     reply a = {.status = 200, .media_type = "application/json", .cache_control = "no-cache"};
     const enum MHD_Result result = !view.ready  ? send_error(r, 503)
                                    : !bodies[0] ? send_error(r, 404)
@@ -327,7 +328,7 @@ static enum MHD_Result answer_metrics(request *r) {
     return result;
 }
 
-/* An answer without an end, which takes no time of the connection's. */
+/* Answers with an endless stream, to which the time limit of connections does not apply. */
 static enum MHD_Result answer_events(request *r) {
     const camber_server *server = r->listener->server;
     const bool head = strcmp(r->method, "HEAD") == 0;
@@ -372,7 +373,7 @@ static camber_client *client_of(struct MHD_Connection *connection) {
     return info ? info->socket_context : NULL;
 }
 
-/* A target in absolute form names a server before its path. Whatever that name is, we are the server. */
+/* A target in absolute form names a server before its path. The name is ignored. */
 static const char *find_path(const char *uri) {
     const size_t scheme = strncasecmp(uri, "http://", 7) == 0 ? 7 : strncasecmp(uri, "https://", 8) == 0 ? 8 : 0;
     const size_t name = scheme ? strcspn(uri + scheme, "/?") : 0;
@@ -382,8 +383,8 @@ static const char *find_path(const char *uri) {
     return *path == '/' ? path : "/";
 }
 
-/* The path goes into the client's memory. Nothing is allocated here: libmicrohttpd drops requests that it refuses
- * without a word. */
+/* Copies the path into the client's memory. Nothing is allocated here, because libmicrohttpd drops requests without an
+ * answer if this fails. */
 void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *connection) {
     camber_client *client = client_of(connection);
     (void)user;
@@ -399,7 +400,7 @@ void *camber_request_begin(void *user, const char *uri, struct MHD_Connection *c
     return NULL;
 }
 
-/* The head of a request is here as a whole. NULL: no memory. */
+/* Called once the whole head of a request has been received. Returns NULL if memory is exhausted. */
 static request *take_request(camber_listener *listener, struct MHD_Connection *connection) {
     camber_client *client = client_of(connection);
     request *r = client ? calloc(1, sizeof *r) : NULL;
@@ -414,8 +415,8 @@ static request *take_request(camber_listener *listener, struct MHD_Connection *c
     return r;
 }
 
-/* The version stands one place behind the path, in the same buffer. Where more is between, the path has a zero byte in
- * it: what we were given is its beginning alone. */
+/* The version is one byte after the path, in the same buffer. If it is further away, the path contains a zero byte, and
+ * we have received only its beginning. */
 static bool is_whole(const request *r, const char *version) {
     enum { FARTHEST = 1 << 16 };
     const uintptr_t gap = (uintptr_t)version - r->client->path_end;
@@ -442,7 +443,8 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
         return MHD_YES;
     if (r->asked)
         return answer_drawn(r);
-    /* An answer at the first call ends the connection: right where a body follows, which nobody reads. */
+    /* An answer at the first call closes the connection. That is right if the request has a body, which nobody
+     * reads. */
     if (!r->begun && !has_body(r)) {
         r->begun = true;
         return MHD_YES;
@@ -451,7 +453,7 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
     const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
     int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->client->path, &r->route) : 404;
-    /* Where there are no pictures there are none that are too large. */
+    /* An archive and the metrics have no pictures, so a picture's path is not found, rather than too large. */
     if (status == 400 && (listener->is_for_metrics || look(listener->server, false, NULL).is_archive))
         status = 404;
     return status == 200 ? answer(r) : send_error(r, status);
@@ -503,8 +505,8 @@ void camber_request_end(void *user, struct MHD_Connection *connection, void **st
     if (server->desc.log_request && server->desc.logs_requests)
         log_request(r);
     camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
-    if (r->asked && !r->refused && r->status == 0) /* the answer came, and nobody takes it */
-        camber_body_release(r->ask.body);
+    if (r->asked && !r->refused && r->status == 0) /* the tile arrived, but is not sent */
+        camber_body_release(r->tile_request.body);
     r->client->request = NULL;
     free(r);
     *state = NULL;

@@ -1,4 +1,4 @@
-/* The server's inside: what its callbacks share, and the answers to requests. */
+/* Internals of the server: what its callbacks share, and the functions that answer requests. */
 #ifndef CAMBER_SERVE_ANSWER_H
 #define CAMBER_SERVE_ANSWER_H
 
@@ -16,17 +16,17 @@
 
 enum { CAMBER_DATE_SIZE = 40 };
 
-/* The chart or archive that is shown now, as requests see it. */
-typedef struct camber_view_of_shown {
+/* The map or archive that is served now, as requests see it. */
+typedef struct camber_content_view {
     bool ready, is_archive, has_dark;
-    camber_route_type type;      /* of an archive's tiles */
-    bool gzipped;                /* an archive's tiles are compressed */
-    camber_body *tilejson[2][2]; /* light or the only one, and dark; plain and compressed. NULL: there is none */
-    const char *tileset;         /* the folder with a tileset. NULL: there is none */
-    char last_modified[CAMBER_DATE_SIZE]; /* "": not told */
-} camber_view_of_shown;
+    camber_route_type type;      /* type of an archive's tiles */
+    bool gzipped;                /* the archive's tiles are compressed */
+    camber_body *tilejson[2][2]; /* [dark][compressed]; [0] is the light theme or the only one. NULL: not available */
+    const char *tileset;         /* the folder of a 3D Tiles tileset; NULL: none */
+    char last_modified[CAMBER_DATE_SIZE]; /* "": unknown */
+} camber_content_view;
 
-/* A socket that listens, and what it serves. */
+/* A socket that listens, and which requests it serves. */
 typedef struct camber_listener {
     camber_server *server;
     bool is_for_metrics;
@@ -38,26 +38,26 @@ typedef struct camber_listener {
 } camber_listener;
 
 struct camber_server {
-    camber_server_desc desc; /* defaults filled in */
+    camber_server_desc desc; /* with its defaults filled in */
     char url[256], policy[512];
     camber_listener page, metrics_page;
     camber_tile_cache *cache;
-    camber_tile_folder folder; /* of the cache, where it has one */
+    camber_tile_folder folder; /* the cache's folder, if it has one */
     camber_painter *painter;
-    camber_draw_queue *drawing;
+    camber_draw_queue *queue;
     camber_clients *clients;
-    camber_renderd *renderd; /* NULL: none */
-    camber_events *events;   /* NULL: the style is not edited */
+    camber_renderd *renderd; /* NULL: disabled */
+    camber_events *events;   /* NULL: the style is not being edited */
     camber_metrics metrics;
     double start_ms;
     atomic_bool stopping;
-    _Atomic int64_t in_flight; /* requests that are here, and not answered yet */
+    _Atomic int64_t in_flight; /* requests that have been received and not yet answered */
     camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
-    camber_body **page_bodies; /* two a file: plain, compressed or NULL */
-    pthread_mutex_t mutex;     /* of view */
-    camber_view_of_shown view;
+    camber_body **page_bodies; /* two per file: plain, then compressed or NULL */
+    pthread_mutex_t mutex;     /* guards view */
+    camber_content_view view;
     pthread_mutex_t reader_mutex;
-    camber_tiles_reader *reader; /* of an archive. NULL: none */
+    camber_tiles_reader *reader; /* of an archive; NULL: none */
     void (*close_reader)(void *owner);
     void *reader_owner;
 };
@@ -69,7 +69,7 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
                                       void **state);
 void camber_request_end(void *user, struct MHD_Connection *connection, void **state,
                         enum MHD_RequestTerminationCode code);
-/* The connection is about to be closed: ends what libmicrohttpd has not told the end of. client may be NULL. */
+/* Called before a connection is closed. Ends a request whose end libmicrohttpd has not reported. client may be NULL. */
 void camber_request_leave(camber_listener *listener, camber_client *client);
 
 #endif

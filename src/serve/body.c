@@ -1,4 +1,4 @@
-/* Bodies of answers, which several may hold, with their entity tags. */
+/* Bodies of answers, with reference counts and entity tags. */
 #include "base/base.h"
 #include "serve/tile_folder.h"
 #include <inttypes.h>
@@ -28,7 +28,7 @@ camber_body *camber_body_create(const void *bytes, size_t size_bytes) {
     body->size_bytes = size_bytes;
     if (size_bytes)
         memcpy(body->bytes, bytes, size_bytes);
-    /* Two hashes of different beginnings: bodies that differ have one tag once in 2^96 or so. */
+    /* Two hashes with different start values: the chance that two different bodies have the same tag is about 2^-96. */
     const uint64_t first = camber_mix(CAMBER_HASH_START, size_bytes), second = camber_mix(~CAMBER_HASH_START, first);
     snprintf(body->etag, sizeof body->etag, "\"%016" PRIx64 "%08" PRIx32 "\"",
              hash_bytes(first, body->bytes, size_bytes), (uint32_t)(hash_bytes(second, body->bytes, size_bytes) >> 32));

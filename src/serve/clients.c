@@ -1,5 +1,5 @@
-/* A list of the open connections, and a thread that looks through it now and then. A connection that takes too long is
- * shut down; the server then sees its end and closes it. */
+/* A list of the open connections, and a thread that checks it periodically. It shuts down a connection that has taken
+ * too long; the server then sees the end of the connection and closes it. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/clients.h"

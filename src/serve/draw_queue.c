@@ -1,8 +1,9 @@
-/* The queue of pictures.
+/* The queue of pictures to draw.
  *
- * A unit is a picture on its way: it waits, is drawn, and is kept with its pixels until another needs its room. Those
- * who ask hang on their unit. The thread that draws takes the unit that waits longest; threads that encode take one
- * tile at a time, for all who asked for it. Units are few, so that looking through all of them takes a microsecond. */
+ * A unit is a picture in progress: it is queued, is drawn, and keeps its pixels until another unit needs the memory.
+ * Each unit has a list of the requests that wait for it. One thread draws the unit that has waited longest. Other
+ * threads encode one tile at a time, for all requests of this tile. There are few units, so searching all of them takes
+ * a microsecond. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/draw_queue.h"
@@ -26,45 +27,46 @@ typedef enum unit_state {
 
 typedef struct unit {
     unit_state state;
-    camber_route_request request; /* of the one who asked first */
-    camber_tile_key key;          /* of the metatile's first tile */
-    uint64_t order;               /* when it was asked for, or used last */
-    uint64_t generation;          /* of the cache, when drawing it began */
-    camber_ask *asks;
-    size_t users; /* threads that encode of it */
-    camber_drawn drawn;
+    camber_route_request request; /* of the first request */
+    camber_tile_key key;          /* of the first tile of the metatile */
+    uint64_t order;               /* the queue's clock when it was last requested or used */
+    uint64_t generation;          /* generation of the cache when drawing began */
+    camber_tile_request *tile_requests;
+    size_t users; /* threads that are encoding tiles of the unit */
+    camber_rendered_picture rendered;
 } unit;
 
 struct camber_draw_queue {
     camber_draw_queue_desc desc;
     pthread_mutex_t mutex;
-    pthread_cond_t work, picture; /* something to draw; to encode, or room */
+    /* work: there is something to draw; picture: there is a tile to encode, or memory for a picture */
+    pthread_cond_t work, picture;
     unit *units;
     size_t unit_count, queued;
     uint64_t clock;
     bool stops, woken;
-    camber_threads threads; /* the first one draws */
+    camber_threads threads; /* the first thread draws */
 };
 
-/* A thread that encodes: its encoders, made when they are first needed. */
+/* A thread that encodes, and its encoders, which are created when first needed. */
 typedef struct encoding_thread {
-    camber_draw_queue *drawing;
+    camber_draw_queue *queue;
     camber_context *context;
-    camber_encoder *encoders[2][2]; /* by type, and whether it is opaque */
+    camber_encoder *encoders[2][2]; /* [type][is opaque] */
 } encoding_thread;
 
-bool camber_drawn_resize(camber_drawn *drawn) {
-    const size_t bytes = 4 * (size_t)drawn->width * drawn->height, step = CAMBER_PIXELS_ALIGNMENT;
-    const size_t wanted = (bytes + step - 1) / step * step; /* as aligned_alloc wants it */
-    if (wanted <= drawn->capacity_bytes)
+bool camber_rendered_picture_resize(camber_rendered_picture *rendered) {
+    const size_t bytes = 4 * (size_t)rendered->width * rendered->height, step = CAMBER_PIXELS_ALIGNMENT;
+    const size_t wanted = (bytes + step - 1) / step * step; /* aligned_alloc requires a multiple of the alignment */
+    if (wanted <= rendered->capacity_bytes)
         return true;
-    free(drawn->rgba);
-    drawn->rgba = aligned_alloc(step, wanted);
-    drawn->capacity_bytes = drawn->rgba ? wanted : 0;
-    return drawn->rgba != NULL;
+    free(rendered->rgba);
+    rendered->rgba = aligned_alloc(step, wanted);
+    rendered->capacity_bytes = rendered->rgba ? wanted : 0;
+    return rendered->rgba != NULL;
 }
 
-/* ---- Names ---- */
+/* ---- Keys ---- */
 
 uint32_t camber_draw_queue_side(uint32_t most, int zoom, uint32_t ratio) {
     uint32_t side = 1;
@@ -78,10 +80,10 @@ camber_tile_key camber_draw_queue_key(const camber_route_request *r) {
                              (uint64_t)r->ratio << 8 | (uint64_t)r->type << 1 | r->dark};
 }
 
-/* The key of a metatile is that of its first tile, whatever the type. */
-static camber_tile_key key_of_picture(const camber_draw_queue *drawing, const camber_route_request *request) {
+/* Returns the key of a metatile: that of its first tile, for all types. */
+static camber_tile_key key_of_picture(const camber_draw_queue *queue, const camber_route_request *request) {
     camber_route_request first = *request;
-    const uint32_t side = camber_draw_queue_side(drawing->desc.side, request->zoom, request->ratio);
+    const uint32_t side = camber_draw_queue_side(queue->desc.side, request->zoom, request->ratio);
     first.column -= first.column % side;
     first.row -= first.row % side;
     first.type = CAMBER_ROUTE_PNG;
@@ -92,19 +94,19 @@ static bool is_static(const unit *u) {
     return u->request.route == CAMBER_ROUTE_STATIC;
 }
 
-/* ---- Units; the mutex is held ---- */
+/* ---- Units (the caller holds the mutex) ---- */
 
 static void free_unit(unit *u) {
-    const camber_drawn kept = u->drawn;
-    *u = (unit){.drawn = {.rgba = kept.rgba, .capacity_bytes = kept.capacity_bytes}};
+    const camber_rendered_picture kept = u->rendered;
+    *u = (unit){.rendered = {.rgba = kept.rgba, .capacity_bytes = kept.capacity_bytes}};
 }
 
-/* A unit whose picture will have, or has, the tile. NULL: none. */
-static unit *find_unit(camber_draw_queue *drawing, const camber_route_request *request) {
-    const camber_tile_key key = key_of_picture(drawing, request);
-    const uint64_t generation = camber_tile_cache_get_generation(drawing->desc.cache);
-    for (size_t i = 0; i < drawing->unit_count && request->route == CAMBER_ROUTE_TILE; i++) {
-        unit *u = drawing->units + i;
+/* Finds a unit whose picture contains, or will contain, the tile. Returns NULL if there is none. */
+static unit *find_unit(camber_draw_queue *queue, const camber_route_request *request) {
+    const camber_tile_key key = key_of_picture(queue, request);
+    const uint64_t generation = camber_tile_cache_get_generation(queue->desc.cache);
+    for (size_t i = 0; i < queue->unit_count && request->route == CAMBER_ROUTE_TILE; i++) {
+        unit *u = queue->units + i;
         if (u->state != UNIT_FREE && !is_static(u) && u->key.place == key.place && u->key.look == key.look &&
             (u->state == UNIT_QUEUED || u->generation == generation))
             return u;
@@ -112,10 +114,10 @@ static unit *find_unit(camber_draw_queue *drawing, const camber_route_request *r
     return NULL;
 }
 
-static unit *find_oldest(camber_draw_queue *drawing, bool (*fits)(const unit *u)) {
+static unit *find_oldest(camber_draw_queue *queue, bool (*fits)(const unit *u)) {
     unit *oldest = NULL;
-    for (size_t i = 0; i < drawing->unit_count; i++) {
-        unit *u = drawing->units + i;
+    for (size_t i = 0; i < queue->unit_count; i++) {
+        unit *u = queue->units + i;
         if (fits(u) && (!oldest || u->order < oldest->order))
             oldest = u;
     }
@@ -131,175 +133,177 @@ static bool is_queued(const unit *u) {
 }
 
 static bool has_work(const unit *u) {
-    return u->state == UNIT_DRAWN && u->asks;
+    return u->state == UNIT_DRAWN && u->tile_requests;
 }
 
 static bool is_kept(const unit *u) {
-    return u->state == UNIT_DRAWN && !u->asks && u->users == 0;
+    return u->state == UNIT_DRAWN && !u->tile_requests && u->users == 0;
 }
 
-/* ---- Telling those who asked; no mutex is held ---- */
+/* ---- Finishing requests (the caller does not hold the mutex) ---- */
 
-static void tell(camber_ask *asks, camber_ask_result result, camber_body *body) {
-    for (camber_ask *ask = asks, *next; ask; ask = next) {
-        next = ask->next; /* the ask may be gone once it is done */
-        ask->result = result;
-        ask->body = body ? camber_body_hold(body) : NULL;
-        ask->done(ask);
+static void tell(camber_tile_request *tile_requests, camber_tile_request_result result, camber_body *body) {
+    for (camber_tile_request *tile_request = tile_requests, *next; tile_request; tile_request = next) {
+        next = tile_request->next; /* done may free the request */
+        tile_request->result = result;
+        tile_request->body = body ? camber_body_hold(body) : NULL;
+        tile_request->done(tile_request);
     }
 }
 
-/* Takes out those of a unit that are wanted, or all others. */
-static camber_ask *take_asks(unit *u, bool (*wanted)(const camber_ask *ask, const void *by), const void *by) {
-    camber_ask *taken = NULL, **end = &taken, **link = &u->asks;
+/* Removes and returns the unit's requests for which `wanted` returns true. */
+static camber_tile_request *take_requests(unit *u,
+                                          bool (*wanted)(const camber_tile_request *tile_request, const void *by),
+                                          const void *by) {
+    camber_tile_request *taken = NULL, **end = &taken, **link = &u->tile_requests;
     while (*link) {
-        camber_ask *ask = *link;
-        if (!wanted(ask, by)) {
-            link = &ask->next;
+        camber_tile_request *tile_request = *link;
+        if (!wanted(tile_request, by)) {
+            link = &tile_request->next;
             continue;
         }
-        *link = ask->next;
-        ask->next = NULL;
-        *end = ask;
-        end = &ask->next;
+        *link = tile_request->next;
+        tile_request->next = NULL;
+        *end = tile_request;
+        end = &tile_request->next;
     }
     return taken;
 }
 
-static bool is_gone(const camber_ask *ask, const void *by) {
+static bool is_gone(const camber_tile_request *tile_request, const void *by) {
     (void)by;
-    return ask->is_gone && ask->is_gone(ask);
+    return tile_request->is_gone && tile_request->is_gone(tile_request);
 }
 
-static bool is_same_tile(const camber_ask *ask, const void *by) {
+static bool is_same_tile(const camber_tile_request *tile_request, const void *by) {
     const camber_route_request *request = by;
-    return ask->request.type == request->type && ask->request.column == request->column &&
-           ask->request.row == request->row;
+    return tile_request->request.type == request->type && tile_request->request.column == request->column &&
+           tile_request->request.row == request->row;
 }
 
-/* ---- Asking ---- */
+/* ---- Adding requests ---- */
 
-bool camber_draw_queue_ask(camber_draw_queue *drawing, camber_ask *ask) {
-    pthread_mutex_lock(&drawing->mutex);
-    unit *u = find_unit(drawing, &ask->request);
-    if (!u && !drawing->stops && drawing->queued < drawing->desc.most_queued &&
-        (u = find_oldest(drawing, is_free)) != NULL) {
+bool camber_draw_queue_add(camber_draw_queue *queue, camber_tile_request *tile_request) {
+    pthread_mutex_lock(&queue->mutex);
+    unit *u = find_unit(queue, &tile_request->request);
+    if (!u && !queue->stops && queue->queued < queue->desc.most_queued && (u = find_oldest(queue, is_free)) != NULL) {
         u->state = UNIT_QUEUED;
-        u->request = ask->request;
-        u->key = key_of_picture(drawing, &ask->request);
-        u->order = ++drawing->clock;
-        drawing->desc.metrics->queued = (int64_t)++drawing->queued;
-        pthread_cond_signal(&drawing->work);
+        u->request = tile_request->request;
+        u->key = key_of_picture(queue, &tile_request->request);
+        u->order = ++queue->clock;
+        queue->desc.metrics->queued = (int64_t)++queue->queued;
+        pthread_cond_signal(&queue->work);
     }
-    const bool taken = u && !drawing->stops;
+    const bool taken = u && !queue->stops;
     if (taken) {
-        camber_ask **end = &u->asks;
+        camber_tile_request **end = &u->tile_requests;
         while (*end)
             end = &(*end)->next;
-        ask->next = NULL;
-        *end = ask;
+        tile_request->next = NULL;
+        *end = tile_request;
         if (u->state == UNIT_DRAWN) {
-            u->order = ++drawing->clock;
-            pthread_cond_broadcast(&drawing->picture);
+            u->order = ++queue->clock;
+            pthread_cond_broadcast(&queue->picture);
         }
     } else {
-        drawing->desc.metrics->refused++;
+        queue->desc.metrics->refused++;
     }
-    pthread_mutex_unlock(&drawing->mutex);
+    pthread_mutex_unlock(&queue->mutex);
     return taken;
 }
 
-void camber_draw_queue_wake(camber_draw_queue *drawing) {
-    pthread_mutex_lock(&drawing->mutex);
-    drawing->woken = true;
-    pthread_cond_signal(&drawing->work);
-    pthread_mutex_unlock(&drawing->mutex);
+void camber_draw_queue_wake(camber_draw_queue *queue) {
+    pthread_mutex_lock(&queue->mutex);
+    queue->woken = true;
+    pthread_cond_signal(&queue->work);
+    pthread_mutex_unlock(&queue->mutex);
 }
 
 /* ---- The thread that draws ---- */
 
-/* Takes the pixels of a kept picture where all rooms are in use. false: all of them are still encoded. */
-static bool find_room(camber_draw_queue *drawing, unit *u) {
+/* If the limit of pictures is reached, takes the pixels of the oldest kept picture. Returns false if all of them are
+ * still being encoded. */
+static bool find_room(camber_draw_queue *queue, unit *u) {
     size_t pictures = 0;
-    for (size_t i = 0; i < drawing->unit_count; i++)
-        pictures += drawing->units[i].state == UNIT_DRAWN;
-    if (pictures < drawing->desc.most_pictures)
+    for (size_t i = 0; i < queue->unit_count; i++)
+        pictures += queue->units[i].state == UNIT_DRAWN;
+    if (pictures < queue->desc.most_pictures)
         return true;
-    unit *oldest = find_oldest(drawing, is_kept);
+    unit *oldest = find_oldest(queue, is_kept);
     if (!oldest)
         return false;
-    free(u->drawn.rgba);
-    u->drawn = oldest->drawn;
-    oldest->drawn = (camber_drawn){0};
+    free(u->rendered.rgba);
+    u->rendered = oldest->rendered;
+    oldest->rendered = (camber_rendered_picture){0};
     free_unit(oldest);
     return true;
 }
 
-/* The mutex is held before and after, and not meanwhile. */
-static void draw_unit(camber_draw_queue *drawing, unit *u) {
+/* The mutex is held at the start and at the end, and released while the unit is drawn. */
+static void draw_unit(camber_draw_queue *queue, unit *u) {
     u->state = UNIT_DRAWING;
-    u->generation = camber_tile_cache_get_generation(drawing->desc.cache);
-    drawing->desc.metrics->queued = (int64_t)--drawing->queued;
-    pthread_mutex_unlock(&drawing->mutex);
+    u->generation = camber_tile_cache_get_generation(queue->desc.cache);
+    queue->desc.metrics->queued = (int64_t)--queue->queued;
+    pthread_mutex_unlock(&queue->mutex);
     const double start_ms = camber_now_ms();
-    const camber_status status = drawing->desc.draw(drawing->desc.user, &u->request, &u->drawn);
-    camber_histogram_observe(&drawing->desc.metrics->draw, 1e-3 * (camber_now_ms() - start_ms));
-    pthread_mutex_lock(&drawing->mutex);
+    const camber_status status = queue->desc.draw(queue->desc.user, &u->request, &u->rendered);
+    camber_histogram_observe(&queue->desc.metrics->draw, 1e-3 * (camber_now_ms() - start_ms));
+    pthread_mutex_lock(&queue->mutex);
     if (status == CAMBER_OK) {
         u->state = UNIT_DRAWN;
-        u->order = ++drawing->clock;
-        pthread_cond_broadcast(&drawing->picture);
+        u->order = ++queue->clock;
+        pthread_cond_broadcast(&queue->picture);
         return;
     }
-    camber_ask *asks = u->asks;
+    camber_tile_request *tile_requests = u->tile_requests;
     free_unit(u);
-    pthread_mutex_unlock(&drawing->mutex);
-    tell(asks, CAMBER_ASK_FAILED, NULL);
-    pthread_mutex_lock(&drawing->mutex);
+    pthread_mutex_unlock(&queue->mutex);
+    tell(tile_requests, CAMBER_TILE_REQUEST_FAILED, NULL);
+    pthread_mutex_lock(&queue->mutex);
 }
 
-/* Lets those go whose askers have left, and draws the unit for the others. */
-static void serve_unit(camber_draw_queue *drawing, unit *u) {
-    camber_ask *gone = take_asks(u, is_gone, NULL);
-    if (!u->asks) {
+/* Drops the requests whose clients have disconnected, and draws the unit if others remain. */
+static void serve_unit(camber_draw_queue *queue, unit *u) {
+    camber_tile_request *gone = take_requests(u, is_gone, NULL);
+    if (!u->tile_requests) {
         free_unit(u);
-        drawing->desc.metrics->queued = (int64_t)--drawing->queued;
-        drawing->desc.metrics->dropped++;
+        queue->desc.metrics->queued = (int64_t)--queue->queued;
+        queue->desc.metrics->dropped++;
         u = NULL;
     }
     if (gone) {
-        pthread_mutex_unlock(&drawing->mutex);
-        tell(gone, CAMBER_ASK_DROPPED, NULL);
-        pthread_mutex_lock(&drawing->mutex);
+        pthread_mutex_unlock(&queue->mutex);
+        tell(gone, CAMBER_TILE_REQUEST_DROPPED, NULL);
+        pthread_mutex_lock(&queue->mutex);
     }
     if (!u)
         return;
-    if (find_room(drawing, u))
-        draw_unit(drawing, u);
+    if (find_room(queue, u))
+        draw_unit(queue, u);
     else
-        pthread_cond_wait(&drawing->picture, &drawing->mutex);
+        pthread_cond_wait(&queue->picture, &queue->mutex);
 }
 
-static void run_drawing(camber_draw_queue *drawing) {
+static void run_drawing(camber_draw_queue *queue) {
     bool prepares = true;
-    pthread_mutex_lock(&drawing->mutex);
-    while (!drawing->stops) {
-        unit *u = find_oldest(drawing, is_queued);
+    pthread_mutex_lock(&queue->mutex);
+    while (!queue->stops) {
+        unit *u = find_oldest(queue, is_queued);
         if (u) {
-            serve_unit(drawing, u);
+            serve_unit(queue, u);
             continue;
         }
-        prepares = prepares || drawing->woken;
-        drawing->woken = false;
+        prepares = prepares || queue->woken;
+        queue->woken = false;
         if (!prepares) {
-            pthread_cond_wait(&drawing->work, &drawing->mutex);
+            pthread_cond_wait(&queue->work, &queue->mutex);
             continue;
         }
-        pthread_mutex_unlock(&drawing->mutex);
-        prepares = drawing->desc.prepare && drawing->desc.prepare(drawing->desc.user);
-        pthread_mutex_lock(&drawing->mutex);
+        pthread_mutex_unlock(&queue->mutex);
+        prepares = queue->desc.prepare && queue->desc.prepare(queue->desc.user);
+        pthread_mutex_lock(&queue->mutex);
     }
-    pthread_mutex_unlock(&drawing->mutex);
+    pthread_mutex_unlock(&queue->mutex);
 }
 
 /* ---- Threads that encode ---- */
@@ -313,66 +317,69 @@ static camber_encoder *find_encoder(encoding_thread *self, camber_route_type typ
     return *encoder;
 }
 
-static camber_body *encode(encoding_thread *self, const camber_drawn *drawn, const camber_route_request *request) {
+static camber_body *encode(encoding_thread *self, const camber_rendered_picture *rendered,
+                           const camber_route_request *request) {
     const uint8_t *bytes;
     size_t size_bytes;
     const bool whole = request->route == CAMBER_ROUTE_STATIC;
-    const size_t x = whole ? 0 : request->column % drawn->side, y = whole ? 0 : request->row % drawn->side;
-    const size_t stride = 4 * (size_t)drawn->width;
-    const camber_pixels pixels = {.rgba = drawn->rgba + stride * drawn->tile_px * y + 4 * (size_t)drawn->tile_px * x,
-                                  .width = whole ? drawn->width : drawn->tile_px,
-                                  .height = whole ? drawn->height : drawn->tile_px,
+    const size_t x = whole ? 0 : request->column % rendered->side, y = whole ? 0 : request->row % rendered->side;
+    const size_t stride = 4 * (size_t)rendered->width;
+    const camber_pixels pixels = {.rgba = rendered->rgba + stride * rendered->tile_px * y +
+                                          4 * (size_t)rendered->tile_px * x,
+                                  .width = whole ? rendered->width : rendered->tile_px,
+                                  .height = whole ? rendered->height : rendered->tile_px,
                                   .stride_bytes = stride};
-    camber_encoder *encoder = find_encoder(self, request->type, drawn->opaque);
+    camber_encoder *encoder = find_encoder(self, request->type, rendered->opaque);
     if (!encoder || camber_encoder_encode(encoder, &pixels, &bytes, &size_bytes) != CAMBER_OK)
         return NULL;
     return camber_body_create(bytes, size_bytes);
 }
 
-/* Encodes one tile of the unit for all who asked for it. The mutex is held before and after, and not meanwhile. */
+/* Encodes one tile of the unit for all requests of it. The mutex is held at the start and at the end, and released
+ * while the tile is encoded. */
 static void encode_one(encoding_thread *self, unit *u) {
-    camber_draw_queue *drawing = self->drawing;
-    const camber_route_request request = u->asks->request;
-    camber_ask *asks = take_asks(u, is_same_tile, &request);
+    camber_draw_queue *queue = self->queue;
+    const camber_route_request request = u->tile_requests->request;
+    camber_tile_request *tile_requests = take_requests(u, is_same_tile, &request);
     u->users++;
-    pthread_mutex_unlock(&drawing->mutex);
+    pthread_mutex_unlock(&queue->mutex);
     const double start_ms = camber_now_ms();
-    camber_body *body = encode(self, &u->drawn, &request);
-    camber_histogram_observe(&drawing->desc.metrics->encode, 1e-3 * (camber_now_ms() - start_ms));
+    camber_body *body = encode(self, &u->rendered, &request);
+    camber_histogram_observe(&queue->desc.metrics->encode, 1e-3 * (camber_now_ms() - start_ms));
     if (body && request.route == CAMBER_ROUTE_TILE)
-        camber_tile_cache_put(drawing->desc.cache, camber_draw_queue_key(&request), body, u->generation);
-    tell(asks, body ? CAMBER_ASK_DONE : CAMBER_ASK_FAILED, body);
+        camber_tile_cache_put(queue->desc.cache, camber_draw_queue_key(&request), body, u->generation);
+    tell(tile_requests, body ? CAMBER_TILE_REQUEST_DONE : CAMBER_TILE_REQUEST_FAILED, body);
     camber_body_release(body);
-    pthread_mutex_lock(&drawing->mutex);
+    pthread_mutex_lock(&queue->mutex);
     u->users--;
-    if (is_static(u) && is_kept(u)) { /* nobody else asks for it, and it may be large */
-        free(u->drawn.rgba);
-        u->drawn = (camber_drawn){0};
+    if (is_static(u) && is_kept(u)) { /* no other request will need it, and it may be large */
+        free(u->rendered.rgba);
+        u->rendered = (camber_rendered_picture){0};
         free_unit(u);
     }
-    pthread_cond_broadcast(&drawing->picture);
+    pthread_cond_broadcast(&queue->picture);
 }
 
-static void run_encoding(camber_draw_queue *drawing) {
-    encoding_thread self = {.drawing = drawing};
-    const camber_context_desc desc = {.log = drawing->desc.log, .log_user = drawing->desc.log_user, .cache_dir = ""};
+static void run_encoding(camber_draw_queue *queue) {
+    encoding_thread self = {.queue = queue};
+    const camber_context_desc desc = {.log = queue->desc.log, .log_user = queue->desc.log_user, .cache_dir = ""};
     if (camber_context_create(&desc, &self.context) != CAMBER_OK)
         self.context = NULL;
-    pthread_mutex_lock(&drawing->mutex);
-    while (!drawing->stops && self.context) {
-        unit *u = find_oldest(drawing, has_work);
+    pthread_mutex_lock(&queue->mutex);
+    while (!queue->stops && self.context) {
+        unit *u = find_oldest(queue, has_work);
         if (u)
             encode_one(&self, u);
         else
-            pthread_cond_wait(&drawing->picture, &drawing->mutex);
+            pthread_cond_wait(&queue->picture, &queue->mutex);
     }
-    pthread_mutex_unlock(&drawing->mutex);
+    pthread_mutex_unlock(&queue->mutex);
     for (int i = 0; i < 4; i++)
         camber_encoder_destroy(self.encoders[i / 2][i % 2]);
     camber_context_destroy(self.context);
 }
 
-/* ---- The drawing ---- */
+/* ---- The queue ---- */
 
 static void run(void *user, size_t number) {
     if (number == 0)
@@ -381,10 +388,10 @@ static void run(void *user, size_t number) {
         run_encoding(user);
 }
 
-/* One thread has to draw, and one to encode. */
-static bool start_threads(camber_draw_queue *drawing) {
-    camber_threads_start(&drawing->threads, 1 + (size_t)drawing->desc.threads, run, drawing);
-    return drawing->threads.count > 1;
+/* At least one thread draws, and one encodes. */
+static bool start_threads(camber_draw_queue *queue) {
+    camber_threads_start(&queue->threads, 1 + (size_t)queue->desc.threads, run, queue);
+    return queue->threads.count > 1;
 }
 
 camber_draw_queue *camber_draw_queue_create(const camber_draw_queue_desc *desc) {
@@ -402,29 +409,29 @@ camber_draw_queue *camber_draw_queue_create(const camber_draw_queue_desc *desc) 
     return NULL;
 }
 
-void camber_draw_queue_stop(camber_draw_queue *drawing) {
-    pthread_mutex_lock(&drawing->mutex);
-    drawing->stops = true;
-    pthread_cond_broadcast(&drawing->work);
-    pthread_cond_broadcast(&drawing->picture);
-    pthread_mutex_unlock(&drawing->mutex);
-    camber_threads_join(&drawing->threads);
-    for (size_t i = 0; drawing->units && i < drawing->unit_count; i++) {
-        camber_ask *asks = drawing->units[i].asks;
-        drawing->units[i].asks = NULL;
-        tell(asks, CAMBER_ASK_DROPPED, NULL);
+void camber_draw_queue_stop(camber_draw_queue *queue) {
+    pthread_mutex_lock(&queue->mutex);
+    queue->stops = true;
+    pthread_cond_broadcast(&queue->work);
+    pthread_cond_broadcast(&queue->picture);
+    pthread_mutex_unlock(&queue->mutex);
+    camber_threads_join(&queue->threads);
+    for (size_t i = 0; queue->units && i < queue->unit_count; i++) {
+        camber_tile_request *tile_requests = queue->units[i].tile_requests;
+        queue->units[i].tile_requests = NULL;
+        tell(tile_requests, CAMBER_TILE_REQUEST_DROPPED, NULL);
     }
 }
 
-void camber_draw_queue_destroy(camber_draw_queue *drawing) {
-    if (!drawing)
+void camber_draw_queue_destroy(camber_draw_queue *queue) {
+    if (!queue)
         return;
-    camber_draw_queue_stop(drawing);
-    for (size_t i = 0; drawing->units && i < drawing->unit_count; i++)
-        free(drawing->units[i].drawn.rgba);
-    pthread_cond_destroy(&drawing->picture);
-    pthread_cond_destroy(&drawing->work);
-    pthread_mutex_destroy(&drawing->mutex);
-    free(drawing->units);
-    free(drawing);
+    camber_draw_queue_stop(queue);
+    for (size_t i = 0; queue->units && i < queue->unit_count; i++)
+        free(queue->units[i].rendered.rgba);
+    pthread_cond_destroy(&queue->picture);
+    pthread_cond_destroy(&queue->work);
+    pthread_mutex_destroy(&queue->mutex);
+    free(queue->units);
+    free(queue);
 }

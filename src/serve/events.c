@@ -1,4 +1,5 @@
-/* Streams of events. A listener sleeps while it has been told all; an event, a beat or the end wakes everyone. */
+/* Streams of events. A listener sleeps while it is up to date. A new event, a heartbeat or the end of the streams wakes
+ * all listeners. */
 #include "serve/events.h"
 
 #include <jansson.h>
@@ -13,9 +14,9 @@ typedef struct listener {
     camber_events *events;
     struct MHD_Connection *connection;
     struct listener *next, *before;
-    unsigned state, beat; /* that it was told */
+    unsigned state, beat; /* the last ones that it was sent */
     bool sleeps;
-    char text[EVENT_BYTES]; /* that is on its way, from sent up to size */
+    char text[EVENT_BYTES]; /* the text being sent; sent of its size bytes have been sent */
     size_t sent, size;
 } listener;
 
@@ -43,7 +44,7 @@ void camber_events_destroy(camber_events *events) {
     free(events);
 }
 
-/* ---- Telling; the mutex is held in the first two ---- */
+/* ---- Publishing (the mutex is held in the first two functions) ---- */
 
 static void wake_all(camber_events *events) {
     for (listener *one = events->first; one; one = one->next)
@@ -67,12 +68,12 @@ static void write_event(const camber_events *events, listener *one) {
 void camber_events_tell(camber_events *events, const char *error) {
     pthread_mutex_lock(&events->mutex);
     if (error) {
-        /* Bytes that are no UTF-8 would be no JSON. */
+        /* JSON requires UTF-8 */
         json_t *checked = json_string(error);
         snprintf(events->error, sizeof events->error, "%s", checked ? error : "the style cannot be read");
         json_decref(checked);
         for (size_t size = strlen(events->error); !(checked = json_string(events->error)) && size; size--)
-            events->error[size - 1] = 0; /* cut within a letter */
+            events->error[size - 1] = 0; /* the text may have been cut within a character */
         json_decref(checked);
     } else {
         events->error[0] = 0;
@@ -99,7 +100,7 @@ void camber_events_end(camber_events *events) {
 
 /* ---- A listener ---- */
 
-/* Called for more bytes; 0 of them, and the connection sleeps until there are some. */
+/* libmicrohttpd calls this for more bytes. If it returns 0, the connection is suspended until there are some. */
 static ssize_t give_bytes(void *user, uint64_t position, char *bytes, size_t most) {
     listener *one = user;
     camber_events *events = one->events;

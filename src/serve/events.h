@@ -1,9 +1,9 @@
-/* Events for pages that show a style while it is edited: a stream of text/event-stream to each who listens.
+/* Events for pages that show a style while it is edited: a stream of text/event-stream for each listener.
  *
  *     event: style
  *     data: {"revision": 3, "error": null}
  *
- * Whoever begins to listen is told how things are. Any thread may call. */
+ * A new listener first gets the current state. Any thread may call these functions. */
 #ifndef CAMBER_SERVE_EVENTS_H
 #define CAMBER_SERVE_EVENTS_H
 
@@ -11,17 +11,17 @@
 
 typedef struct camber_events camber_events;
 
-/* NULL: no memory. */
+/* Returns NULL if there is no memory. */
 camber_events *camber_events_create(void);
-/* Nobody listens any more. */
+/* There must be no more listeners. */
 void camber_events_destroy(camber_events *events);
-/* The style was read anew; or it could not be, for this error. */
+/* Announces that the style has been reloaded; if error is not NULL, that reloading failed for this reason. */
 void camber_events_tell(camber_events *events, const char *error);
-/* Sends a line that says nothing, by which a listener that has gone is found. */
+/* Sends an empty line to each listener, to detect disconnected ones. */
 void camber_events_beat(camber_events *events);
-/* Ends all streams, and those that begin. */
+/* Ends all streams, and every new one at once. */
 void camber_events_end(camber_events *events);
-/* The endless answer for a connection; NULL: no memory, or too many listen. */
+/* Returns the endless response for a connection; NULL if there is no memory, or there are too many listeners. */
 struct MHD_Response *camber_events_listen(camber_events *events, struct MHD_Connection *connection);
 
 #endif

@@ -1,4 +1,4 @@
-/* Compresses and unpacks bodies by zlib, and reads Accept-Encoding. */
+/* Compresses and decompresses bodies with zlib, and parses Accept-Encoding. */
 #include "serve/gzip.h"
 
 #include <limits.h>
@@ -22,7 +22,7 @@ camber_body *camber_body_gzip(const camber_body *body) {
     if (body->size_bytes < LEAST_BYTES || body->size_bytes > INT_MAX ||
         deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
         return NULL;
-    const size_t room = body->size_bytes / 10 * 9; /* a tenth less at least */
+    const size_t room = body->size_bytes / 10 * 9; /* it must save at least a tenth */
     unsigned char *packed = malloc(room);
     stream.next_in = (unsigned char *)body->bytes;
     stream.avail_in = (uInt)body->size_bytes;
@@ -55,7 +55,7 @@ camber_body *camber_body_gunzip(const camber_body *body, size_t most_bytes) {
         stream.next_out = bytes + stream.total_out;
         stream.avail_out = (uInt)(room - stream.total_out);
         result = inflate(&stream, Z_FINISH);
-        if (stream.avail_out > 0) /* it is cut off, or wrong, or done */
+        if (stream.avail_out > 0) /* the data is truncated, corrupt, or complete */
             break;
         room *= 2;
     }
@@ -77,7 +77,7 @@ bool camber_accepts_gzip(const char *accept_encoding) {
             const char *rest = at + name + strspn(at + name, blanks);
             rest += *rest == ';';
             rest += strspn(rest, blanks);
-            /* A weight of 0 refuses it. */
+            /* A weight of 0 means that gzip is not accepted. */
             return !(strncasecmp(rest, "q=0", 3) == 0 && strspn(rest + 3, ".0") == strcspn(rest + 3, ", \t"));
         }
         at += length;

@@ -1,4 +1,4 @@
-/* Writes metatiles for mod_tile; the layout is in the header. */
+/* Writes metatiles for mod_tile. The header describes the layout. */
 #include "serve/metatile_file.h"
 
 #include "base/whole_file.h"

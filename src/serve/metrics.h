@@ -1,4 +1,4 @@
-/* The server counts what it does, for Prometheus to read. Any thread may count. */
+/* Counters of what the server does, for Prometheus. Any thread may count. */
 #ifndef CAMBER_SERVE_METRICS_H
 #define CAMBER_SERVE_METRICS_H
 
@@ -9,31 +9,33 @@
 
 enum { CAMBER_HISTOGRAM_BUCKETS = 10, CAMBER_STATUS_KINDS = 13 };
 
-/* Seconds of what happens again and again. */
+/* A histogram of durations, in seconds. */
 typedef struct camber_histogram {
-    _Atomic uint64_t buckets[CAMBER_HISTOGRAM_BUCKETS + 1]; /* each counts its own range; the last has no end */
+    /* each counts only its own range; the last has no upper bound */
+    _Atomic uint64_t buckets[CAMBER_HISTOGRAM_BUCKETS + 1];
     _Atomic uint64_t microseconds;
 } camber_histogram;
 
-/* Zeroed, nothing has happened. */
+/* A zeroed struct is valid, and means that nothing has been counted. */
 typedef struct camber_metrics {
     _Atomic uint64_t requests[CAMBER_ROUTES][CAMBER_STATUS_KINDS];
-    _Atomic uint64_t sent_bytes, dropped, refused; /* dropped: no client waited any more; refused: the queue was full */
+    /* dropped: no client waited for the picture any more; refused: the queue was full */
+    _Atomic uint64_t sent_bytes, dropped, refused;
     camber_histogram draw, encode;
-    _Atomic int64_t connections, queued; /* as they are now */
+    _Atomic int64_t connections, queued; /* current values */
 } camber_metrics;
 
-/* These are looked up when the metrics are asked for. */
+/* Values that are read when the metrics are requested. */
 typedef struct camber_metrics_now {
     camber_tile_cache_stats cache;
     bool ready;
-    int64_t in_flight; /* requests that are not answered yet */
+    int64_t in_flight; /* requests that have not been answered yet */
     double uptime_s;
 } camber_metrics_now;
 
 void camber_metrics_count_request(camber_metrics *metrics, camber_route route, int status);
 void camber_histogram_observe(camber_histogram *histogram, double seconds);
-/* Writes all of it in Prometheus' text format. */
+/* Writes all metrics in Prometheus' text format. */
 void camber_metrics_write(camber_metrics *metrics, const camber_metrics_now *now, FILE *file);
 
 #endif

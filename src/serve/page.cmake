@@ -34,7 +34,7 @@ endif()
 find_path(CAMBER_LEAFLET leaflet.css
           PATHS /usr/share/javascript/leaflet ${CMAKE_BINARY_DIR}/npm/node_modules/leaflet/dist NO_DEFAULT_PATH
           DOC "Folder of Leaflet's leaflet.css and leaflet.js")
-# In Debian leaflet.js is the long one; npm has the short one alone.
+# In Debian leaflet.js is the unminified file; npm has only the minified one, under this name.
 find_file(CAMBER_LEAFLET_SCRIPT NAMES leaflet.min.js leaflet.js PATHS ${CAMBER_LEAFLET} NO_DEFAULT_PATH)
 find_file(CAMBER_LEAFLET_LICENSE NAMES LICENSE copyright
           PATHS ${CAMBER_LEAFLET}/.. /usr/share/doc/libjs-leaflet NO_DEFAULT_PATH)

@@ -1,12 +1,12 @@
-/* The files of the page that camber serve shows: those of src/serve/page/, and Leaflet's, which the build takes from
- * this machine (src/serve/page.cmake). */
+/* The files of camber serve's page: those in src/serve/page/, and Leaflet's, which the build copies from this machine
+ * (src/serve/page.cmake). */
 #ifndef CAMBER_SERVE_PAGE_H
 #define CAMBER_SERVE_PAGE_H
 
 #include <stddef.h>
 
 typedef struct camber_page_file {
-    const char *path; /* behind /page/; "" is the page itself, which is at / */
+    const char *path; /* the path after /page/; "" is the page itself, which is at / */
     const char *content_type;
     const unsigned char *bytes;
     size_t size;

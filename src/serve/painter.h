@@ -1,5 +1,5 @@
-/* The painter draws what the queue asks for: tiles by engines, pictures of any view by scenes, of one chart, which is
- * replaced while it works. */
+/* The painter draws what the queue requests: tiles with engines, and pictures of any view with scenes. It draws one
+ * map, which may be replaced while it works. */
 #ifndef CAMBER_SERVE_PAINTER_H
 #define CAMBER_SERVE_PAINTER_H
 
@@ -7,39 +7,38 @@
 
 #include "camber_tiles.h"
 
-enum { CAMBER_CHART_THEMES = 2, CAMBER_CHART_MOST_RATIO = 8 };
+enum { CAMBER_MAP_SOURCE_THEMES = 2, CAMBER_MAP_SOURCE_MOST_RATIO = 8 };
 
-/* A chart is what is drawn: features in one style, or in the two themes of one. The painter's thread alone uses what it
- * names from when it is put until it is closed. */
-typedef struct camber_chart {
+/* A map to draw: features with one style, or with the light and the dark theme of one. Once it has been put, only the
+ * painter's thread uses its members, until it is closed. */
+typedef struct camber_map_source {
     camber_features *features;
-    camber_style *styles[CAMBER_CHART_THEMES]; /* light or the only one; dark. NULL: there is none */
+    camber_style *styles[CAMBER_MAP_SOURCE_THEMES]; /* light or the only one, then dark. NULL: not available */
     camber_renderer *renderer;
     camber_device *device;
     double simplify_px;
     camber_coverage coverage;
-    uint32_t threads; /* as camber_tiles_engine_desc has it */
-    bool opaque;      /* the background covers everything at each zoom */
-    uint64_t input;   /* a hash of all of the above, as camber_tile_cache_clear has it */
-    /* Tells how drawing a picture has ended, behind what the library has said. NULL: nobody is told. */
+    uint32_t threads; /* as in camber_tiles_engine_desc */
+    bool opaque;      /* the background is opaque at each zoom */
+    uint64_t input;   /* a hash of all of the above, for camber_tile_cache_clear */
+    /* Called after a picture has been drawn, with the status; a failure has already been logged. May be NULL. */
     void (*drawn)(void *owner, camber_status status);
-    /* Frees features, styles and whatever they need. NULL: the caller does so. */
+    /* Frees features, styles and whatever they need. NULL: the caller does it. */
     void (*close)(void *owner);
-    void *owner; /* of both */
-} camber_chart;
+    void *owner; /* passed to both functions */
+} camber_map_source;
 
 typedef struct camber_painter camber_painter;
 
-/* side: as camber_draw_queue_desc has it. NULL: no memory. */
+/* side: as in camber_draw_queue_desc. Returns NULL if there is no memory. */
 camber_painter *camber_painter_create(camber_tile_cache *cache, uint32_t side);
-/* Closes the charts that are left; no other thread uses the painter any more. */
+/* Closes the remaining map sources. No other thread may use the painter any more. */
 void camber_painter_destroy(camber_painter *painter);
-/* Hands a chart over, from any thread. It is drawn from the next picture on, and
- * the cache is empty. */
-void camber_painter_put(camber_painter *painter, const camber_chart *chart);
+/* Sets the map that is drawn from the next picture on, and clears the cache. Any thread may call this. */
+void camber_painter_put(camber_painter *painter, const camber_map_source *source);
 
-/* For camber_draw_queue_desc: user is the painter. */
-camber_status camber_painter_draw(void *user, const camber_route_request *request, camber_drawn *drawn);
+/* Callbacks for camber_draw_queue_desc; user is the painter. */
+camber_status camber_painter_draw(void *user, const camber_route_request *request, camber_rendered_picture *drawn);
 bool camber_painter_prepare(void *user);
 
 #endif

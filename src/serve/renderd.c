@@ -1,8 +1,9 @@
 /* mod_tile's protocol over a Unix socket.
  *
- * A request is a struct of this machine: version, command, x, y, z, and from version 2 on the map's name, from 3 on a
- * media type and options. The answer is the same struct, with "done" or "not done" as its command. Each connection has
- * a thread, which asks the queue for the tiles of the metatile, waits for them, and writes the file. */
+ * A request is a struct in this machine's byte order: version, command, x, y, z; since version 2 also the map's name,
+ * and since version 3 a media type and options. The answer is the same struct, with "done" or "not done" as its
+ * command. Each connection has a thread, which requests the tiles of the metatile from the queue, waits for them, and
+ * writes the file. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/renderd.h"
@@ -28,9 +29,9 @@ enum {
     NAME_SIZE = 41,
     MOST_ZOOM = 20,
     SIDE = CAMBER_METATILE_FILE_SIDE,
-    LONGEST_SEND_MS = 30000, /* that a client may take for an answer; when the server ends, it has less */
+    LONGEST_SEND_MS = 30000, /* for receiving an answer; less when the server stops */
     LONGEST_LAST_SEND_MS = 1000,
-    LEAST_WAIT_MS = 1000, /* a client that has sent nothing for so long makes room for another */
+    LEAST_WAIT_MS = 1000, /* a client that has sent nothing for this long can be replaced by another */
     LOOK_MS = 100,
 };
 
@@ -56,9 +57,9 @@ static const size_t sizes[] = {0, 20, 64, sizeof(protocol_message)};
 typedef struct renderd_client {
     camber_renderd *renderd;
     pthread_t thread;
-    int socket;              /* -1: the place is free */
-    atomic_bool ends;        /* the thread is to be joined */
-    _Atomic double waits_ms; /* since when it waits for a request. 0: it answers one */
+    int socket;              /* -1: the slot is free */
+    atomic_bool ends;        /* the thread has ended and can be joined */
+    _Atomic double waits_ms; /* since when it has been waiting for a request; 0: it is answering one */
 } renderd_client;
 
 struct camber_renderd {
@@ -66,43 +67,44 @@ struct camber_renderd {
     size_t most_clients;
     camber_acceptor *acceptor;
     atomic_bool stopping;
-    pthread_mutex_t mutex; /* of clients' sockets */
+    pthread_mutex_t mutex; /* guards clients' sockets */
     renderd_client clients[MOST_CLIENTS];
 };
 
 /* ---- A metatile ---- */
 
-typedef struct metatile_ask {
+typedef struct metatile_request {
     pthread_mutex_t mutex;
     pthread_cond_t told;
     size_t left;
-    camber_ask asks[CAMBER_METATILE_FILE_TILES];
+    camber_tile_request tile_requests[CAMBER_METATILE_FILE_TILES];
     camber_body *bodies[CAMBER_METATILE_FILE_TILES];
-} metatile_ask;
+} metatile_request;
 
-static void take(camber_ask *ask) {
-    metatile_ask *m = ask->user;
+static void take(camber_tile_request *tile_request) {
+    metatile_request *m = tile_request->user;
     pthread_mutex_lock(&m->mutex);
-    m->bodies[ask - m->asks] = ask->body;
+    m->bodies[tile_request - m->tile_requests] = tile_request->body;
     m->left--;
     pthread_cond_signal(&m->told);
     pthread_mutex_unlock(&m->mutex);
 }
 
-/* Asks for one tile, again and again while the queue is full. */
-static void ask_for(camber_renderd *renderd, metatile_ask *m, size_t index, const camber_route_request *first) {
+/* Requests one tile, and retries while the queue is full. */
+static void request_tile(camber_renderd *renderd, metatile_request *m, size_t index,
+                         const camber_route_request *first) {
     const struct timespec pause = {.tv_nsec = 2000000};
-    camber_ask *ask = m->asks + index;
-    *ask = (camber_ask){.request = *first, .done = take, .user = m};
-    ask->request.column += (uint32_t)(index / SIDE);
-    ask->request.row += (uint32_t)(index % SIDE);
+    camber_tile_request *tile_request = m->tile_requests + index;
+    *tile_request = (camber_tile_request){.request = *first, .done = take, .user = m};
+    tile_request->request.column += (uint32_t)(index / SIDE);
+    tile_request->request.row += (uint32_t)(index % SIDE);
     pthread_mutex_lock(&m->mutex);
     m->left++;
     pthread_mutex_unlock(&m->mutex);
-    while (!camber_draw_queue_ask(renderd->desc.queue, ask)) {
+    while (!camber_draw_queue_add(renderd->desc.queue, tile_request)) {
         if (renderd->stopping) {
-            ask->body = NULL;
-            take(ask);
+            tile_request->body = NULL;
+            take(tile_request);
             return;
         }
         nanosleep(&pause, NULL);
@@ -110,14 +112,14 @@ static void ask_for(camber_renderd *renderd, metatile_ask *m, size_t index, cons
 }
 
 static int write_metatile(camber_renderd *renderd, const char *name, const camber_route_request *first) {
-    metatile_ask m = {.left = 0};
+    metatile_request m = {.left = 0};
     const uint32_t tiles = first->zoom < 3 ? 1u << first->zoom : SIDE;
     bool whole = true;
     pthread_mutex_init(&m.mutex, NULL);
     pthread_cond_init(&m.told, NULL);
     for (size_t i = 0; i < CAMBER_METATILE_FILE_TILES; i++)
         if (i / SIDE < tiles && i % SIDE < tiles)
-            ask_for(renderd, &m, i, first);
+            request_tile(renderd, &m, i, first);
     pthread_mutex_lock(&m.mutex);
     while (m.left)
         pthread_cond_wait(&m.told, &m.mutex);
@@ -146,7 +148,7 @@ static int write_metatile(camber_renderd *renderd, const char *name, const cambe
 
 /* ---- Requests ---- */
 
-/* A name becomes a folder: letters, digits, - and _ alone. */
+/* A name becomes the name of a folder, so only letters, digits, - and _ are allowed. */
 static bool is_name(const char *name) {
     const size_t length = strnlen(name, NAME_SIZE);
     return length >= 1 && length < NAME_SIZE &&
@@ -192,7 +194,7 @@ static bool receive(int from, void *bytes, size_t size) {
     return true;
 }
 
-/* Reads a request whole. Version 1 has no name: it is that of mod_tile's default. */
+/* Reads a whole request. Version 1 has no name; then the name is mod_tile's default. */
 static bool receive_message(int from, protocol_message *message) {
     *message = (protocol_message){.name = "default"};
     if (!receive(from, message, sizes[1]) || message->version < 1 || message->version > 3)
@@ -200,12 +202,12 @@ static bool receive_message(int from, protocol_message *message) {
     const size_t size = sizes[message->version];
     if (!receive(from, (char *)message + sizes[1], size - sizes[1]))
         return false;
-    if (message->version == 2) /* its end is padding, where a later version has a media type */
+    if (message->version == 2) /* in version 2 padding follows; a later version has a media type there */
         message->media_type[0] = 0;
     return true;
 }
 
-/* false: the client has gone, or takes no answer. */
+/* Returns false if the client has disconnected, or does not receive the answer. */
 static bool send_message(const renderd_client *client, const protocol_message *message) {
     const char *at = (const char *)message;
     size_t left = sizes[message->version];
@@ -246,7 +248,7 @@ static void *serve_client(void *user) {
         if (!silent && !send_message(client, &message))
             break;
     }
-    (void)shutdown(client->socket, SHUT_RDWR); /* it is closed when the place is needed, or at the end */
+    (void)shutdown(client->socket, SHUT_RDWR); /* it is closed when the slot is needed, or at the end */
     client->ends = true;
     return NULL;
 }
@@ -262,7 +264,8 @@ static void close_client(camber_renderd *renderd, renderd_client *client) {
     pthread_mutex_unlock(&renderd->mutex);
 }
 
-/* A place that is free, or that of the client that has been silent for longest. NULL: all of them are at work. */
+/* Finds a free slot, or that of the client that has been silent for longest. Returns NULL if all clients are being
+ * served. */
 static renderd_client *find_room(camber_renderd *renderd) {
     renderd_client *place = NULL, *silent = NULL;
     for (size_t i = 0; i < renderd->most_clients; i++) {
@@ -281,7 +284,7 @@ static renderd_client *find_room(camber_renderd *renderd) {
     return silent;
 }
 
-/* One more than there is room for is closed at once. */
+/* If there are too many clients, the new one is closed at once. */
 static void take_client(void *user, int socket) {
     camber_renderd *renderd = user;
     renderd_client *place = find_room(renderd);
@@ -299,7 +302,7 @@ static void take_client(void *user, int socket) {
 
 /* ---- The socket ---- */
 
-/* Binds; a socket at that path that nobody listens at goes. */
+/* Binds the socket. If nobody listens at a socket that exists at this path, it is removed first. */
 static int bind_socket(int made, const struct sockaddr_un *address) {
     struct stat about;
     if (bind(made, (const struct sockaddr *)address, sizeof *address) == 0)
@@ -364,7 +367,7 @@ void camber_renderd_destroy(camber_renderd *renderd) {
     camber_acceptor_destroy(renderd->acceptor);
     for (size_t i = 0; i < MOST_CLIENTS; i++)
         if (renderd->clients[i].socket >= 0)
-            (void)shutdown(renderd->clients[i].socket, SHUT_RD); /* its answer is sent still */
+            (void)shutdown(renderd->clients[i].socket, SHUT_RD); /* its answer is still sent */
     for (size_t i = 0; i < MOST_CLIENTS; i++)
         if (renderd->clients[i].socket >= 0)
             close_client(renderd, renderd->clients + i);

@@ -1,5 +1,5 @@
-/* Parses paths by a fixed table. Numbers are decimal without signs, blanks or zeros before them, so that a tile has one
- * path; whatever else a path has makes it unknown. */
+/* Parses paths with a fixed table. Numbers are decimal, without signs, blanks or leading zeros, so that each tile has
+ * only one path. Anything else makes a path unknown. */
 #include "serve/route.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 enum { MOST_DIGITS = 8, MOST_PITCH_DEG = 85, MOST_FRACTION_DIGITS = 15 };
 
-/* Where Web Mercator ends, which pictures have their middles within. */
+/* The limit of Web Mercator; the centre of a picture must be within it. */
 static const double MOST_LATITUDE = 85.051129;
 
 static const struct {
@@ -45,9 +45,9 @@ bool camber_route_find_type(const char *name, camber_route_type *type) {
     return false;
 }
 
-/* ---- Parts of a path ---- */
+/* ---- Parsing parts of a path ---- */
 
-/* The rest of the path. */
+/* The rest of the path, which has not been parsed yet. */
 typedef struct cursor {
     const char *at, *end;
 } cursor;
@@ -76,7 +76,7 @@ static bool take_count(cursor *c, uint32_t *count) {
     return true;
 }
 
-/* A number between two bounds: digits, maybe with a minus before them and a fraction behind. */
+/* Parses a number between two bounds: digits, with an optional minus and an optional fraction. */
 static bool take_number(cursor *c, double least, double most, double *number) {
     const bool negative = take(c, "-");
     uint32_t whole;
@@ -101,7 +101,7 @@ static bool take_number(cursor *c, double least, double most, double *number) {
     return true;
 }
 
-/* [@Rx].type, to the end of the path. */
+/* Parses [@Rx].type at the end of the path. */
 static bool take_ending(cursor *c, camber_route_request *r) {
     r->ratio = 1;
     if (take(c, "@") && (!take_count(c, &r->ratio) || !take(c, "x") || r->ratio < 1))
@@ -140,7 +140,7 @@ static bool take_subtree(cursor *c, camber_route_request *r) {
     return take_place(c, ".", r) && take(c, ".subtree") && c->at == c->end;
 }
 
-/* 3d-tiles-renderer 0.5 writes two slashes before what a tileset at the root of a server refers to. */
+/* 3d-tiles-renderer 0.5 writes two slashes before the paths of files that a tileset at a server's root refers to. */
 static bool take_of_tileset(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
     return take(c, SUBTREES) ? take_subtree(c, r) : take_tile(c, limits, r) && r->type == CAMBER_ROUTE_GLB;
 }
@@ -165,7 +165,8 @@ static bool is_too_large(const camber_route_request *r, const camber_route_limit
            (width > limits->most_px || height > limits->most_px || r->ratio > limits->most_ratio);
 }
 
-/* Letters, digits, dots, minus and underscores, and no dot first; the table of files knows the rest. */
+/* Parses letters, digits, dots, minus signs and underscores, not beginning with a dot. The table of files decides
+ * whether the name exists. */
 static bool take_name(cursor *c, camber_route_request *r) {
     r->route = CAMBER_ROUTE_PAGE;
     r->name = c->at;

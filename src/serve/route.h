@@ -1,17 +1,17 @@
-/* Routes: what a request's method and path ask for.
+/* Routes: what a request's method and path refer to.
  *
  *     /                                       the page
  *     /page/NAME                              a file of the page
  *     /tiles.json                             TileJSON
  *     /{z}/{x}/{y}[@Rx].{type}                a tile
- *     /tileset.json                           3D Tiles: of a folder of mesh tiles
- *     /subtrees/{z}.{x}.{y}.subtree           which of its tiles there are below one
+ *     /tileset.json                           3D Tiles: the tileset of a folder of mesh tiles
+ *     /subtrees/{z}.{x}.{y}.subtree           which tiles exist below one of its tiles
  *     /static/{lon},{lat},{zoom}[@bearing[,pitch]]/{w}x{h}[@Rx].{type}
- *                                             a picture of any place
+ *                                             a picture of any view
  *     /health   /events   /metrics
  *
- * /dark before a tile, a picture and tiles.json asks for the built-in style's dark theme. There are no other paths, and
- * files are found by numbers alone. */
+ * /dark before the path of a tile, a picture or tiles.json selects the built-in style's dark theme. There are no other
+ * paths: URLs are never mapped to file paths. */
 #ifndef CAMBER_SERVE_ROUTE_H
 #define CAMBER_SERVE_ROUTE_H
 
@@ -35,7 +35,7 @@ typedef enum camber_route {
 
 enum { CAMBER_ROUTE_MOST_ZOOM = 24 };
 
-/* Kinds of tiles by the endings of paths. The first two can be drawn, an archive may have any. */
+/* Types of tiles, by the extension in the path. The first two can be drawn; an archive may have any. */
 typedef enum camber_route_type {
     CAMBER_ROUTE_PNG = 0,
     CAMBER_ROUTE_WEBP,
@@ -49,7 +49,7 @@ typedef enum camber_route_type {
 
 typedef struct camber_route_limits {
     uint32_t most_ratio;
-    uint32_t most_px; /* on a side of a picture, in device px */
+    uint32_t most_px; /* limit of a picture's width and height, in device px */
 } camber_route_limits;
 
 typedef struct camber_route_request {
@@ -61,22 +61,22 @@ typedef struct camber_route_request {
     uint32_t column, row;
     double longitude, latitude, map_zoom, bearing_deg, pitch_deg; /* of a picture */
     uint32_t width, height;                                       /* CSS px */
-    const char *name; /* a file of the page, within the path; "" is the page itself */
+    const char *name; /* a file of the page, as a part of the path; "" is the page itself */
     size_t name_length;
 } camber_route_request;
 
-/* The name of a route in metrics and logs. */
+/* Returns the name of a route, for metrics and logs. */
 const char *camber_route_get_name(camber_route route);
-/* The media type of a kind of tiles. */
+/* Returns the media type of a type of tiles. */
 const char *camber_route_get_media_type(camber_route_type type);
-/* The ending of paths of a kind of tiles, without a dot. */
+/* Returns the extension of a type of tiles, without a dot. */
 const char *camber_route_get_ending(camber_route_type type);
-/* Finds the kind by the name that archives give it. false: it has no path. */
+/* Finds the type that has this name in archives. Returns false if no path exists for it. */
 bool camber_route_find_type(const char *name, camber_route_type *type);
 
-/* Parses a path as it came, before anything in it is unescaped; what follows a '?' is ignored. The same bytes give the
- * same answer, and nothing is allocated. Returns 200, 400 (a picture that is larger than the limits), 404
- * (request->route is NONE) or 405. */
+/* Parses a path exactly as it was received, before anything is unescaped. A '?' and what follows it are ignored. The
+ * result depends only on the arguments, and nothing is allocated. Returns 200, 400 (a picture that exceeds the limits),
+ * 404 (request->route is NONE) or 405. */
 int camber_route_parse(const camber_route_limits *limits, const char *method, const char *path,
                        camber_route_request *request);
 

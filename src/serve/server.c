@@ -1,12 +1,13 @@
-/* The server's life: sockets, daemons, what is shown, and the end.
+/* The server's life cycle: sockets, daemons, the content, and shutdown.
  *
- * One thread accepts connections and deals them out to a pool of threads, which wait for requests by poll and answer
- * them; the drawing has threads of its own. libmicrohttpd 0.9.75 could do more of that, but each connection would wake
- * its whole pool; by epoll it forgets events where more than 128 come at once, and, told to stop, ends the process now
- * and then, as a thread and MHD_quiesce_daemon both take the listening socket out of the set.
+ * One thread accepts connections and distributes them to a pool of threads, which wait for requests with poll and
+ * answer them. The draw queue has its own threads. libmicrohttpd 0.9.75 could accept connections itself, but each
+ * connection would wake the whole pool. With epoll it loses events if more than 128 arrive at once, and occasionally
+ * ends the process when it is stopped, because a thread and MHD_quiesce_daemon both remove the listening socket from
+ * the set.
  *
- * At the end no new connection is taken, requests that are here are answered, each with "Connection: close", and then
- * all is freed. */
+ * On shutdown, no new connection is accepted, the requests in progress are answered with "Connection: close", and then
+ * everything is freed. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/server.h"
@@ -32,20 +33,21 @@ enum {
     DEFAULT_PX = 2048,
     DEFAULT_RATIO = 4,
     DEFAULT_SIDE = 1,
-    RENDERD_SIDE = CAMBER_METATILE_FILE_SIDE, /* all tiles of a file are wanted at once: one drawing has them */
+    RENDERD_SIDE =
+        CAMBER_METATILE_FILE_SIDE, /* all tiles of a file are requested at once, so one picture should contain them */
     MOST_CONNECTIONS = 12000,
     MOST_METRICS_CONNECTIONS = 64,
-    SPARE_DESCRIPTORS = 128, /* for files and drivers; of few descriptors the half */
+    SPARE_DESCRIPTORS = 128, /* for files and drivers; half of the limit if it is low */
     LEAST_CONNECTIONS = 8,
-    EVENT_DESCRIPTORS = 4, /* of a thread that waits for sockets */
+    EVENT_DESCRIPTORS = 4, /* used by each thread that waits for sockets */
     CONNECTION_BYTES = 16 << 10,
     MOST_QUEUED = 128,
-    MOST_PICTURES = 24, /* of a tile each; of a metatile fewer */
-    LEAST_PICTURES = 3, /* one is drawn, others are encoded */
+    MOST_PICTURES = 24, /* if each is one tile; fewer if they are metatiles */
+    LEAST_PICTURES = 3, /* one is drawn while others are encoded */
     LONGEST_END_MS = 20000,
 };
 
-static const double MOST_SECONDS = 30; /* that a phase of a connection takes */
+static const double MOST_SECONDS = 30; /* time limit for a phase of a connection */
 
 /* ---- Daemons ---- */
 
@@ -74,14 +76,14 @@ static void take_connection(void *user, int connection) {
     socklen_t size = sizeof address;
     listener->connections++;
     if (getpeername(connection, (struct sockaddr *)&address, &size) != 0) {
-        close(connection); /* gone already */
+        close(connection); /* the client has already disconnected */
         listener->connections--;
     } else if (MHD_add_connection(listener->daemon, connection, (struct sockaddr *)&address, size) != MHD_YES) {
-        listener->connections--; /* and closed */
+        listener->connections--; /* it has been closed, too */
     }
 }
 
-/* Connections that each socket may have at once; the rest waits in the system's queue. */
+/* How many connections each socket may have at once; others wait in the system's queue. */
 typedef struct shares {
     unsigned page, metrics, renderd;
 } shares;
@@ -97,7 +99,7 @@ static rlim_t raise_limit(rlim_t wanted) {
     return setrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : before;
 }
 
-/* The next descriptor has the lowest number that is free. */
+/* Counts the open descriptors. The system gives each new descriptor the lowest free number. */
 static rlim_t count_descriptors(void) {
     const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (next >= 0)
@@ -105,8 +107,8 @@ static rlim_t count_descriptors(void) {
     return next >= 0 ? (rlim_t)next : SPARE_DESCRIPTORS;
 }
 
-/* Files and drivers keep some descriptors, whatever the limit is: PoCL ends the process where it gets none. false:
- * there are too few. */
+/* Reserves some descriptors for files and drivers, whatever the limit is, because PoCL ends the process if it cannot
+ * get one. Returns false if there are too few. */
 static bool share_descriptors(const camber_server_desc *desc, shares *made) {
     const rlim_t fixed = count_descriptors() + (rlim_t)EVENT_DESCRIPTORS * (desc->threads + 1);
     const rlim_t metrics = desc->metrics ? MOST_METRICS_CONNECTIONS : 0;
@@ -122,7 +124,7 @@ static bool share_descriptors(const camber_server_desc *desc, shares *made) {
     return made->page >= LEAST_CONNECTIONS && made->page >= desc->threads && quarter > 0;
 }
 
-/* The page loads what this server has, and tiles and tiles.json by the URL that they name. */
+/* The page may load files of this server, and tiles and tiles.json from the public URL. */
 static void write_url(camber_server *server) {
     if (server->desc.public_url)
         snprintf(server->url, sizeof server->url, "%s", server->desc.public_url);
@@ -136,8 +138,8 @@ static void write_url(camber_server *server) {
              (int)length, url, (int)length, url);
 }
 
-/* Each thread of the pool may have all connections, which the acceptor counts: past its limit a thread of libmicrohttpd
- * 0.9.75 keeps a lock for good. Returns 0 or an errno. */
+/* Each thread of the pool may hold all connections, which the acceptor counts: a thread of libmicrohttpd 0.9.75 that
+ * exceeds its own limit never releases a lock. Returns 0 or an errno. */
 static int start_daemon(camber_listener *listener, unsigned threads, unsigned connections) {
     struct MHD_OptionItem pool[] = {{MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)threads, NULL}, {MHD_OPTION_END, 0, NULL}};
     listener->daemon =
@@ -148,7 +150,7 @@ static int start_daemon(camber_listener *listener, unsigned threads, unsigned co
                          MHD_OPTION_NOTIFY_COMPLETED, camber_request_end, listener, MHD_OPTION_NOTIFY_CONNECTION,
                          notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1,
                          threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
-    return listener->daemon ? 0 : errno == EMFILE ? EMFILE : EAGAIN; /* no memory, or no threads */
+    return listener->daemon ? 0 : errno == EMFILE ? EMFILE : EAGAIN; /* otherwise no memory, or no threads */
 }
 
 static int start(camber_listener *listener, const char *address, unsigned threads, unsigned connections) {
@@ -156,7 +158,7 @@ static int start(camber_listener *listener, const char *address, unsigned thread
     if (listening < 0)
         return -listening;
     if (!listener->is_for_metrics)
-        write_url(listener->server); /* before the first request can come */
+        write_url(listener->server); /* before the first request can arrive */
     listener->most_connections = connections;
     const int cause = start_daemon(listener, threads, connections);
     if (cause) {
@@ -167,7 +169,7 @@ static int start(camber_listener *listener, const char *address, unsigned thread
     return camber_acceptor_create(&desc, &listener->acceptor);
 }
 
-/* ---- Bodies that never change ---- */
+/* ---- Constant bodies ---- */
 
 static bool make_errors(camber_server *server) {
     char large[128];
@@ -206,7 +208,7 @@ static camber_server_desc fill_in(const camber_server_desc *desc) {
     return made;
 }
 
-/* Metatiles are drawn for mod_tile; an archive has its own tiles. */
+/* Metatiles for mod_tile are drawn only if a map is served; an archive has its own tiles. */
 static bool is_drawing(void *user) {
     camber_server *server = user;
     pthread_mutex_lock(&server->mutex);
@@ -236,18 +238,18 @@ static int start_all(camber_server *server, const char **failed) {
         return cause;
     *failed = NULL;
     const uint32_t pictures = MOST_PICTURES / (desc->side * desc->side);
-    const camber_draw_queue_desc drawing = {.cache = server->cache,
-                                            .metrics = &server->metrics,
-                                            .draw = camber_painter_draw,
-                                            .prepare = camber_painter_prepare,
-                                            .user = server->painter,
-                                            .side = desc->side,
-                                            .threads = desc->threads,
-                                            .most_queued = MOST_QUEUED,
-                                            .most_pictures = pictures > LEAST_PICTURES ? pictures : LEAST_PICTURES,
-                                            .log = desc->log,
-                                            .log_user = desc->user};
-    if (!(server->drawing = camber_draw_queue_create(&drawing)))
+    const camber_draw_queue_desc queue = {.cache = server->cache,
+                                          .metrics = &server->metrics,
+                                          .draw = camber_painter_draw,
+                                          .prepare = camber_painter_prepare,
+                                          .user = server->painter,
+                                          .side = desc->side,
+                                          .threads = desc->threads,
+                                          .most_queued = MOST_QUEUED,
+                                          .most_pictures = pictures > LEAST_PICTURES ? pictures : LEAST_PICTURES,
+                                          .log = desc->log,
+                                          .log_user = desc->user};
+    if (!(server->queue = camber_draw_queue_create(&queue)))
         return ENOMEM;
     shares most;
     if (!share_descriptors(desc, &most))
@@ -261,7 +263,7 @@ static int start_all(camber_server *server, const char **failed) {
     const camber_renderd_desc renderd = {.socket = desc->renderd,
                                          .folder = desc->cache_dir,
                                          .most_clients = most.renderd,
-                                         .queue = server->drawing,
+                                         .queue = server->queue,
                                          .is_ready = is_drawing,
                                          .failed = tell_failure,
                                          .user = server};
@@ -285,7 +287,7 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
     pthread_mutex_init(&made->reader_mutex, NULL);
     int cause = ENOMEM;
     made->folder = (camber_tile_folder){.path = made->desc.cache_dir, .failed = tell_failure, .user = made};
-    const bool has_folder = made->desc.cache_dir && !made->desc.renderd; /* else it is mod_tile's */
+    const bool has_folder = made->desc.cache_dir && !made->desc.renderd; /* with renderd, the folder is mod_tile's */
     if ((made->cache = camber_tile_cache_create(made->desc.cache_bytes, has_folder ? &made->folder : NULL)) &&
         (made->painter = camber_painter_create(made->cache, made->desc.side)) &&
         (made->clients = camber_clients_create(MOST_SECONDS)) &&
@@ -299,7 +301,7 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
     return 0;
 }
 
-/* ---- The end ---- */
+/* ---- Shutdown ---- */
 
 static void stop_accepting(camber_listener *listener) {
     camber_acceptor_destroy(listener->acceptor);
@@ -319,7 +321,7 @@ static void wait_for_requests(const camber_server *server) {
         nanosleep(&pause, NULL);
 }
 
-static void forget_view(camber_view_of_shown *view) {
+static void forget_view(camber_content_view *view) {
     for (int i = 0; i < 4; i++)
         camber_body_release(view->tilejson[i / 2][i % 2]);
 }
@@ -333,11 +335,11 @@ void camber_server_destroy(camber_server *server) {
         camber_events_end(server->events);
     camber_renderd_destroy(server->renderd);
     wait_for_requests(server);
-    if (server->drawing)
-        camber_draw_queue_stop(server->drawing); /* whoever sleeps still is woken */
+    if (server->queue)
+        camber_draw_queue_stop(server->queue); /* resumes the connections that still wait */
     stop(&server->page);
     stop(&server->metrics_page);
-    camber_draw_queue_destroy(server->drawing);
+    camber_draw_queue_destroy(server->queue);
     camber_painter_destroy(server->painter);
     camber_tile_cache_destroy(server->cache);
     camber_clients_destroy(server->clients);
@@ -355,7 +357,7 @@ void camber_server_destroy(camber_server *server) {
     free(server);
 }
 
-/* ---- Showing ---- */
+/* ---- Content ---- */
 
 const char *camber_server_get_url(const camber_server *server) {
     return server->url;
@@ -369,19 +371,19 @@ const char *camber_server_get_metrics_address(const camber_server *server) {
     return server->desc.metrics ? server->metrics_page.address : NULL;
 }
 
-static bool describe(const camber_server *server, const camber_shown *shown, camber_view_of_shown *view) {
-    const bool has_dark = !shown->reader && shown->chart.styles[1];
+static bool describe(const camber_server *server, const camber_server_content *content, camber_content_view *view) {
+    const bool has_dark = !content->reader && content->source.styles[1];
     struct tm parts;
-    *view = (camber_view_of_shown){
-        .ready = true, .is_archive = shown->reader != NULL, .has_dark = has_dark, .tileset = shown->tileset};
-    if (shown->modified && gmtime_r(&shown->modified, &parts))
+    *view = (camber_content_view){
+        .ready = true, .is_archive = content->reader != NULL, .has_dark = has_dark, .tileset = content->tileset};
+    if (content->modified && gmtime_r(&content->modified, &parts))
         (void)strftime(view->last_modified, sizeof view->last_modified, "%a, %d %b %Y %H:%M:%S GMT", &parts);
     for (int dark = 0; dark < (has_dark ? 2 : 1); dark++) {
-        const camber_tilejson_desc desc = {.shown = shown,
+        const camber_tilejson_desc desc = {.content = content,
                                            .url = server->url,
-                                           .theme = dark || shown->is_dark ? "dark"
-                                                    : has_dark             ? "light"
-                                                                           : NULL,
+                                           .theme = dark || content->is_dark ? "dark"
+                                                    : has_dark               ? "light"
+                                                                             : NULL,
                                            .below_dark = dark,
                                            .most_ratio = server->desc.most_ratio,
                                            .edits = server->desc.edits};
@@ -392,14 +394,14 @@ static bool describe(const camber_server *server, const camber_shown *shown, cam
     return true;
 }
 
-/* An archive is exchanged between two look-ups. */
-static void exchange_reader(camber_server *server, const camber_shown *shown) {
+/* Replaces the archive. The mutex ensures that no tile is being read. */
+static void exchange_reader(camber_server *server, const camber_server_content *content) {
     pthread_mutex_lock(&server->reader_mutex);
     if (server->reader && server->close_reader)
         server->close_reader(server->reader_owner);
-    server->reader = shown->reader;
-    server->close_reader = shown->close;
-    server->reader_owner = shown->owner;
+    server->reader = content->reader;
+    server->close_reader = content->close;
+    server->reader_owner = content->owner;
     camber_tile_cache_clear(server->cache, 0);
     pthread_mutex_unlock(&server->reader_mutex);
 }
@@ -414,18 +416,18 @@ void camber_server_beat(camber_server *server) {
         camber_events_beat(server->events);
 }
 
-bool camber_server_show(camber_server *server, const camber_shown *shown) {
-    camber_view_of_shown view, before;
-    if (!describe(server, shown, &view)) {
+bool camber_server_show(camber_server *server, const camber_server_content *content) {
+    camber_content_view view, before;
+    if (!describe(server, content, &view)) {
         forget_view(&view);
         return false;
     }
-    if (shown->reader) {
-        (void)camber_route_find_type(camber_tiles_reader_get_info(shown->reader)->type, &view.type);
-        exchange_reader(server, shown);
+    if (content->reader) {
+        (void)camber_route_find_type(camber_tiles_reader_get_info(content->reader)->type, &view.type);
+        exchange_reader(server, content);
     } else {
-        camber_painter_put(server->painter, &shown->chart);
-        camber_draw_queue_wake(server->drawing);
+        camber_painter_put(server->painter, &content->source);
+        camber_draw_queue_wake(server->queue);
     }
     pthread_mutex_lock(&server->mutex);
     before = server->view;

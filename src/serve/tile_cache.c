@@ -1,8 +1,8 @@
-/* A cache of encoded tiles: a hash table finds a tile, and a list has the tiles in the order of their last use.
+/* An LRU cache of encoded tiles: a hash table finds a tile, and a list keeps the tiles in the order of their last use.
  *
- *     newest <-> ... <-> oldest        what does not fit leaves at the right end
+ *     newest <-> ... <-> oldest        tiles that do not fit are removed from the right end
  *
- * Buckets are chains; their number doubles when there are more tiles than buckets. */
+ * Buckets are chains. Their number doubles when there are more tiles than buckets. */
 #include "serve/tile_folder.h"
 
 #include "base/base.h"
@@ -20,13 +20,13 @@ enum { FIRST_BUCKETS = 1024 };
 typedef struct cached_tile {
     camber_tile_key key;
     camber_body *body;
-    struct cached_tile *next;          /* of its bucket */
-    struct cached_tile *newer, *older; /* by their last use */
+    struct cached_tile *next;          /* in its bucket */
+    struct cached_tile *newer, *older; /* by last use */
 } cached_tile;
 
 struct camber_tile_cache {
     pthread_mutex_t mutex;
-    cached_tile **buckets; /* bucket_count, a power of two */
+    cached_tile **buckets; /* bucket_count of them, a power of two */
     size_t bucket_count, most_bytes;
     cached_tile *newest, *oldest;
     uint64_t generation, input;
@@ -67,7 +67,7 @@ static void list_first(camber_tile_cache *cache, cached_tile *tile) {
     cache->newest = tile;
 }
 
-/* The link that leads to the tile of this key; it is NULL where there is none. */
+/* Returns the link to the tile with this key; the link is NULL if there is no such tile. */
 static cached_tile **find_link(camber_tile_cache *cache, camber_tile_key key) {
     cached_tile **link = cache->buckets + bucket_of(cache, key);
     while (*link && ((*link)->key.place != key.place || (*link)->key.look != key.look))
@@ -101,7 +101,7 @@ void camber_tile_cache_destroy(camber_tile_cache *cache) {
     free(cache);
 }
 
-/* Without memory for more buckets the chains grow longer. */
+/* If there is no memory for more buckets, the chains get longer. */
 static void grow_buckets(camber_tile_cache *cache) {
     const size_t count = 2 * cache->bucket_count;
     cached_tile **buckets = cache->stats.tiles >= cache->bucket_count ? calloc(count, sizeof(cached_tile *)) : NULL;
@@ -117,12 +117,13 @@ static void grow_buckets(camber_tile_cache *cache) {
     }
 }
 
-/* The input that the folder has tiles of. 0: the folder has none, or there is no folder. */
+/* Returns the input whose tiles are in the folder; 0 if there are none, or there is no folder. */
 static uint64_t stored_input(const camber_tile_cache *cache) {
     return cache->folder ? cache->input : 0;
 }
 
-/* Keeps a tile in memory, if there is room. Returns the input that the folder keeps it for. 0: it does not. */
+/* Keeps a tile in memory, if there is room. Returns the input under which the folder should store it; 0 if it should
+ * not. */
 static uint64_t keep(camber_tile_cache *cache, camber_tile_key key, camber_body *body, uint64_t generation,
                      bool from_folder) {
     cached_tile *tile = cost_of(body) <= cache->most_bytes ? malloc(sizeof *tile) : NULL;

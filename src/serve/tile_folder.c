@@ -1,4 +1,4 @@
-/* Reads and writes tiles of a folder. */
+/* Reads and writes tiles in a folder. */
 #define _XOPEN_SOURCE 700
 
 #include "serve/tile_folder.h"
@@ -33,7 +33,7 @@ static unsigned char *read_bytes(int file, const struct stat *about) {
     return NULL;
 }
 
-/* tagged: the file ends with the body's tag. */
+/* tagged: the body's tag is at the end of the file. */
 static camber_body *read_body(const char *folder, const char *name, bool tagged) {
     struct stat about;
     const size_t tag_bytes = tagged ? TAG_BYTES : 0;

@@ -1,4 +1,4 @@
-/* Makes TileJSON from what is shown; "camber" in it is for the page. */
+/* Makes TileJSON for the served content. Its member "camber" is for the page. */
 #include "serve/tilejson.h"
 
 #include <jansson.h>
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The picture that a viewer may be expected to open with, CSS px, and the size of a tile. */
+/* The size of the picture with which viewers typically start, in CSS px, and the size of a tile. */
 enum { VIEW_WIDTH = 1024, VIEW_HEIGHT = 768, TILE_WIDTH = 256, DEEPEST_CENTER = 15 };
 
 static json_t *numbers(const double *values, size_t count) {
@@ -21,19 +21,19 @@ static double mercator_y(double latitude) {
     return 0.5 - asinh(tan(angle)) / 6.283185307179586;
 }
 
-/* The middle of the bounds, at the zoom that shows all of them. */
-static void find_center(const camber_shown *shown, double center[3]) {
-    const double *b = shown->bounds;
-    const double degrees = b[2] < b[0] ? b[2] - b[0] + 360.0 : b[2] - b[0]; /* across the antimeridian */
+/* Finds the middle of the bounds, and the zoom that shows all of them. */
+static void find_center(const camber_server_content *content, double center[3]) {
+    const double *b = content->bounds;
+    const double degrees = b[2] < b[0] ? b[2] - b[0] + 360.0 : b[2] - b[0]; /* they cross the antimeridian */
     const double across = fmax(degrees / 360.0, 1e-9), down = fmax(mercator_y(b[1]) - mercator_y(b[3]), 1e-9);
     const double zoom = floor(log2(fmin(VIEW_WIDTH / across, VIEW_HEIGHT / down) / TILE_WIDTH));
     center[0] = b[0] + 0.5 * degrees;
     center[0] -= center[0] > 180.0 ? 360.0 : 0.0;
     center[1] = 0.5 * (b[1] + b[3]);
-    center[2] = fmax(shown->min_zoom, fmin(zoom, fmin(shown->max_zoom, DEEPEST_CENTER)));
+    center[2] = fmax(content->min_zoom, fmin(zoom, fmin(content->max_zoom, DEEPEST_CENTER)));
 }
 
-/* An archive says what it likes of its zooms. */
+/* Limits a zoom of an archive, which may be any number. */
 static int limit_zoom(int zoom) {
     return zoom < 0 ? 0 : zoom > CAMBER_ROUTE_MOST_ZOOM ? CAMBER_ROUTE_MOST_ZOOM : zoom;
 }
@@ -49,7 +49,7 @@ static json_t *describe_tiles(const camber_tilejson_desc *desc, const char *endi
     return array;
 }
 
-/* Layers of vector tiles, and what an archive says of itself. */
+/* Copies the layers of vector tiles, and the archive's description of itself. */
 static void take_metadata(json_t *object, const char *metadata) {
     static const char *const taken[] = {"vector_layers", "description", "version", "legend"};
     json_t *about = metadata ? json_loads(metadata, 0, NULL) : NULL;
@@ -59,15 +59,15 @@ static void take_metadata(json_t *object, const char *metadata) {
     json_decref(about);
 }
 
-/* In MBTiles all values are texts. */
+/* Reads a number, which is a string in MBTiles. */
 static double read_number(const json_t *value) {
     return json_is_string(value) ? strtod(json_string_value(value), NULL) : json_number_value(value);
 }
 
-/* CSS px on a side of a tile, as camber tiles tells it of an archive. MapLibre reads it from TileJSON, too, and takes
- * 512 where there is none. */
-static int find_tile_size(const camber_shown *shown) {
-    json_t *about = shown->metadata ? json_loads(shown->metadata, 0, NULL) : NULL;
+/* Returns the width of a tile in CSS px, as camber tiles records it in an archive. MapLibre reads it from TileJSON,
+ * too, and assumes 512 if it is missing. */
+static int find_tile_size(const camber_server_content *content) {
+    json_t *about = content->metadata ? json_loads(content->metadata, 0, NULL) : NULL;
     const double size_px = read_number(json_object_get(about, "tileSize"));
     const double ratio = fmax(read_number(json_object_get(about, "ratio")), 1.0);
     json_decref(about);
@@ -79,32 +79,32 @@ static bool set(json_t *object, const char *name, json_t *value) {
 }
 
 camber_body *camber_tilejson_create(const camber_tilejson_desc *desc) {
-    const camber_shown *shown = desc->shown;
+    const camber_server_content *content = desc->content;
     const char *ending = "png";
     camber_route_type type;
-    double center[3] = {shown->center[0], shown->center[1], shown->center[2]};
-    if (shown->reader && camber_route_find_type(camber_tiles_reader_get_info(shown->reader)->type, &type))
+    double center[3] = {content->center[0], content->center[1], content->center[2]};
+    if (content->reader && camber_route_find_type(camber_tiles_reader_get_info(content->reader)->type, &type))
         ending = camber_route_get_ending(type);
-    if (shown->has_bounds && !shown->has_center)
-        find_center(shown, center);
+    if (content->has_bounds && !content->has_center)
+        find_center(content, center);
     center[2] = limit_zoom((int)fmax(-1, fmin(center[2], CAMBER_ROUTE_MOST_ZOOM)));
     json_t *object = json_object();
-    take_metadata(object, shown->metadata);
+    take_metadata(object, content->metadata);
     bool made = set(object, "tilejson", json_string("3.0.0")) && set(object, "scheme", json_string("xyz")) &&
                 set(object, "tiles", describe_tiles(desc, ending)) &&
-                set(object, "minzoom", json_integer(limit_zoom(shown->min_zoom))) &&
-                set(object, "maxzoom", json_integer(limit_zoom(shown->max_zoom))) &&
-                set(object, "tileSize", json_integer(find_tile_size(shown))) &&
+                set(object, "minzoom", json_integer(limit_zoom(content->min_zoom))) &&
+                set(object, "maxzoom", json_integer(limit_zoom(content->max_zoom))) &&
+                set(object, "tileSize", json_integer(find_tile_size(content))) &&
                 set(object, "camber",
-                    json_pack("{s:s?, s:b, s:i, s:b}", "theme", desc->theme, "drawn", !shown->reader, "ratio_max",
-                              shown->reader ? 1 : (int)desc->most_ratio, "edit", desc->edits));
-    if (shown->name)
-        made = made && set(object, "name", json_string(shown->name));
-    if (shown->attribution)
-        made = made && set(object, "attribution", json_string(shown->attribution));
-    if (shown->has_bounds)
-        made = made && set(object, "bounds", numbers(shown->bounds, 4));
-    if (shown->has_bounds || shown->has_center)
+                    json_pack("{s:s?, s:b, s:i, s:b}", "theme", desc->theme, "drawn", !content->reader, "ratio_max",
+                              content->reader ? 1 : (int)desc->most_ratio, "edit", desc->edits));
+    if (content->name)
+        made = made && set(object, "name", json_string(content->name));
+    if (content->attribution)
+        made = made && set(object, "attribution", json_string(content->attribution));
+    if (content->has_bounds)
+        made = made && set(object, "bounds", numbers(content->bounds, 4));
+    if (content->has_bounds || content->has_center)
         made = made && set(object, "center", numbers(center, 3));
     char *text = made ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
     camber_body *body = text ? camber_body_create(text, strlen(text)) : NULL;

@@ -17,12 +17,12 @@ typedef struct checker {
     char **texts;
     size_t text_count, text_capacity;
     bool out_of_memory;
-    camber_soft_log log; /* suppresses messages after memory has run out */
+    camber_saved_log log; /* suppresses messages after memory has run out */
 } checker;
 
 static void fail_memory(checker *k) {
     if (!k->out_of_memory)
-        camber_log_soften(k->context, &k->log);
+        camber_log_demote_errors(k->context, &k->log);
     k->out_of_memory = true;
 }
 

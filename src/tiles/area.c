@@ -1,4 +1,4 @@
-/* The area of a run. A tile is wanted where it overlaps the box, touches the region, or stands in the list. */
+/* The area of a run. A tile is wanted if it overlaps the box, touches the region, or is in the list. */
 #include "tiles/area.h"
 
 #include "archive/archive.h"
@@ -15,8 +15,7 @@ static double bound(double value) {
     return fmin(fmax(value, 0.0), 1.0);
 }
 
-/* The box of west, south, east, north in degrees, which goes over the antimeridian where the east lies before the
- * west. */
+/* Converts west, south, east, north in degrees into a box, which crosses the antimeridian if east is less than west. */
 static camber_box box_of(const double bbox[4]) {
     const double most = CAMBER_MERCATOR_LATITUDE;
     double x[2], y[2];
@@ -78,7 +77,7 @@ static bool is_listed(const camber_tiles_area *area, int zoom, uint32_t column, 
 
 /* ---- Regions ---- */
 
-/* Whether the segment comes into the box, by the separating axes of the two. */
+/* Whether the segment meets the box: no separating axis of the two exists. */
 static bool meets(camber_box box, const double *a, const double *b) {
     if (fmax(a[0], b[0]) < box.x0 || fmin(a[0], b[0]) > box.x1 || fmax(a[1], b[1]) < box.y0 ||
         fmin(a[1], b[1]) > box.y1)
@@ -96,7 +95,7 @@ static bool is_polygon(const camber_features *region, size_t polyline) {
            CAMBER_GEOMETRY_POLYGON;
 }
 
-/* Whether an outline comes into the box; if none does, *inside tells whether its middle lies in a polygon, by the
+/* Whether an outline enters the box. If none does, *inside says whether the middle of the box is in a polygon, by the
  * even-odd rule over the rings of a feature. */
 static bool crosses(const camber_features *region, camber_box box, bool *inside) {
     const double x = 0.5 * (box.x0 + box.x1), y = 0.5 * (box.y0 + box.y1);
@@ -130,7 +129,7 @@ static camber_status take_region(camber_context *context, const camber_features 
         for (size_t i = region->offsets[p]; i < region->offsets[p + 1] && is_polygon(region, p); i++)
             camber_box_add(&box, region->points[2 * i], region->points[2 * i + 1]);
     if (box.x0 > box.x1)
-        return camber_fail(context, CAMBER_ERROR_INPUT, "the region: has no polygon; give one");
+        return camber_fail(context, CAMBER_ERROR_INPUT, "the region has no polygon; give a file with at least one");
     area->region = region;
     area->region_box = box;
     return CAMBER_OK;
@@ -149,8 +148,9 @@ camber_status camber_tiles_area_make(camber_context *context, const camber_tiles
     if (desc->tile_count)
         status = take_list(context, desc, area);
     else if (desc->min_zoom < 0 || desc->max_zoom > CAMBER_LARGEST_TILE_ZOOM || desc->min_zoom > desc->max_zoom)
-        status = camber_fail(context, CAMBER_ERROR_ARGUMENT, "tiles: zooms %d to %d; choose 0 to %d, the lower first",
-                             desc->min_zoom, desc->max_zoom, CAMBER_LARGEST_TILE_ZOOM);
+        status =
+            camber_fail(context, CAMBER_ERROR_ARGUMENT, "tiles: zooms %d to %d; choose 0 to %d, the lower one first",
+                        desc->min_zoom, desc->max_zoom, CAMBER_LARGEST_TILE_ZOOM);
     if (status == CAMBER_OK && desc->region)
         status = take_region(context, desc->region, area);
     if (status == CAMBER_OK && desc->has_bbox)
@@ -168,7 +168,7 @@ void camber_tiles_area_free(camber_tiles_area *area) {
     *area = (camber_tiles_area){0};
 }
 
-/* Whether columns [column, column + 1) of so many meet [x0, x1) of the world, in any of its copies. */
+/* Whether columns [column, column + 1), out of `tiles` columns, overlap [x0, x1) of the world in any of its copies. */
 static bool meets_columns(const camber_box *box, double tiles, double column) {
     for (double world = -1.0; world <= 1.0; world += 1.0)
         if (column + 1.0 > (box->x0 + world) * tiles && column < (box->x1 + world) * tiles)
@@ -176,7 +176,7 @@ static bool meets_columns(const camber_box *box, double tiles, double column) {
     return false;
 }
 
-/* ---- An archive that is renewed ---- */
+/* ---- An archive whose tiles are replaced ---- */
 
 size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoom, const double bounds[4]) {
     const camber_box box = bounds ? box_of(bounds) : WORLD;
@@ -184,7 +184,7 @@ size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoo
     area->tile_count = 0;
     for (size_t i = 0; i < count; i++) {
         const int zoom = camber_archive_zoom(area->tiles[i]);
-        /* The bounds reach into each tile by a thousandth of it, and archives round them to 10^-7 degrees. */
+        /* Bounds extend a thousandth of a tile into each tile, and archives round them to 10^-7 degrees. */
         const double tiles = exp2(zoom), slack = zoom > 21 ? 1e-9 : 0.0;
         const camber_box wide = {box.x0 - slack, box.y0 - slack, box.x1 + slack, box.y1 + slack};
         uint32_t column, row;
@@ -193,7 +193,7 @@ size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoo
             row + 1.0 > wide.y0 * tiles && row < wide.y1 * tiles)
             area->tiles[area->tile_count++] = area->tiles[i];
     }
-    if (area->tile_count) { /* their numbers ascend with their zooms */
+    if (area->tile_count) { /* numbers ascend with the zoom */
         area->min_zoom = camber_archive_zoom(area->tiles[0]);
         area->max_zoom = camber_archive_zoom(area->tiles[area->tile_count - 1]);
     }
@@ -221,7 +221,7 @@ static bool wants(const camber_tiles_area *area, const camber_box *box, int zoom
     return !area->region || touches_region(area->region, tile);
 }
 
-/* The tiles of a metatile, as column and row of it. */
+/* A tile of a metatile: its column and row within the metatile. */
 typedef struct metatile_place {
     int zoom;
     uint32_t side, column, row;
@@ -282,11 +282,11 @@ void camber_tiles_area_bounds(const camber_tiles_area *area, double bounds[4]) {
     const camber_box *box = &area->bounds;
     camber_mercator_unproject(bound(box->x0), bound(box->y1), &bounds[0], &bounds[1]);
     camber_mercator_unproject(bound(box->x1), bound(box->y0), &bounds[2], &bounds[3]);
-    if (box->x1 > 1.0) { /* archives have no box across the antimeridian */
+    if (box->x1 > 1.0) { /* an archive's bounds cannot cross the antimeridian */
         bounds[0] = -180.0;
         bounds[2] = 180.0;
     }
-    if (!(bounds[0] < bounds[2]) || !(bounds[1] < bounds[3])) { /* nor one without an area */
+    if (!(bounds[0] < bounds[2]) || !(bounds[1] < bounds[3])) { /* nor can they be empty */
         bounds[0] = fmax(bounds[0] - 1e-6, -180.0);
         bounds[2] = fmin(bounds[2] + 1e-6, 180.0);
         bounds[1] -= 1e-6;

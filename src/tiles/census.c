@@ -1,19 +1,17 @@
-/* Takes the census of a zoom: which tiles lines touch and areas cover, before anything is drawn.
+/* Takes the census of a zoom: finds the tiles that lines touch and areas cover, before anything is drawn.
  *
- * Input: features and a zoom's plan. Output: metatiles of tiles along the Hilbert curve, each with the tiles that a
- * line comes near, and the polylines that it is drawn of. Main idea: walk the points that the zoom draws, in tiles as
- * units, and mark the tiles that a segment touches, grown by how far its stroke reaches. Tiles that lie inside of an
- * area's ring are marked too. Threads take one share
- * of the polylines after another; each share has a table of metatiles, and the tables are put together in order, so the
- * result does not depend on the threads.
+ * Input: features and a zoom's plan. Output: metatiles along the Hilbert curve, each with its tiles that a line comes
+ * near, and with the polylines to draw. Main idea: walk the points that the zoom draws, in tiles as units, and mark the
+ * tiles within reach of each segment's stroke. Tiles inside an area's ring are marked too. The polylines are divided
+ * into shares, which threads take one after another. Each share has a table of metatiles. The tables are merged in
+ * order, so the result does not depend on the threads.
  *
  *     +-----+-----+-----+
  *     |  x  |  x  |     |      x: touched by the segment, or within its reach
  *     |  .__|     |     |
  *     +--x-\+--x--+-----+
  *     |     \__x__|__x__|
- *     +-----+-----+-----+
- */
+ *     +-----+-----+-----+ */
 #include "tiles/census.h"
 
 #include "archive/pmtiles.h"
@@ -29,37 +27,38 @@ typedef struct metatile_pair {
     uint32_t metatile, polyline;
 } metatile_pair;
 
-/* A metatile that a share has met. */
+/* A metatile that a share has found. */
 typedef struct found_metatile {
     uint32_t column, row;
-    uint32_t last; /* polyline that was listed for it; NOT_YET at first */
+    uint32_t last; /* the polyline that was last listed for it; NOT_YET at first */
     uint64_t tiles, points;
 } found_metatile;
 
-/* Where a ring crosses the middle of a row of tiles, at x in tiles: downwards 1, upwards -1. */
+/* A crossing of a ring and the horizontal line through the middle of a row of tiles, at x in tiles; downwards 1,
+ * upwards -1. */
 typedef struct crossing {
     int64_t row;
     double x;
     int winding;
 } crossing;
 
-/* A share of the polylines. */
+/* One share of the polylines. */
 typedef struct share {
-    camber_context *context; /* of the thread that walks it */
+    camber_context *context; /* the context of the thread that walks it */
     const camber_zoom_plan *plan;
-    int64_t tiles; /* a side of the world */
+    int64_t tiles; /* width of the world in tiles */
     uint32_t side;
     size_t first, end; /* polylines */
     found_metatile *metatiles;
     size_t metatile_count, metatile_capacity;
-    uint32_t *slots; /* metatile + 1; 0: free. slot_count is a power of two */
+    uint32_t *slots; /* index of a metatile + 1; 0: free. slot_count is a power of two */
     size_t slot_count;
-    metatile_pair *pairs; /* in the order of polylines */
+    metatile_pair *pairs; /* in the order of the polylines */
     size_t pair_count, pair_capacity;
-    crossing *crossings; /* of the ring */
+    crossing *crossings; /* of the current ring */
     size_t crossing_count, crossing_capacity;
     uint32_t polyline;
-    size_t metatile; /* the one that was marked last; metatile_count: none yet */
+    size_t metatile; /* the metatile that was marked last; metatile_count: none yet */
 } share;
 
 /* ---- Metatiles of a share ---- */
@@ -88,7 +87,7 @@ static bool grow_slots(share *s) {
     return true;
 }
 
-/* Finds the metatile, or adds it. false: no memory. */
+/* Finds the metatile, or adds it. Returns false if memory is exhausted. */
 static bool find_metatile(share *s, uint32_t column, uint32_t row) {
     if (s->metatile < s->metatile_count && s->metatiles[s->metatile].column == column &&
         s->metatiles[s->metatile].row == row)
@@ -108,7 +107,7 @@ static bool find_metatile(share *s, uint32_t column, uint32_t row) {
 
 /* ---- Marking ---- */
 
-/* Marks a tile, whose column is one of the world that repeats itself. */
+/* Marks a tile. Columns wrap around the world. */
 static bool mark_tile(share *s, int64_t column, int64_t row) {
     if (row < 0 || row >= s->tiles)
         return true;
@@ -132,7 +131,7 @@ static int64_t clamp(double value, int64_t least, int64_t most) {
     return whole < (double)least ? least : whole > (double)most ? most : (int64_t)whole;
 }
 
-/* Marks the columns of a row, from x0 to x1 in tiles. */
+/* Marks the columns of a row that [x0, x1], in tiles, overlaps. */
 static bool mark_row(share *s, int64_t row, double x0, double x1) {
     const int64_t first = clamp(x0, -s->tiles, 2 * s->tiles);
     int64_t last = clamp(x1, -s->tiles, 2 * s->tiles);
@@ -147,7 +146,8 @@ typedef struct tile_point {
     double x, y; /* in tiles */
 } tile_point;
 
-/* Marks the tiles of a segment that is wider than a few tiles: row by row, the part of it that comes near the row. */
+/* Marks the tiles of a segment that spans several tiles in both directions. For each row it takes the part of the
+ * segment that is within reach of the row. */
 static bool mark_long(share *s, tile_point a, tile_point b, double reach, int64_t first_row, int64_t last_row) {
     const tile_point top = a.y <= b.y ? a : b, bottom = a.y <= b.y ? b : a;
     const double height = bottom.y - top.y, slope = height > 0.0 ? (bottom.x - top.x) / height : 0.0;
@@ -178,7 +178,7 @@ static bool mark_segment(share *s, tile_point a, tile_point b, double reach) {
     return true;
 }
 
-/* Counts a point where it lies. */
+/* Counts a point for the tile that contains it. */
 static bool count_point(share *s, tile_point at) {
     if (!(at.y >= 0.0 && at.y < (double)s->tiles))
         return true;
@@ -188,9 +188,9 @@ static bool count_point(share *s, tile_point at) {
     return true;
 }
 
-/* ---- Inside of areas ---- */
+/* ---- Tiles inside areas ---- */
 
-/* Notes where a ring's segment crosses the middles of rows of tiles. */
+/* Records where a ring's segment crosses the middles of rows of tiles. */
 static bool add_crossings(share *s, tile_point a, tile_point b) {
     const tile_point top = a.y <= b.y ? a : b, bottom = a.y <= b.y ? b : a;
     const int64_t first = clamp(top.y + 0.5, 0, s->tiles), end = clamp(bottom.y + 0.5, 0, s->tiles);
@@ -211,8 +211,9 @@ static int compare_crossings(const void *left, const void *right) {
     return a->x < b->x ? -1 : a->x > b->x;
 }
 
-/* Marks the tiles whose middles the ring winds around. Those that its segments touch are marked already, so the middle
- * of a tile speaks for all of it. A hole is marked too: a tile inside it is drawn of the hole and its outer ring. */
+/* Marks the tiles whose middles the ring winds around. Tiles that its segments touch are already marked, so in all
+ * others the middle decides for the whole tile. Tiles inside a hole are marked too: such a tile is drawn from the hole
+ * and the outer ring. */
 static bool mark_inside(share *s) {
     int winding = 0;
     if (s->crossing_count)
@@ -252,14 +253,14 @@ static bool mark_polyline(share *s, size_t polyline) {
     return mark_inside(s);
 }
 
-/* ---- The threads ---- */
+/* ---- Threads ---- */
 
 typedef struct taking_census {
     camber_workers *workers;
     share *shares;
     size_t share_count;
-    atomic_size_t next;   /* the first share that no thread has taken */
-    atomic_size_t failed; /* 1 + the number of a worker that ran out of memory; 0: none */
+    atomic_size_t next;   /* the first share that no thread has taken yet */
+    atomic_size_t failed; /* 1 + the number of a worker that ran out of memory; 0: none did */
 } taking_census;
 
 static void walk_shares(void *user, size_t number) {
@@ -273,7 +274,7 @@ static void walk_shares(void *user, size_t number) {
     }
 }
 
-/* Divides the polylines by their points. */
+/* Divides the polylines into shares with about equal numbers of points. */
 static void divide(const camber_zoom_plan *plan, uint32_t side, int zoom, taking_census *taking) {
     const camber_features *features = plan->features;
     const size_t count = taking->share_count, polylines = features->polyline_count;
@@ -291,10 +292,10 @@ static void divide(const camber_zoom_plan *plan, uint32_t side, int zoom, taking
     }
 }
 
-/* ---- Putting together ---- */
+/* ---- Merging ---- */
 
 typedef struct numbered_metatile {
-    uint64_t number; /* along the Hilbert curve */
+    uint64_t number; /* position along the Hilbert curve */
     uint32_t share, metatile;
 } numbered_metatile;
 
@@ -324,7 +325,7 @@ static camber_status list_metatiles(camber_census *census, share *shares, size_t
     return CAMBER_OK;
 }
 
-/* Unites what the shares have met, and lists the polylines of each metatile: those of the first share come first. */
+/* Merges the tables of the shares, and lists the polylines of each metatile, those of the first share first. */
 static camber_status unite(camber_census *census, share *shares, size_t count) {
     numbered_metatile *all = NULL;
     size_t all_count = 0, pairs = 0;
@@ -345,7 +346,7 @@ static camber_status unite(camber_census *census, share *shares, size_t count) {
         camber_metatile *metatile = census->metatiles + census->metatile_count - 1;
         metatile->tiles |= met->tiles;
         metatile->points += met->points;
-        met->last = (uint32_t)census->metatile_count - 1; /* where it went */
+        met->last = (uint32_t)census->metatile_count - 1; /* its index in the census */
     }
     for (int put = 0; put < 2 && status == CAMBER_OK; put++) {
         for (size_t i = 0; i < count; i++)

@@ -1,4 +1,4 @@
-/* Which tiles of a zoom lines touch and areas cover, and which of them each metatile of tiles is drawn of. */
+/* Finds the tiles of a zoom that lines touch and areas cover, and the polylines that each metatile is drawn from. */
 #ifndef CAMBER_TILES_CENSUS_H
 #define CAMBER_TILES_CENSUS_H
 
@@ -6,37 +6,38 @@
 #include "map/zoom_plan.h"
 #include "tiles/workers.h"
 
-/* A metatile is a square of tiles that is drawn as one picture: side x side of them, 8 at most. */
+/* A metatile is a square of side x side tiles, 8 x 8 at most, that is drawn as one picture. */
 enum { CAMBER_METATILE_SIDE_MOST = 8 };
 
 typedef struct camber_metatile {
     uint32_t column, row; /* in metatiles */
-    uint64_t tiles;       /* bit side * row + column of each tile that a line touches, or that lies in an area */
-    uint64_t points;      /* drawn points that lie in it, about */
-    size_t first, end;    /* of the census's polylines */
+    uint64_t tiles;    /* bit side * row + column is set for each tile that a line touches, or that is inside an area */
+    uint64_t points;   /* about how many drawn points are in it */
+    size_t first, end; /* range of the census's polylines */
 } camber_metatile;
 
 typedef struct camber_census {
     camber_context *context;
     int zoom;
     uint32_t side;
-    camber_metatile *metatiles; /* metatile_count, along the Hilbert curve */
+    camber_metatile *metatiles; /* metatile_count of them, along the Hilbert curve */
     size_t metatile_count;
-    uint32_t *polylines; /* by metatile, ascending */
+    uint32_t *polylines; /* grouped by metatile, ascending within each */
 } camber_census;
 
-/* The zoom whose tiles are metatiles of this one: side is a power of two. */
+/* Returns the zoom whose tiles are the metatiles of this zoom. side is a power of two. */
 static inline int camber_metatile_level(int zoom, uint32_t side) {
     for (; side > 1; side /= 2)
         zoom--;
     return zoom;
 }
-/* Looks where the lines of a zoom lie; side divides the number of tiles, or is that number. Threads share the work.
- * camber_census_free frees also what a failure left. Returns CAMBER_ERROR_MEMORY. */
+/* Finds where the lines of a zoom are. side divides the number of tiles along a side of the world, or equals it. The
+ * workers' threads share the work. After a failure, camber_census_free must be called too. Returns
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_t side, camber_workers *workers,
                                  camber_census *census);
 void camber_census_free(camber_census *census);
-/* NULL: no line touches the metatile. */
+/* Returns NULL if no line touches the metatile. */
 const camber_metatile *camber_census_find(const camber_census *census, uint32_t column, uint32_t row);
 
 #endif

@@ -1,5 +1,5 @@
-/* Encoding beside drawing. Jobs form a ring: pictures come in one order, and leave in the same. Threads take tiles, not
- * jobs, so that the last picture is encoded by all of them. */
+/* A bounded queue of pictures, which threads encode while the next picture is drawn. Pictures leave it in the order in
+ * which they came. Threads take tiles, not whole pictures, so that all of them help with the last picture. */
 #define _XOPEN_SOURCE 700
 
 #include "tiles/encoding.h"
@@ -13,12 +13,12 @@ enum { MOST_JOBS = 8 };
 
 struct camber_encode_queue {
     camber_workers *workers;
-    camber_encoder **encoders; /* one a worker; NULL where tiles are meshes */
-    camber_mesh_tile *meshes;  /* one a worker */
-    camber_threads threads;    /* none where there is one worker: the caller encodes */
+    camber_encoder **encoders; /* one per worker; all NULL if tiles are meshes */
+    camber_mesh_tile *meshes;  /* one per worker */
+    camber_threads threads;    /* none if there is only one worker: then the caller encodes */
     camber_encode_job jobs[MOST_JOBS];
     size_t job_count;
-    uint64_t put, taken; /* how many jobs were: job n is jobs[n % job_count] */
+    uint64_t put, taken; /* how many jobs were put and taken; job n is jobs[n % job_count] */
     bool stops;
     camber_encode_times times;
     pthread_mutex_t mutex;
@@ -44,7 +44,7 @@ static bool is_background(const camber_pixels *pixels, const uint8_t background[
     return true;
 }
 
-/* Encodes the lines of a tile; it has no bytes where none come near it. */
+/* Encodes the lines of a tile. The tile gets no bytes if no line comes near it. */
 static camber_status encode_mesh(camber_encode_queue *queue, size_t number, camber_encode_job *job, unsigned tile) {
     const camber_tiles_picture *picture = &job->picture;
     camber_encoded_tile *made = job->tiles + tile;
@@ -89,7 +89,7 @@ static camber_status encode_tile(camber_encode_queue *queue, size_t number, camb
 
 /* ---- Threads ---- */
 
-/* The oldest job of which tiles wait. NULL: none. */
+/* Returns the oldest job with tiles that no thread has taken; NULL if there is none. */
 static camber_encode_job *find_waiting(camber_encode_queue *queue) {
     for (uint64_t n = queue->taken; n < queue->put; n++)
         if (queue->jobs[n % queue->job_count].waiting)
@@ -104,7 +104,8 @@ static unsigned first_tile(uint64_t tiles) {
     return tile;
 }
 
-/* Encodes one tile of the job. The mutex is held before and after, and not meanwhile. */
+/* Encodes one tile of the job. The mutex is held at the start and at the end, and released while the tile is
+ * encoded. */
 static void work_on(camber_encode_queue *queue, size_t number, camber_encode_job *job) {
     const unsigned tile = first_tile(job->waiting);
     job->waiting &= job->waiting - 1;
@@ -124,7 +125,8 @@ static void work_on(camber_encode_queue *queue, size_t number, camber_encode_job
         pthread_cond_broadcast(&queue->done);
 }
 
-/* Gives way to the threads that draw: then pictures wait to be encoded, and not threads for pictures. */
+/* Lowers the thread's priority below that of the threads that draw, so that encoders wait for pictures only if nothing
+ * is left to encode. */
 static void give_way(void) {
     struct sched_param param;
     int policy;
@@ -132,7 +134,8 @@ static void give_way(void) {
         return;
     if (policy == SCHED_OTHER) {
 #ifdef __linux__
-        (void)setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 5); /* of this thread alone, there */
+        /* on Linux this applies only to the calling thread */
+        (void)setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 5);
 #endif
     } else if (param.sched_priority > sched_get_priority_min(policy)) {
         param.sched_priority--;
@@ -165,7 +168,7 @@ static camber_status make_encoders(camber_encode_queue *queue, const camber_enco
     return CAMBER_OK;
 }
 
-/* Where kernels can write a picture themselves. */
+/* Allocates memory for a picture, aligned so that kernels can write to it directly. */
 static bool make_place(camber_context *context, size_t picture_bytes, camber_encode_job *job) {
     const size_t step = CAMBER_PIXELS_ALIGNMENT;
     job->block = camber_alloc(context, picture_bytes + step - 1, 1);
@@ -219,7 +222,7 @@ void camber_encode_queue_destroy(camber_encode_queue *queue) {
         camber_mesh_tile_free(queue->meshes + i);
     for (size_t i = 0; i < MOST_JOBS; i++) {
         for (size_t k = 0; k < 64; k++)
-            camber_free(queue->workers->contexts[0], queue->jobs[i].tiles[k].bytes); /* whichever made them */
+            camber_free(queue->workers->contexts[0], queue->jobs[i].tiles[k].bytes); /* any context may free them */
         camber_mesh_picture_free(&queue->jobs[i].lines);
         camber_free(context, queue->jobs[i].block);
     }

@@ -1,9 +1,8 @@
-/* The engine: pictures of metatiles of tiles, with a network and a camera for each.
+/* The engine draws pictures of metatiles, each with a network and a camera of its own.
  *
- * Input: features, a renderer, and which tile is wanted. Output: pixels of its metatile. Main idea: a census tells
- * which lines reach into a metatile; of these a scene is made, tessellated and drawn as one picture, which tiles are
- * cut of.
- */
+ * Input: features, a renderer, and a tile's zoom, column and row. Output: the pixels of its metatile. Main idea: a
+ * census lists the lines that reach into a metatile. The engine makes a scene of these lines, tessellates it and draws
+ * it as one picture, from which tiles are cut. */
 #include "tiles/engine.h"
 #include "map/scene.h"
 
@@ -14,16 +13,16 @@
 enum {
     PICTURE_PX = 2048,
     LEAST_TILE_PX = 64,
-    /* The census of a higher zoom would grow with the tiles that lines pass, without an end; on demand it is taken in
-     * tiles of this zoom, which have few lines. */
+    /* The census of a higher zoom would grow without limit with the tiles that lines pass through. Tiles on demand use
+     * a census in tiles of this zoom instead, which contain few lines. */
     FINEST_CENSUS_ZOOM = 16,
 };
-/* A network of more points does not wait in the mesh until the next one is made. */
+/* A mesh with a network of more points than this is freed at once, and not kept until the next one is made. */
 static const size_t MANY_POINTS = (size_t)1 << 20;
 
 /* ---- The engine ---- */
 
-/* Fills in the defaults. */
+/* Returns the desc with its defaults filled in. */
 static camber_tiles_engine_desc whole_desc(const camber_tiles_engine_desc *desc) {
     camber_tiles_engine_desc whole = *desc;
     whole.tile_size = desc->tile_size ? desc->tile_size : 256;
@@ -48,12 +47,12 @@ static camber_status check_desc(camber_tiles_engine *engine, const camber_tiles_
     camber_tiles_engine_desc *own = &engine->desc;
     *own = whole_desc(desc);
     if (own->tile_size != 256 && own->tile_size != 512)
-        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: a size of %u; choose 256 or 512",
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: a tile size of %u; choose 256 or 512",
                            own->tile_size);
     const double tile_px = camber_engine_tile_px(own);
     if (!(tile_px >= LEAST_TILE_PX && tile_px <= PICTURE_PX))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
-                           "tiles: a ratio of %g makes %g px of a tile of %u; choose one that makes %d to %d",
+                           "tiles: a ratio of %g makes %g px of a tile of %u; choose a ratio that makes %d to %d",
                            own->ratio, tile_px, own->tile_size, LEAST_TILE_PX, PICTURE_PX);
     if (!(own->simplify_px >= 0.0 && isfinite(own->simplify_px)))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
@@ -62,8 +61,8 @@ static camber_status check_desc(camber_tiles_engine *engine, const camber_tiles_
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: this build writes no mesh tiles (CAMBER_MESHOPT); build it with meshoptimizer");
     if (own->on_demand_side > CAMBER_METATILE_SIDE_MOST || own->on_demand_side & (own->on_demand_side - 1))
-        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: %u tiles on a side; choose 1, 2, 4 or 8",
-                           own->on_demand_side);
+        return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
+                           "tiles: a metatile of %u tiles on a side; choose 1, 2, 4 or 8", own->on_demand_side);
     engine->tile_px = (uint32_t)tile_px;
     return CAMBER_OK;
 }
@@ -124,12 +123,13 @@ uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom) {
     return side;
 }
 
-/* The zoom in whose tiles the census of a zoom is taken. */
+/* Returns the zoom in whose tiles the census of a zoom is taken. */
 static int census_zoom(const camber_tiles_engine *engine, int zoom) {
     return engine->desc.on_demand_side && zoom > FINEST_CENSUS_ZOOM ? FINEST_CENSUS_ZOOM : zoom;
 }
 
-/* The lines of a picture, and maybe others beside it. NULL: none touches it. */
+/* Returns a metatile that has all lines of a picture, and possibly other lines near it. NULL: no line touches the
+ * picture. */
 static const camber_metatile *find_metatile(const camber_tiles_engine *engine, int zoom, uint32_t column,
                                             uint32_t row) {
     const int counted = census_zoom(engine, zoom);
@@ -145,7 +145,7 @@ static bool take_first_pixel(void *user, const uint8_t *rgba, uint32_t first_row
     return true;
 }
 
-/* Draws the background alone, so that its colour is what pixels of it are. */
+/* Draws only the background, to learn the colour of its pixels. */
 static camber_status find_background(camber_tiles_engine *engine, camber_engine_zoom *zoom) {
     const camber_plan_patterns *patterns = &zoom->plan->plan.patterns;
     zoom->has_background = !zoom->plan->has_images;
@@ -178,7 +178,7 @@ camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, cam
             status = camber_zoom_plan_create(engine->features, &desc, &it->plan);
         if (it->mesh) {
             it->plan = it->mesh->zoom;
-            it->has_background = true; /* a tile without lines and areas is left out */
+            it->has_background = true; /* then tiles without lines and areas are left out */
             status = camber_mesh_plan_find_glu(it->mesh);
         } else if (status == CAMBER_OK) {
             status = find_background(engine, it);
@@ -223,7 +223,7 @@ camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, i
     return picture;
 }
 
-/* Frees what the mesh holds of a large network. */
+/* Frees the memory that the mesh holds for a large network. */
 static camber_status renew_mesh(camber_tiles_engine *engine) {
     camber_mesh_destroy(engine->mesh);
     engine->mesh = NULL;
@@ -239,7 +239,7 @@ static camber_view window_of(const camber_zoom_plan *plan, const camber_tiles_pi
     return window;
 }
 
-/* Makes the scene of a metatile and tessellates it. */
+/* Creates the scene of a metatile and tessellates it. */
 static camber_status tessellate(camber_tiles_engine *engine, const camber_metatile *metatile,
                                 const camber_tiles_picture *picture, camber_scene **scene) {
     static const uint32_t none[1] = {0};
@@ -253,7 +253,7 @@ static camber_status tessellate(camber_tiles_engine *engine, const camber_metati
     return status == CAMBER_OK ? camber_scene_tessellate(*scene, engine->mesh, CAMBER_METHOD_STRIP) : status;
 }
 
-/* Destroys the scene, and what the mesh holds of a large one. */
+/* Destroys the scene, and frees the mesh's memory if the scene was large. */
 static camber_status end_scene(camber_tiles_engine *engine, camber_scene *scene, camber_status status) {
     camber_camera camera;
     camber_tessellation_desc desc;

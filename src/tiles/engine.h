@@ -1,4 +1,4 @@
-/* The engine's inside, for the files that draw archives. */
+/* Internals of the engine, for the files that draw archives. */
 #ifndef CAMBER_TILES_ENGINE_H
 #define CAMBER_TILES_ENGINE_H
 
@@ -8,8 +8,8 @@
 
 typedef struct camber_engine_zoom {
     camber_zoom_plan *plan; /* NULL: not evaluated yet */
-    camber_mesh_plan *mesh; /* has it, where tiles are meshes. NULL: pictures */
-    camber_census census;   /* context NULL: not made yet */
+    camber_mesh_plan *mesh; /* if tiles are meshes: the mesh plan, which owns plan. NULL: tiles are pictures */
+    camber_census census;   /* context is NULL until it is made */
     bool has_background;
     uint8_t background[4];
 } camber_engine_zoom;
@@ -17,7 +17,7 @@ typedef struct camber_engine_zoom {
 struct camber_tiles_engine {
     camber_context *context;
     const camber_features *features;
-    camber_tiles_engine_desc desc; /* defaults filled in */
+    camber_tiles_engine_desc desc; /* with its defaults filled in */
     uint32_t tile_px;
     camber_workers workers;
     camber_mesh *mesh;
@@ -25,23 +25,23 @@ struct camber_tiles_engine {
     double census_ms, make_ms, draw_ms;
 };
 
-/* Forgets what is kept of a zoom. */
+/* Frees all data that is kept for a zoom. */
 void camber_engine_forget_zoom(camber_tiles_engine *engine, int zoom);
-/* Evaluates the style for the zoom, unless that is done. */
+/* Evaluates the style for the zoom, unless that has been done. */
 camber_status camber_engine_plan_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **planned);
-/* Does the same, and takes the census of the zoom. */
+/* Does the same, and also takes the census of the zoom. */
 camber_status camber_engine_open_zoom(camber_tiles_engine *engine, int zoom, camber_engine_zoom **opened);
-/* How large a tile is, device px; less than 1: the desc makes no sense. */
+/* Returns the size of a tile in device px; less than 1 if the desc is invalid. */
 double camber_engine_tile_px(const camber_tiles_engine_desc *desc);
-/* How the style is evaluated for tiles of a zoom. */
+/* Returns how the style is evaluated for tiles of a zoom. */
 camber_zoom_desc camber_engine_zoom_desc(const camber_tiles_engine_desc *desc, int zoom);
-/* How many tiles a picture has on a side; for archives, a metatile of the census too. */
+/* Returns how many tiles a picture has on a side. For archives, a metatile of the census has the same size. */
 uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom);
-/* The picture of a metatile, not drawn. The zoom is open. metatile NULL: no line touches it. */
+/* Describes the picture of a metatile without drawing it. The zoom must be open. metatile NULL: no line touches it. */
 camber_tiles_picture camber_engine_describe(const camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                             const camber_metatile *metatile);
-/* Tessellates a metatile of an open zoom, for tiles that are meshes. Free lines with camber_mesh_picture_free, also
- * after a failure. */
+/* Tessellates a metatile of an open zoom, if tiles are meshes. Free lines with camber_mesh_picture_free, also after a
+ * failure. */
 camber_status camber_engine_tessellate_metatile(camber_tiles_engine *engine, const camber_metatile *metatile,
                                                 camber_tiles_picture *picture, camber_mesh_picture *lines);
 /* Draws a metatile of an open zoom into rgba. */

@@ -1,13 +1,14 @@
-/* Keeps a set of features in a file.
+/* Saves a set of features to a file, and loads it again.
  *
- * Input: a set whose lines are merged and weighed. Output: a file, and from it the same set, or what of it touches a
- * region. To read it takes a tenth of the time that the files behind it take. It is for machines of one kind, which
- * draw parts of one run, and lives as long as the run. Numbers are in the machine's order; another order is refused.
+ * Input: a set whose lines are merged and weighed. Output: a file, from which the same set can be loaded, or the part
+ * of it that touches a region. Loading takes a tenth of the time that reading the original files takes. The file serves
+ * the machines that draw the parts of one run, and is not needed after the run. Numbers are in the machine's byte
+ * order; a file with another byte order is refused.
  *
  *     header | JSON: layers, classes | numbers by feature | numbers by polyline | blocks of points | checksum
  *
- * A block has the points of some polylines, then their importance. All polylines of a feature lie in one block, for the
- * rings of an area are taken together. A reader holds one block at a time. */
+ * A block contains the points of some polylines, then their importance. All polylines of a feature are in one block,
+ * because the rings of an area are taken together. A reader holds one block at a time. */
 #define _FILE_OFFSET_BITS 64
 #define _XOPEN_SOURCE 700
 
@@ -28,7 +29,7 @@ typedef struct header {
     uint64_t magic, input, json_bytes, feature_count, polyline_count, point_count, has_progress;
 } header;
 
-/* A file that is written or read from its start to its end. */
+/* A file that is written or read sequentially. */
 typedef struct stream {
     camber_context *context;
     const char *path;
@@ -43,7 +44,7 @@ static json_t *value_json(const camber_value *value) {
     json_t *json = NULL;
     switch (value->type) {
     case CAMBER_VALUE_BOOL: return json_boolean(value->boolean);
-    case CAMBER_VALUE_NUMBER: return json_real(value->number); /* NULL: not finite */
+    case CAMBER_VALUE_NUMBER: return json_real(value->number); /* json_real returns NULL if the number is not finite */
     case CAMBER_VALUE_STRING: return json_string(value->string);
     case CAMBER_VALUE_ARRAY:
         json = json_array();
@@ -51,7 +52,7 @@ static json_t *value_json(const camber_value *value) {
             json_array_append_new(json, value_json(value->items + i));
         return json;
     case CAMBER_VALUE_OBJECT:
-        /* Members are sorted by their keys, and have their positions. */
+        /* Members are sorted by key, and found by position. */
         json = json_object();
         for (uint32_t at = 0; at < value->count; at++)
             for (uint32_t i = 0; i < value->count; i++)
@@ -62,7 +63,8 @@ static json_t *value_json(const camber_value *value) {
     }
 }
 
-/* A value in an array of its own; nothing: null. So the null of a file differs from what is not there. */
+/* Appends a value in an array of its own, or null if there is no value, so that a null value in the file differs from a
+ * missing one. */
 static bool append_value(json_t *to, const camber_value *value) {
     if (value->type == CAMBER_VALUE_NULL && !value->boolean)
         return json_array_append_new(to, json_null()) == 0;
@@ -172,7 +174,7 @@ static camber_status take_json(camber_features *features, const json_t *json) {
     return status;
 }
 
-/* Returns the polyline behind a block that begins with this one. */
+/* Returns the end of the block that begins with the polyline `first`. */
 static size_t end_of_block(const uint32_t *polyline_feature, size_t first, size_t count) {
     size_t end = count - first < BLOCK_POLYLINES ? count : first + BLOCK_POLYLINES;
     while (end < count && polyline_feature[end] == polyline_feature[end - 1])
@@ -220,7 +222,8 @@ camber_status camber_features_save(const camber_features *features, uint64_t inp
     json_decref(json);
     if (!text)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "%s: a property is not a finite number, or memory is out; draw without a schedule", path);
+                           "%s: a property is not a finite number, or memory is exhausted; draw without a schedule",
+                           path);
     const header head = {MAGIC,
                          input,
                          strlen(text),
@@ -245,9 +248,9 @@ camber_status camber_features_save(const camber_features *features, uint64_t inp
 /* ---- Reading ---- */
 
 static camber_status fail_damaged(const stream *from) {
-    return camber_fail(
-        from->context, CAMBER_ERROR_INPUT,
-        "%s: is damaged, or was made from another input; make it again with --dry-run --schedule --force", from->path);
+    return camber_fail(from->context, CAMBER_ERROR_INPUT,
+                       "%s: damaged, or made from another input; make it again with --dry-run --schedule --force",
+                       from->path);
 }
 
 static camber_status get(stream *from, void *bytes, uint64_t size_bytes) {
@@ -263,7 +266,7 @@ static camber_status get(stream *from, void *bytes, uint64_t size_bytes) {
     return CAMBER_OK;
 }
 
-/* Makes room for so many, and reads them. */
+/* Allocates an array for `count` items, and reads them. */
 static camber_status get_all(stream *from, void *items, uint64_t count, size_t size_bytes) {
     if (count > (from->size_bytes - from->at) / size_bytes)
         return fail_damaged(from);
@@ -285,7 +288,7 @@ static camber_status get_json(stream *from, uint64_t size_bytes, camber_features
     return status;
 }
 
-/* The file's polylines, before those that are wanted are taken. */
+/* The polylines in the file, before the wanted ones are taken. */
 typedef struct loading {
     stream *from;
     camber_features *features;
@@ -294,7 +297,7 @@ typedef struct loading {
     uint32_t *polyline_feature, *feature_counts;
     uint64_t *offsets;
     float *progress;
-    double *points; /* of a block */
+    double *points; /* the points of one block */
     float *importance;
     size_t point_room, importance_room;
 } loading;
@@ -311,7 +314,7 @@ static bool makes_sense(const loading *l, const header *head) {
     return good;
 }
 
-/* Takes a polyline of the block that begins with a point. */
+/* Takes a polyline of a block whose points start at `begin`. */
 static bool take_polyline(loading *l, size_t polyline, uint64_t begin) {
     camber_features *f = l->features;
     const size_t first = (size_t)(l->offsets[polyline] - begin);
@@ -332,8 +335,8 @@ static bool take_polyline(loading *l, size_t polyline, uint64_t begin) {
     return true;
 }
 
-/* Whether the line is wanted that the set has from this polyline on, or the area. The region has all boxes: most that
- * lie in none do not touch it. */
+/* Whether the line or area that starts with this polyline is wanted. The region contains all boxes; checking it first
+ * rejects most lines that are in none of them. */
 static bool is_wanted(const loading *l, size_t polyline) {
     const camber_features *f = l->features;
     size_t next;
@@ -345,7 +348,7 @@ static bool is_wanted(const loading *l, size_t polyline) {
     return l->box_count < 2;
 }
 
-/* Takes what is wanted of a block: the rings of an area together, or none of them. */
+/* Takes the wanted polylines of a block: either all rings of an area, or none. */
 static bool take_block(loading *l, size_t first, size_t end) {
     camber_features *f = l->features;
     const uint64_t begin = l->offsets[first];
@@ -384,7 +387,7 @@ static camber_status get_blocks(loading *l, size_t polylines) {
     return status;
 }
 
-/* Makes room for the polylines that will be taken: all at most. */
+/* Allocates memory for the polylines that will be taken; at most all of them. */
 static camber_status make_room(camber_features *f, size_t polylines, bool has_progress) {
     if (!(f->polyline_feature = camber_alloc(f->context, polylines + 1, sizeof *f->polyline_feature)) ||
         !(f->feature_counts = camber_alloc(f->context, polylines + 1, sizeof *f->feature_counts)) ||

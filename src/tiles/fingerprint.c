@@ -1,5 +1,5 @@
-/* Fingerprints go by what was read and asked for, not by names or times of files: the same lines from another path make
- * the same tiles. */
+/* Fingerprints depend on what was read and on the options, not on file names or times: the same lines read from another
+ * path make the same tiles. */
 #include "tiles/fingerprint.h"
 
 #include "archive/contents.h"
@@ -76,7 +76,7 @@ uint64_t camber_features_hash(const camber_features *features, camber_box *box) 
 
 /* ---- The rest ---- */
 
-/* The document and the images of its sprites. */
+/* Hashes the style's document and the images of its sprites. */
 static uint64_t hash_style(const camber_features *features) {
     uint64_t hash = features->style->hash;
     const camber_sprites *sprites = features->sprites;
@@ -121,9 +121,9 @@ void camber_fingerprint_write(const camber_tiles_engine *engine, const camber_ti
              hash_style(engine->features), hash_options(engine, desc), hash_area(desc, area), camber_version());
 }
 
-/* ---- Renewing ---- */
+/* ---- Replacing tiles ---- */
 
-/* The value of a word; its length. NULL: there is none. */
+/* Returns the value of a word and sets its length; NULL if the word is missing. */
 static const char *find_word(const char *text, const char *name, size_t *length) {
     const size_t size = strlen(name);
     for (const char *at = text; at; at = strchr(at, ' '), at = at ? at + 1 : NULL)

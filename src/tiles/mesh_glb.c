@@ -1,9 +1,9 @@
-/* Encodes mesh tiles as binary glTF 2.0, quantised and compressed. docs/mesh-tiles.md has the layout.
+/* Encodes mesh tiles as binary glTF 2.0, quantised and compressed. docs/mesh-tiles.md describes the layout.
  *
- * Input: the records and triangles of a tile. Output: a file of up to two primitives. Lines are a strip with two
- * vertices a record: the line's left and right edge at the tile's zoom, for plain viewers, and in both the record
- * itself, for shaders. Sentinels have a vertex of the line before and one of the line behind, so that the triangles
- * there have no area. Areas are triangles with indices. */
+ * Input: the records and triangles of a tile. Output: a file with up to two primitives. Lines are one triangle strip
+ * with two vertices per record: the line's left and right edge at the tile's zoom, for plain viewers. Both vertices
+ * also contain the record itself, for shaders. A sentinel's vertices coincide with one vertex of the line before it and
+ * one of the line after it, so that the triangles there have no area. Areas are indexed triangles. */
 #include "tiles/mesh_tile.h"
 
 #include <jansson.h>
@@ -26,17 +26,17 @@ bool camber_mesh_is_built(void) {
 #ifdef CAMBER_MESHOPT
 
 enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_SHORT = 5122, GLTF_UNSIGNED_INT = 5125, GLTF_FLOAT = 5126, GLTF_STRIP = 5 };
-/* Outlines lie on eighths of a px at the tile's zoom; sets lie a px above each other, so that plain viewers see which
- * is above. */
+/* Outlines are in steps of 1/8 px at the tile's zoom. Sets are stacked 1 px above each other, so that plain viewers
+ * draw them in order. */
 enum { OUTLINE_STEPS = 8 };
 
-/* As it stands in the file. */
+/* A vertex as it is stored in the file. */
 typedef struct vertex {
     int16_t position[3], padding; /* x, height, y, in eighths of a px */
-    int16_t point[4];             /* x, y in units, row, flags */
-    uint8_t color[4];             /* linear */
+    int16_t point[4];             /* x and y in units, row, flags */
+    uint8_t color[4];             /* linear RGBA */
 } vertex;
-_Static_assert(sizeof(vertex) == 20, "vertices lie side by side");
+_Static_assert(sizeof(vertex) == 20, "vertices have no padding between them");
 
 typedef struct along {
     float along_px, total_px;
@@ -49,18 +49,18 @@ typedef struct encoder {
     const camber_mesh_tile *tile;
     const camber_mesh_plan *plan;
     const camber_mesh_place *place;
-    vertex *vertices;          /* two a record, then one a corner */
-    along *alongs;             /* two a record. NULL: none */
-    size_t vertex_count;       /* of lines, then of areas */
-    uint8_t *packed;           /* streams, compressed, each at a multiple of 4 bytes */
-    size_t start[STREAMS + 1]; /* of each, and the end */
-    size_t bytes[STREAMS];     /* of each; 0: it is not there */
-    bool ok;                   /* there was memory for all of the JSON */
+    vertex *vertices;          /* two per record, then one per corner */
+    along *alongs;             /* two per record; NULL: none */
+    size_t vertex_count;       /* vertices of lines, then of areas */
+    uint8_t *packed;           /* compressed streams, each at a multiple of 4 bytes */
+    size_t start[STREAMS + 1]; /* start of each stream, and the end of the last */
+    size_t bytes[STREAMS];     /* size of each stream; 0: it is not present */
+    bool ok;                   /* no allocation for the JSON has failed */
 } encoder;
 
 /* ---- The outline, for plain viewers ---- */
 
-/* How plain viewers see a row: as its topmost layer does where it is drawn first. */
+/* How plain viewers draw a row: like the topmost layer that draws it, at the first sample at which it does. */
 typedef struct look {
     double half_width, offset; /* eighths of a px */
     int height;
@@ -103,7 +103,7 @@ static int16_t to_steps(double value) {
     return (int16_t)(steps > 32767.0 ? 32767.0 : steps < -32767.0 ? -32767.0 : steps);
 }
 
-/* The direction from one record to another; false: they lie at one place. */
+/* Computes the direction from one record to another. Returns false if both are at the same point. */
 static bool direction(const camber_mesh_record *a, const camber_mesh_record *b, double u[2]) {
     const double x = b->x - a->x, y = b->y - a->y, length = sqrt(x * x + y * y);
     u[0] = length > 0.0 ? x / length : 1.0;
@@ -111,7 +111,7 @@ static bool direction(const camber_mesh_record *a, const camber_mesh_record *b, 
     return length > 0.0;
 }
 
-/* Places both vertices of a record: on the bisector of its segments, at most two half widths away. */
+/* Places both vertices of a record on the bisector of its segments, at most two half widths away. */
 static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
     const camber_mesh_record *r = e->tile->records + i;
     const bool is_ring = r->flags & CAMBER_MESH_RING;
@@ -131,7 +131,7 @@ static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
         pair[side].position[1] = (int16_t)l->height;
         pair[side].position[2] = to_steps(y + across[1] * away);
     }
-    if (!has_in && !has_out) /* a dot is a square */
+    if (!has_in && !has_out) /* a dot becomes a square */
         for (int side = 0; side < 2; side++)
             pair[side].position[0] = to_steps(x + (r->flags & CAMBER_MESH_FIRST ? -1.0 : 1.0) * l->half_width);
 }
@@ -152,7 +152,7 @@ static void make_pair(encoder *e, size_t i, const look *l) {
     }
 }
 
-/* Puts the vertices of sentinels onto those beside them. */
+/* Moves the vertices of sentinels onto neighbouring vertices. */
 static void place_sentinels(encoder *e) {
     const camber_mesh_record *records = e->tile->records;
     const size_t count = e->tile->record_count;
@@ -164,14 +164,15 @@ static void place_sentinels(encoder *e) {
         while (next < count && (records[next].flags & CAMBER_MESH_SENTINEL))
             next++;
         const vertex *before = i > 0 ? pair - 1 : e->vertices + 2 * next;
-        const bool is_last = next == count || next > i + 1; /* of two sentinels the first stays behind */
+        /* of two sentinels in a row, the first belongs to the line before */
+        const bool is_last = next == count || next > i + 1;
         const vertex *behind = is_last ? before : e->vertices + 2 * next;
         memcpy(pair[0].position, before->position, sizeof before->position);
         memcpy(pair[1].position, behind->position, sizeof behind->position);
     }
 }
 
-/* Makes the corners of areas, behind the vertices of lines. */
+/* Makes the corners of areas, after the vertices of lines. */
 static void make_corners(encoder *e, look *looks) {
     const camber_mesh_tile *tile = e->tile;
     const double steps = (double)(OUTLINE_STEPS * tile->tile_px) / tile->units;
@@ -222,8 +223,8 @@ static camber_status make_vertices(encoder *e) {
     return CAMBER_OK;
 }
 
-/* The versions of EXT_meshopt_compression. They are set for the whole process and not locked, so no tile sets them
- * while another one is encoded. */
+/* Sets the versions of EXT_meshopt_compression. meshoptimizer keeps them for the whole process without a lock, so they
+ * must not be set while a tile is encoded. */
 static void set_versions(void) {
     meshopt_encodeVertexVersion(0);
     meshopt_encodeIndexVersion(1);
@@ -264,7 +265,7 @@ static void append(encoder *e, json_t *array, json_t *value) {
     e->ok &= json_array_append_new(array, value) == 0;
 }
 
-/* A number to a thousandth; of px above 10 to a hundredth, and so on: four digits, as many as a picture can tell. */
+/* Rounds a number to 1/1000, and px above 10 to 1/100, and so on: four digits are more than a picture can show. */
 static json_t *number(double value) {
     double step = 1e-3;
     for (double most = 10.0; fabs(value) >= most && most < 1e4; most *= 10.0)
@@ -273,7 +274,8 @@ static json_t *number(double value) {
     return rounded == floor(rounded) ? json_integer((json_int_t)rounded) : json_real(rounded);
 }
 
-/* Sets a list of samples, or one where all are the same; nothing where that is the default. Takes both. */
+/* Stores a list of samples; a single value if all are the same; nothing if that value is the default. Takes ownership
+ * of both. */
 static void set_samples(encoder *e, json_t *object, const char *key, json_t *samples, json_t *normal) {
     bool same = true;
     e->ok &= normal != NULL;
@@ -319,7 +321,7 @@ static void set_along(encoder *e, json_t *object, const camber_paint *paint) {
     }
 }
 
-/* The paint of a row in a layer. NULL: it is not drawn at any sample. */
+/* Returns the paint of a row in a layer; NULL if it is not drawn at any sample. */
 static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     enum { WIDTH, OPACITY, GAP, BLUR, OFFSET, UNIT, COLOR, MOVE, LISTS };
     static const char *const names[LISTS] = {"width",  "opacity",  "gap",   "blur",
@@ -335,7 +337,8 @@ static json_t *paint_json(encoder *e, size_t layer, uint32_t row) {
     for (int k = 0; k < LISTS; k++)
         lists[k] = json_array();
     for (size_t s = 0; s < CAMBER_MESH_SAMPLES; s++) {
-        /* Where it is not drawn, it looks as where it is, so that shaders may go from one to the other. */
+        /* At samples where the row is not drawn, the paint of another sample is used, so that shaders can
+         * interpolate. */
         const bool is_drawn = camber_mesh_plan_draws(paints + s);
         const camber_paint *p = is_drawn ? paints + s : &seen;
         append(e, lists[WIDTH], number(is_drawn ? (double)p->width_px : 0.0));
@@ -450,9 +453,9 @@ static json_t *extras_json(encoder *e) {
     return extras;
 }
 
-/* ---- The parts of glTF ---- */
+/* ---- Parts of the glTF file ---- */
 
-/* Offsets of 0 go without saying. */
+/* An offset of 0 is the default and is omitted. */
 static json_t *view_json(encoder *e, size_t *offset, int stream, size_t count, size_t stride) {
     json_t *packed = json_pack("{s:i, s:I, s:I, s:I, s:s}", "buffer", 0, "byteLength", (json_int_t)e->bytes[stream],
                                "byteStride", (json_int_t)stride, "count", (json_int_t)count, "mode",
@@ -479,7 +482,7 @@ static json_t *accessor_json(int view, size_t offset, int component, size_t coun
     return accessor;
 }
 
-/* Adds the accessors of some vertices; returns the attributes that name them. */
+/* Adds the accessors of some vertices, and returns the attributes that refer to them. */
 static json_t *add_accessors(encoder *e, json_t *list, size_t first, size_t count) {
     const vertex *vertices = e->vertices + first;
     const size_t start = first * sizeof *vertices;
@@ -504,7 +507,7 @@ static json_t *add_accessors(encoder *e, json_t *list, size_t first, size_t coun
                      number_first + 2);
 }
 
-/* The strip of lines and the triangles of areas, as far as they are there. */
+/* Makes the primitives: the strip of lines and the triangles of areas, if there are any. */
 static json_t *primitives_json(encoder *e, json_t *accessors) {
     const size_t count = 2 * e->tile->record_count;
     json_t *primitives = json_array();
@@ -583,7 +586,8 @@ static camber_status fail_json(const encoder *e) {
     return camber_fail(e->context, CAMBER_ERROR_MEMORY, "tiles: no memory for the style of a mesh tile");
 }
 
-/* jansson's functions for memory are the process's: they may be others than ours, so the text is written in place. */
+/* jansson's allocator belongs to the whole process and may not be ours, so the text is written directly into our
+ * buffer. */
 static camber_status write_file(encoder *e, const json_t *root, uint8_t **bytes, size_t *size_bytes) {
     enum { AS = JSON_COMPACT | JSON_REAL_PRECISION(10) };
     const size_t length = e->ok ? json_dumpb(root, NULL, 0, AS) : 0, text = (length + 3) / 4 * 4;

@@ -1,8 +1,8 @@
-/* Plans mesh tiles: the style evaluated at some zooms between one whole zoom and the next.
+/* Plans mesh tiles: evaluates the style at several zooms from one whole zoom to the next.
  *
- * Input: features and a zoom. Output: the plan just below the next zoom, whose sets and pairs the tiles have, and the
- * paints of all samples. Main idea: a layer of one plan is found in another by its layer of the style, and a pair by
- * its class of features. */
+ * Input: features and a zoom. Output: the plan just below the next zoom, whose sets and pairs the tiles use, and the
+ * paints of all samples. Main idea: layers of two plans correspond if they come from the same layer of the style, and
+ * pairs correspond if they have the same class of features. */
 #include "tiles/mesh_plan.h"
 
 #include "map/plan_network.h"
@@ -13,8 +13,9 @@ static const camber_plan *plan_at(const camber_mesh_plan *plan, size_t sample) {
     return sample + 1 < CAMBER_MESH_SAMPLES ? plan->samples + sample : &plan->zoom->plan;
 }
 
-/* The row that the class and dot of a pair of the zoom's plan have in a set of another; CAMBER_NO_ROW: the set does not
- * draw them. A style has as many dots at all zooms, but for a layer that comes in between: the last is the fill's. */
+/* Returns the row in another sample's set for the class and dot of a pair of the zoom's plan; CAMBER_NO_ROW if that set
+ * does not draw them. A style has the same number of dots at all zooms, unless a layer appears between two samples: the
+ * last dot is the fill's. */
 static uint32_t row_of(const camber_mesh_plan *mesh, const camber_plan *plan, size_t set, uint32_t pair) {
     const uint32_t class = mesh->pair_classes[pair];
     const size_t above = mesh->zoom->plan.dot_count - mesh->zoom->plan.pair_dots[pair];
@@ -26,7 +27,7 @@ static uint32_t row_of(const camber_mesh_plan *mesh, const camber_plan *plan, si
     return CAMBER_NO_ROW;
 }
 
-/* The paint of a pair. */
+/* Returns the paint of a pair in a layer at a sample. */
 static camber_paint pair_paint(const camber_mesh_plan *plan, size_t layer, uint32_t pair, size_t sample) {
     const camber_plan *own = plan_at(plan, sample);
     const size_t at = plan->sample_layers[sample * plan->zoom->plan.layer_count + layer];
@@ -78,7 +79,7 @@ static float whole_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-/* The offset of a pair in a sample's set. */
+/* Returns the offset of a pair in a sample's set. */
 static float offset_of(const camber_mesh_plan *plan, size_t layer, uint32_t pair, size_t sample) {
     const camber_plan *own = plan_at(plan, sample);
     const size_t at = plan->sample_layers[sample * plan->zoom->plan.layer_count + layer];
@@ -90,9 +91,9 @@ float camber_mesh_plan_offset(const camber_mesh_plan *plan, size_t layer, uint32
     return offset_of(plan, layer, plan->row_pairs[row], sample);
 }
 
-/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and gives its reach; below 0: it
- * is not drawn. Beyond the stroke that
- * is an offset or a translation: the camera has it as what its window grows by. */
+/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and returns its reach; negative if it is
+ * not drawn. The reach beyond the stroke itself comes from an offset or a translation, by which the camera extends its
+ * window. */
 static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t pair) {
     camber_stroke *stroke = plan->zoom->strokes + pair;
     float reach = -1.0f;
@@ -110,7 +111,7 @@ static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t 
             reach = fmaxf(reach, (float)camber_plan_stroke_reach(&own) +
                                      shrunk * hypotf(paint.translate_x_px, paint.translate_y_px) + 1.0f);
         }
-    stroke->offset_px = 0.0f; /* tiles have the line, and shaders move it */
+    stroke->offset_px = 0.0f; /* tiles contain the line itself, and shaders apply the offset */
     const float beyond = reach - (float)camber_plan_stroke_reach(stroke);
     plan->zoom->plan.translate_px = fmaxf(plan->zoom->plan.translate_px, beyond);
     return reach;
@@ -120,9 +121,9 @@ static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t 
 
 typedef struct row_maker {
     camber_mesh_plan *plan;
-    uint32_t *slots; /* row + 1; 0: free */
+    uint32_t *slots; /* index of a row + 1; 0: free */
     size_t slot_count;
-    uint32_t *key, *other; /* of a pair: its rows in all samples, by layer of its set */
+    uint32_t *key, *other; /* of a pair: its rows in all samples, for each layer of its set */
 } row_maker;
 
 static size_t list_rows(const camber_mesh_plan *plan, const camber_plan_set *set, uint32_t pair, uint32_t *rows) {
@@ -137,7 +138,7 @@ static size_t list_rows(const camber_mesh_plan *plan, const camber_plan_set *set
     return count * sizeof *rows;
 }
 
-/* Finds the row of the set that the pair has, or makes it. */
+/* Finds the row of the set for the pair, or adds one. */
 static void put_row(row_maker *m, const camber_plan_set *set, uint32_t pair) {
     camber_mesh_plan *plan = m->plan;
     const size_t size_bytes = list_rows(plan, set, pair, m->key);
@@ -194,7 +195,7 @@ static camber_status make_rows(camber_mesh_plan *plan, row_maker *m) {
     return CAMBER_OK;
 }
 
-/* How far each class reaches in any set. */
+/* Finds how far each class reaches in any set. */
 static void find_reaches(camber_mesh_plan *plan) {
     camber_zoom_plan *zoom = plan->zoom;
     const camber_plan *whole = &zoom->plan;
@@ -220,7 +221,7 @@ static camber_status evaluate(const camber_features *features, const camber_zoom
     }
     camber_zoom_desc top = *desc;
     top.zoom += camber_mesh_sample_zoom(CAMBER_MESH_SAMPLES - 1);
-    top.simplify_px *= 0.5; /* of zoom z + 1 */
+    top.simplify_px *= 0.5; /* in px of zoom z + 1 */
     if (status == CAMBER_OK)
         status = camber_zoom_plan_create(features, &top, &plan->zoom);
     for (size_t s = 0; s + 1 < CAMBER_MESH_SAMPLES && status == CAMBER_OK; s++)

@@ -1,11 +1,11 @@
 /* Cuts the lines of a picture into mesh tiles.
  *
- * Input: the points of a mesh, as the device tessellated them for a picture of tiles. Output: for each tile
- * the points of the segments that come within reach of it, in whole units of the tile. Main idea: a segment that
- * touches the tile, grown by how far its row reaches, stays as it is; others go. So a tile, clipped to its square,
- * shows what the picture shows there. A segment is cut only where it leaves what 16 bits hold.
+ * Input: the points of a mesh, as the device tessellated them for a picture of tiles. Output: for each tile, the points
+ * of the segments within reach of it, in whole units of the tile. Main idea: a segment that touches the tile, extended
+ * by the reach of its row, is kept as it is; all others are dropped. So a tile clipped to its square shows the same as
+ * the picture does there. A segment is cut only where it leaves the range of 16 bits.
  *
- *     +-----------------------------+  what 16 bits hold: half a tile on each side
+ *     +-----------------------------+  range of 16 bits: half a tile beyond each side
  *     |      .-----------------.    |
  *     |  a---|--b    tile      |    |      a: first, cut       c: last, cut
  *     |      |   \.____________|_c  |
@@ -19,7 +19,7 @@
 
 /* ---- The lines of a picture ---- */
 
-/* How much room the lists of a picture have. */
+/* Capacities of the lists of a picture. */
 typedef struct room {
     size_t lines, points;
 } room;
@@ -51,7 +51,8 @@ static bool add_line(camber_mesh_picture *picture, room *has, const camber_mesh_
     return true;
 }
 
-/* Lists lines and points. Dots that are not drawn are left out; others get a segment from their point to itself. */
+/* Lists lines and points. Dots that are not drawn are left out; other dots become a segment from their point to
+ * itself. */
 static camber_status list_lines(camber_mesh_picture *picture, const camber_stages *stages) {
     room has = {0, 0};
     for (size_t i = 0; i < stages->point_count; i++) {
@@ -72,7 +73,7 @@ static bool is_seam(const camber_mesh_picture *picture, size_t point) {
     return picture->points[point].info & CAMBER_POINT_RING;
 }
 
-/* Joins the pieces of rings that the picture has cut where the rings begin and end. */
+/* Links the first and last pieces of rings that the picture has cut, because these pieces meet at the ring's seam. */
 static void join_seams(camber_mesh_picture *picture) {
     for (size_t i = 0; i < picture->line_count; i++) {
         camber_mesh_line *begin = picture->lines + i, *end = begin;
@@ -114,12 +115,12 @@ void camber_mesh_picture_free(camber_mesh_picture *picture) {
 typedef struct cutter {
     const camber_mesh_picture *picture;
     camber_mesh_tile *tile;
-    double centre_x, centre_y; /* of the tile, px of the picture */
-    double half;               /* of the tile, px */
-    double limit;              /* of what 16 bits hold, px from the centre */
-    double scale;              /* units a px */
-    bool sentinel_is_used;     /* the last sentinel has the neighbour of a ring */
-    camber_status failed;      /* CAMBER_OK: not */
+    double centre_x, centre_y; /* of the tile, in px of the picture */
+    double half;               /* half the tile's width, px */
+    double limit;              /* range of 16 bits, px from the centre */
+    double scale;              /* units per px */
+    bool sentinel_is_used;     /* the last sentinel holds the neighbour of a ring, and cannot be shared */
+    camber_status failed;      /* CAMBER_OK: no failure */
 } cutter;
 
 typedef struct cut_point {
@@ -134,7 +135,8 @@ static cut_point point_at(const cutter *c, const camber_mesh_line *line, size_t 
                        is_along ? p->at.total_px : 0.0f};
 }
 
-/* The shares of the segment between which it lies in a square about the centre. false: nowhere. */
+/* Clips a segment to a square about the centre, and sets the fractions at which it enters and leaves. Returns false if
+ * it misses the square. */
 static bool clip(cut_point a, cut_point b, double half, double *from, double *to) {
     const double start[] = {a.x, a.y}, run[] = {b.x - a.x, b.y - a.y};
     *from = 0.0;
@@ -185,7 +187,7 @@ static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
     tile->segments += !(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST));
 }
 
-/* Puts the sentinel before a line, unless that of the line before serves for it. */
+/* Puts a sentinel before a line, unless the last sentinel of the line before can be shared. */
 static void put_sentinel_before(cutter *c, cut_point first, uint16_t row, bool is_ring) {
     if (!c->tile->record_count || (is_ring && c->sentinel_is_used))
         put(c, first, row, CAMBER_MESH_SENTINEL);
@@ -196,12 +198,12 @@ static void put_sentinel_behind(cutter *c, cut_point at, uint16_t row, bool is_r
     c->sentinel_is_used = is_ring;
 }
 
-/* A line that may be cut into several. */
+/* A line, which may be cut into several runs. */
 typedef struct line_walk {
     const camber_mesh_line *line;
-    double reach; /* of the tile's half and the row, px */
+    double reach; /* half of the tile plus the reach of the row, px */
     bool is_ring;
-    bool has_row; /* row is numbered, since some of the line is near */
+    bool has_row; /* row has been numbered, because some of the line is near */
     uint16_t row;
 } line_walk;
 
@@ -209,13 +211,13 @@ static bool is_outside(const cutter *c, cut_point p) {
     return fabs(p.x) > c->limit || fabs(p.y) > c->limit;
 }
 
-/* Whether the segment from point i on comes near the tile. */
+/* Whether the segment that starts at point i comes near the tile. */
 static bool is_near(const cutter *c, const line_walk *w, size_t i) {
     double from, to;
     return clip(point_at(c, w->line, i), point_at(c, w->line, i + 1), w->reach, &from, &to);
 }
 
-/* The flags of a run's end: those of the line, where it is the line's own. */
+/* Returns the flags of a run's end; those of the line's own end if the run ends there. */
 static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, bool own) {
     const uint32_t info = c->picture->points[w->line->first + point].info;
     return own && !(info & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
@@ -243,8 +245,8 @@ static void number_row(cutter *c, line_walk *w) {
     w->has_row = true;
 }
 
-/* A point of the picture, counted from 1, as a neighbour of another; where 16 bits do not hold it, it is pulled to the
- * point. */
+/* Returns a point of the picture, counted from 1, as the neighbour of another point. If it is outside the range of 16
+ * bits, it is moved towards that point. */
 static cut_point neighbour_of(const cutter *c, cut_point point, size_t neighbour) {
     const camber_mesh_point *p = c->picture->points + neighbour - 1;
     const cut_point other = {.x = (double)p->x - c->centre_x, .y = (double)p->y - c->centre_y};
@@ -252,8 +254,8 @@ static cut_point neighbour_of(const cutter *c, cut_point point, size_t neighbour
     return clip(point, other, c->limit, &from, &to) ? between(point, other, to) : other;
 }
 
-/* The sentinel before has the neighbour, where the line is a ring's piece that begins here. neighbour: a point, from
- * 1; 0: none. */
+/* If the line is a piece of a ring and begins here, the sentinel before it holds the neighbour. neighbour: a point,
+ * counted from 1; 0: none. */
 static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, size_t neighbour) {
     if (!w->has_row)
         number_row(c, w);
@@ -268,7 +270,7 @@ static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, 
     put(c, start, w->row, CAMBER_MESH_FIRST | flags);
 }
 
-/* The other end of such a piece. */
+/* Ends such a run in the same way. */
 static void end_run(cutter *c, const line_walk *w, cut_point stop, unsigned flags, size_t neighbour) {
     cut_point behind = stop;
     if (neighbour) {
@@ -279,7 +281,7 @@ static void end_run(cutter *c, const line_walk *w, cut_point stop, unsigned flag
     put_sentinel_behind(c, behind, w->row, neighbour != 0);
 }
 
-/* Puts the segments [first, end) that are near, in order; a ring's are counted around it. */
+/* Puts those of the segments [first, end) that are near, in order. Segments of a ring are counted around it. */
 static void put_runs(cutter *c, line_walk *w, size_t first, size_t end) {
     const size_t segments = w->line->count - 1;
     bool runs = false, near = is_near(c, w, first % segments);
@@ -341,7 +343,7 @@ static void put_ring(cutter *c, line_walk *w) {
 
 /* ---- A tile ---- */
 
-/* Whether a line's box comes near the tile, and the line is drawn. */
+/* Whether the line is drawn and its box comes near the tile. */
 static bool touches(const cutter *c, const camber_mesh_line *line) {
     const camber_mesh_plan *plan = c->picture->plan;
     const double own = (double)plan->reach_px[plan->pair_rows[line->pair]], reach = c->half + own;
@@ -350,7 +352,7 @@ static bool touches(const cutter *c, const camber_mesh_line *line) {
            (double)line->y1 - c->centre_y >= -reach;
 }
 
-/* Chooses the units: as fine as 16 bits allow for what reaches farthest. */
+/* Chooses the units: as fine as 16 bits allow for the line with the largest reach. */
 static void choose_units(cutter *c) {
     const camber_mesh_plan *plan = c->picture->plan;
     double most = 0.0;
@@ -367,7 +369,7 @@ static void choose_units(cutter *c) {
     } while (c->limit < c->half + most + 1.0 && (c->tile->units /= 2) > 1);
 }
 
-/* Notes that items up to `end` belong to the set. false: no memory. */
+/* Records that the items up to `end` belong to the set. Returns false if memory is exhausted. */
 static bool end_range(camber_context *context, camber_mesh_range **ranges, size_t *count, size_t *capacity,
                       camber_mesh_range range) {
     camber_mesh_range *last = *count ? *ranges + *count - 1 : NULL;

@@ -1,8 +1,8 @@
 /* Draws a pyramid of tiles into an archive.
  *
- * Input: an engine, and which tiles are wanted. Output: an archive. Main idea: the calling thread makes networks, draws
- * pictures and writes tiles; threads cut and encode them beside it. Each picture is a unit of the archive's writer, so
- * that a killed run loses the pictures that were under way.
+ * Input: an engine, and the tiles that are wanted. Output: an archive. Main idea: the calling thread makes networks,
+ * draws pictures and writes tiles, while other threads cut and encode the pictures. Each picture is a unit of the
+ * archive's writer, so a killed run loses only the pictures in progress.
  *
  *     census -> schedule -> [resumed?] -> draw --> encode (threads) --> writer --> archive
  *                                          ^------- the next picture ----' */
@@ -32,8 +32,8 @@ typedef struct pyramid {
     camber_tiles_stats stats;
     char fingerprint[CAMBER_FINGERPRINT_SIZE];
     double done_cost;
-    double weight; /* of the picture that is drawn next: see camber_encode_job */
-    /* A tile of the background, for those that are kept. */
+    double weight; /* of the next picture: see camber_encode_job */
+    /* A tile that shows only the background, for tiles that are kept although they are empty. */
     uint8_t *blank;
     size_t blank_bytes, blank_capacity;
     int blank_zoom; /* negative: none yet */
@@ -56,7 +56,7 @@ static camber_tile_index tile_of(const camber_tiles_picture *picture, uint32_t b
     return (camber_tile_index){picture->column + bit % picture->side, picture->row + bit / picture->side};
 }
 
-/* The tile of a picture that comes nth along the Hilbert curve: in the order that archives have. */
+/* Returns the nth tile of a picture along the Hilbert curve, which is the order of tiles in an archive. */
 static uint32_t bit_along_curve(const camber_tiles_picture *picture, uint64_t unit, uint32_t n) {
     uint32_t column, row;
     const uint64_t zoom_first = camber_pmtiles_number(picture->zoom, 0, 0), count = picture->side * picture->side;
@@ -64,7 +64,7 @@ static uint32_t bit_along_curve(const camber_tiles_picture *picture, uint64_t un
     return (row - picture->row) * picture->side + column - picture->column;
 }
 
-/* Gives the tiles of an encoded picture to the writer, which from then on keeps them. */
+/* Passes the tiles of an encoded picture to the writer, which takes ownership of them. */
 static camber_status write_job(pyramid *p, const camber_encode_job *job) {
     const double start_ms = camber_now_ms();
     const camber_tiles_picture *picture = &job->picture;
@@ -89,7 +89,7 @@ static camber_status write_job(pyramid *p, const camber_encode_job *job) {
     return status;
 }
 
-/* Writes what is encoded; with waits, at least one picture, if any is under way. */
+/* Writes all encoded pictures. With waits, it waits for at least one picture, if any is in progress. */
 static camber_status write_ready(pyramid *p, bool waits) {
     camber_encode_job *job;
     camber_status status = CAMBER_OK;
@@ -131,12 +131,12 @@ static camber_status make_blank(pyramid *p, int zoom) {
     return status;
 }
 
-/* Writes a metatile that no line touches: its tiles are kept as blanks, or removed. */
+/* Writes a metatile that no line touches: its tiles are stored as blanks, or removed. */
 static camber_status write_blanks(pyramid *p, const camber_tile_task *task, const camber_tiles_picture *picture) {
     const bool keeps = p->desc->keep_empty, makes = keeps && p->blank_zoom != task->zoom;
     camber_status status = CAMBER_OK;
     while (makes && status == CAMBER_OK && camber_encode_queue_is_busy(p->queue))
-        status = write_ready(p, true); /* the tiles before it come first */
+        status = write_ready(p, true); /* the tiles before it must be written first */
     if (makes && status == CAMBER_OK)
         status = make_blank(p, task->zoom);
     for (uint32_t bit = 0; bit < picture->side * picture->side && status == CAMBER_OK; bit++) {
@@ -156,7 +156,7 @@ static camber_status write_blanks(pyramid *p, const camber_tile_task *task, cons
 
 /* ---- Drawing ---- */
 
-/* Draws a metatile of an open zoom, and hands it to the threads. */
+/* Draws a metatile of an open zoom, and queues it for the threads that encode. */
 static camber_status draw_task(pyramid *p, const camber_tile_task *task, const camber_metatile *metatile) {
     camber_encode_job *job;
     camber_status status = write_ready(p, false);
@@ -203,7 +203,7 @@ static camber_status do_task(pyramid *p, const camber_tile_task *task) {
     return write_blanks(p, task, &picture);
 }
 
-/* Draws tasks of one zoom. */
+/* Draws the tasks of one zoom. */
 static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
     const camber_schedule *s = &p->schedule;
     camber_status status = CAMBER_OK;
@@ -213,26 +213,26 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
         camber_progress(p->context, "drawing tiles", s->cost > 0.0 ? p->done_cost / s->cost : -1.0);
     }
     while (status == CAMBER_OK && p->engine->desc.meshes && camber_encode_queue_is_busy(p->queue))
-        status = write_ready(p, true); /* meshes are encoded by the zoom's plan */
+        status = write_ready(p, true); /* encoding meshes needs the zoom's plan */
     if (status == CAMBER_OK)
         camber_engine_forget_zoom(p->engine, s->tasks[first].zoom);
     return status;
 }
 
-/* Whether points go as soon as no zoom is left that draws them. Where a style asks for lengths along lines, all points
- * count. */
+/* Whether points are freed as soon as no remaining zoom draws them. If the style needs lengths along lines, all points
+ * are needed. */
 static bool spends_points(const pyramid *p) {
     return p->desc->spent && !p->schedule.has_arc_length;
 }
 
-/* Drops the points that neither this zoom nor any before it draws. */
+/* Frees the points that neither this zoom nor any lower zoom draws. */
 static camber_status spend_points(pyramid *p, int zoom) {
     camber_engine_zoom *opened;
     const camber_status status = camber_engine_plan_zoom(p->engine, zoom, &opened);
     return status == CAMBER_OK ? camber_features_thin(p->desc->spent, opened->plan->least_importance) : status;
 }
 
-/* Finds the tasks of a zoom, which lie together. */
+/* Finds the tasks of a zoom, which are consecutive. */
 static size_t find_tasks(const camber_schedule *schedule, int zoom, size_t *end) {
     size_t first = 0;
     while (first < schedule->count && schedule->tasks[first].zoom < zoom)
@@ -242,9 +242,9 @@ static size_t find_tasks(const camber_schedule *schedule, int zoom, size_t *end)
     return first;
 }
 
-/* Draws zoom by zoom, in the order of the archive, which then need not copy the tiles. Where points go, the deepest
- * zoom comes first: each leaves the next one fewer, and the first zooms, whose networks have all lines, are drawn when
- * least is held. */
+/* Draws zoom by zoom, in the order of the archive, so that the archive need not copy tiles. If points are freed on the
+ * way, the deepest zoom is drawn first: each zoom leaves fewer points for the next, and the lowest zooms, whose
+ * networks contain all lines, are drawn when the least memory is in use. */
 static camber_status draw_all(pyramid *p) {
     const bool spends = spends_points(p);
     camber_status status = CAMBER_OK;
@@ -266,9 +266,9 @@ static camber_status draw_all(pyramid *p) {
 
 /* ---- A dry run ---- */
 
-/* Guesses what a task adds to the bytes, in those of a point. A tile takes as many as 70 to 260 points (least squares,
- * Porto and Liechtenstein at zooms 15 and 16, PNG and WebP, 2026-11-29). It need not be right: it says where to look.
- */
+/* Estimates the bytes of a task's tiles, in units of the bytes per point. A tile costs as much as 70 to 260 points
+ * (least squares, Porto and Liechtenstein at zooms 15 and 16, PNG and WebP, 2026-11-29). The estimate only decides
+ * which tasks are sampled, so it need not be accurate. */
 static double guess_bytes(const camber_tile_task *task) {
     static const double TILE_POINTS = 100.0;
     return TILE_POINTS * (double)count_bits(task->wanted) + (double)task->points;
@@ -281,9 +281,9 @@ static double guess_all(const camber_schedule *s, size_t first, size_t end) {
     return sum;
 }
 
-/* Draws some metatiles of a zoom, to tell how many bytes all of them will take: those on which `tried` marks fall that
- * stand at equal distances along the guessed bytes of all. So a large one is drawn more likely, and stands for fewer
- * others; each mark stands for an equal share of the bytes, whatever they turn out to be. */
+/* Draws a sample of a zoom's metatiles to estimate how many bytes all of them will take. `tried` marks are placed at
+ * equal distances along the cumulative estimated bytes, and the metatiles at the marks are drawn. So a large metatile
+ * is more likely to be drawn, and stands for fewer others. Each mark stands for an equal share of the bytes. */
 static camber_status try_zoom(pyramid *p, size_t first, size_t end, size_t tried) {
     const camber_schedule *s = &p->schedule;
     const double all = guess_all(s, first, end);
@@ -306,7 +306,7 @@ static camber_status try_zoom(pyramid *p, size_t first, size_t end, size_t tried
     return status;
 }
 
-/* Zooms that have most of the bytes have most of the marks. */
+/* Zooms with more estimated bytes get more marks. */
 static camber_status try_all(pyramid *p) {
     enum { TRIED_EACH = 3, TRIED_MORE = 24 };
     const camber_schedule *s = &p->schedule;
@@ -315,7 +315,7 @@ static camber_status try_all(pyramid *p) {
     for (size_t i = 0, end; i < s->count && status == CAMBER_OK; i = end) {
         for (end = i; end < s->count && s->tasks[end].zoom == s->tasks[i].zoom; end++)
             ;
-        /* Who wants a schedule has no use for the bytes, and pictures take longer than all the rest. */
+        /* a schedule does not need the bytes, and drawing pictures takes most of the time */
         const double more = all > 0.0 ? TRIED_MORE * guess_all(s, i, end) / all : 0.0;
         status = try_zoom(p, i, end, p->desc->schedule_path ? 0 : TRIED_EACH + (size_t)(more + 0.5));
         if (status == CAMBER_OK)
@@ -338,14 +338,14 @@ static void put_text(json_t *metadata, const char *name, const char *text) {
         json_object_set_new(metadata, name, json_string(text));
 }
 
-/* The zoom at which the bounds are about four tiles wide. */
+/* Returns the zoom at which the bounds are about four tiles wide. */
 static int find_center_zoom(const camber_tiles_area *area) {
     const double side = fmax(area->bounds.x1 - area->bounds.x0, area->bounds.y1 - area->bounds.y0);
     const double zoom = side > 0.0 ? floor(log2(4.0 / side)) : area->max_zoom;
     return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
-/* The middle of a box across the antimeridian is not that of the archive's bounds, which are the world's then. */
+/* If a box crosses the antimeridian, the archive's bounds are the whole world's, and their middle is not the box's. */
 static double find_center_longitude(const camber_tiles_area *area, const double bounds[4]) {
     double longitude, latitude;
     if (area->bounds.x1 <= 1.0)
@@ -355,10 +355,10 @@ static double find_center_longitude(const camber_tiles_area *area, const double 
     return longitude;
 }
 
-/* Whether the style's backgrounds make a dark map, over which a page's own texts and buttons should be dark, too. They
- * are looked at at the zoom that is shown first. */
+/* Whether the style's backgrounds make a dark map, so that a page's texts and buttons should be dark, too. The zoom
+ * that is shown first decides. */
 static bool is_dark(const pyramid *p) {
-    static const float DARK = 0.4f; /* less light than that, of 1; the shipped styles have 0.08 and 0.95 */
+    static const float DARK = 0.4f; /* relative luminance, 0 to 1; the shipped styles have 0.08 and 0.95 */
     const camber_style *style = p->engine->features->style;
     const double zoom = fmax(camber_engine_zoom_desc(&p->engine->desc, find_center_zoom(&p->area)).zoom, 0.0);
     float light = 1.0f;
@@ -401,7 +401,7 @@ static camber_tile_type type_of(const pyramid *p) {
                                               : CAMBER_TILE_PNG;
 }
 
-/* Makes the description of what the archive whose tiles are replaced becomes. */
+/* Describes the archive as it will be after its tiles have been replaced. */
 static void describe_renewed(const pyramid *p, camber_archive_desc *whole) {
     const camber_archive *there = p->renewed;
     const double asked[4] = {whole->bounds[0], whole->bounds[1], whole->bounds[2], whole->bounds[3]};
@@ -411,7 +411,7 @@ static void describe_renewed(const pyramid *p, camber_archive_desc *whole) {
     whole->max_zoom = there->max_zoom;
     if (there->has_bounds)
         memcpy(whole->bounds, there->bounds, sizeof whole->bounds);
-    /* A box or a region that was asked for says where else tiles may come. */
+    /* a box or a region says where else tiles may be added */
     for (int i = 0; i < 4 && there->has_bounds && (p->desc->has_bbox || p->desc->region); i++)
         whole->bounds[i] = i < 2 ? fmin(whole->bounds[i], asked[i]) : fmax(whole->bounds[i], asked[i]);
     whole->center = there->center;
@@ -490,7 +490,7 @@ static camber_status check_desc(const pyramid *p) {
     return CAMBER_OK;
 }
 
-/* Whether no tile needs an alpha: then the encoders need not look for one. */
+/* Whether all tiles are opaque, so that the encoders need not check for an alpha channel. */
 static bool is_opaque(const pyramid *p) {
     for (int zoom = p->area.min_zoom; zoom <= p->area.max_zoom; zoom++)
         if (!p->engine->zooms[zoom].has_background || p->engine->zooms[zoom].background[3] < 255)
@@ -498,13 +498,13 @@ static bool is_opaque(const pyramid *p) {
     return true;
 }
 
-/* Writes the features, then the schedule: where it is, they are. */
+/* Writes the features first and the schedule last, so that a schedule never exists without its features. */
 static camber_status save_schedule(pyramid *p, uint64_t input, camber_box data) {
     const camber_tiles_draw_desc *desc = p->desc;
     camber_tiles_schedule whole = {.context = p->context, .input = input, .data = data, .schedule = p->schedule};
     memcpy(whole.fingerprint, p->fingerprint, sizeof whole.fingerprint);
     if (!camber_schedule_name_features(desc->schedule_path, whole.features, sizeof whole.features))
-        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT, "%s: is too long; choose a shorter name",
+        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT, "%s: the name is too long; choose a shorter one",
                            desc->schedule_path);
     camber_status status = camber_files_hash(p->context, desc->inputs, desc->input_count, &whole.files);
     if (status == CAMBER_OK)
@@ -518,7 +518,7 @@ static camber_status fail_renewed(const pyramid *p, const char *names) {
                        p->desc->output, names);
 }
 
-/* Opens the archive whose tiles are replaced, and looks whether this run may. */
+/* Opens the archive whose tiles are replaced, and checks that this run may replace them. */
 static camber_status open_renewed(pyramid *p) {
     char names[128], own[CAMBER_FINGERPRINT_SIZE];
     const camber_status status = camber_archive_open(p->context, p->desc->output, &p->renewed);
@@ -537,7 +537,7 @@ static camber_status open_renewed(pyramid *p) {
     return CAMBER_OK;
 }
 
-/* Keeps a list to what the archive is to have: to its own zooms and bounds, where the caller names no others. */
+/* Restricts a list to the archive's own zooms and bounds, unless the caller gave others. */
 static camber_status keep_list(pyramid *p, camber_box data) {
     const camber_archive *there = p->renewed;
     const camber_tiles_draw_desc *desc = p->desc;
@@ -560,7 +560,7 @@ static camber_status find_drawn(const pyramid *p, camber_box *data) {
                                  asked ? p->desc->max_zoom : CAMBER_LARGEST_TILE_ZOOM, data);
 }
 
-/* Looks where lines are. */
+/* Finds where lines are. */
 static camber_status make_schedule(pyramid *p) {
     camber_box data;
     const double start_ms = camber_now_ms();
@@ -582,7 +582,7 @@ static camber_status make_schedule(pyramid *p) {
     return status == CAMBER_OK && p->desc->dry_run && p->desc->schedule_path ? save_schedule(p, input, data) : status;
 }
 
-/* Takes the schedule that a dry run has written. */
+/* Loads the schedule that a dry run has written. */
 static camber_status take_schedule(pyramid *p) {
     const camber_tiles_schedule *given = p->desc->schedule;
     camber_engine_zoom *planned;

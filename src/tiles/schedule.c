@@ -1,14 +1,16 @@
-/* Schedules metatiles: zoom by zoom, along the Hilbert curve, as archives have them.
+/* Schedules metatiles: zoom by zoom, in the order of the Hilbert curve, which is the order of archives.
  *
- * Input: censuses, and the area that is wanted. Output: tasks, and which of them a part has. Main idea: a part of a run
- * reads what it draws, so parts are runs of a walk through the pyramid that stays in one place as long as it can.
+ * Input: censuses, and the area that is wanted. Output: tasks, and which of them belong to a shard (called part here:
+ * one of several processes that share a run). Main idea: a part reads what it draws, so each part is a stretch of a
+ * walk through the pyramid that stays in one area of the map for as long as possible.
  *
- * Of a wide zoom a metatile has much of the data: its parts read all of it, so any of them may go together. Of deep
- * zooms each metatile comes before those below it, along the Hilbert curve: so a part reads one stretch.
+ * At a wide zoom, one metatile covers much of the data. Parts with such tasks read all data, so these tasks can be
+ * combined in any way. At deep zooms, the walk visits each metatile before those below it, along the Hilbert curve, so
+ * a part reads one compact area.
  *
- * Wide tasks are packed, the largest first, each into the first part that has room; deep ones are a run that is cut. At
- * each deep zoom a part has one stretch of the archive. The part that takes longest takes as little as can be, and with
- * that done, so does the longest part of the other kind. */
+ * Wide tasks are packed, the largest first, each into the first part that has room for it. The deep tasks are one
+ * sequence, which is cut: at each deep zoom, a part has one stretch of the archive. The cost of the most expensive part
+ * is minimised; given that, so is the cost of the most expensive part of the other kind. */
 #include "tiles/schedule.h"
 
 #include "archive/pmtiles.h"
@@ -16,19 +18,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A metatile takes so many microseconds of one processor: PICTURE_US whatever it has, and TILE_US and POINT_US for each
- * of its tiles and points, looking where they are included. With a quarter of a second for each part's start and its
- * reading, which all have alike, parts of 8, 16 and 32 are told within 7 %, root of the mean square (10 million points,
- * 2026-11-27, 9412da4, Intel Xeon, AVX-512). */
+/* The cost of a metatile, in microseconds of one processor: PICTURE_US for each metatile, plus TILE_US and POINT_US for
+ * each of its tiles and points, including the time to find them. With a quarter of a second added for each part's start
+ * and reading, which is the same for all parts, the model predicts the times of parts (8, 16 and 32 parts) with an
+ * error of 7 % (root mean square; 10 million points, 2026-11-27, 9412da4, Intel Xeon, AVX-512). */
 static const double PICTURE_US = 1.3e3, TILE_US = 120.0, POINT_US = 0.58;
-/* A part that has a wide metatile holds all points. If it has deep ones, too, it looks at all of them for each of their
- * zooms. What it looks at for wide zooms is in POINT_US: a metatile of them has much of the points. */
+/* A part with a wide metatile holds all points. If it also has deep ones, it searches all points for each of their
+ * zooms. The search for wide zooms is included in POINT_US, because their metatiles contain most of the points. */
 static const double LOOK_US = 0.024;
-/* Censuses that are kept for drawing take so many polylines at most; others are made a second time. */
+/* Censuses with at most this many polylines in all are kept for drawing; others are taken again. */
 static const size_t MOST_KEPT = (size_t)1 << 22;
 /* A zoom is wide if one metatile has more of its points than this share. */
 static const double WIDE_SHARE = 0.125;
-enum { CUT_STEPS = 24 }; /* to less than a millionth of all */
+enum { CUT_STEPS = 24 }; /* to less than a millionth of the sum */
 
 static unsigned count_tiles(uint64_t tiles) {
     unsigned count = 0;
@@ -73,7 +75,7 @@ static camber_status add_touched(camber_schedule *schedule, const camber_census 
 /* ---- All metatiles ---- */
 
 typedef struct place {
-    uint64_t number; /* of the metatile's first tile */
+    uint64_t number; /* the number of one of the metatile's tiles */
     uint32_t column, row;
 } place;
 
@@ -91,7 +93,7 @@ static int compare_places(const void *left, const void *right) {
 static bool add_place(places *list, int zoom, uint32_t side, uint32_t column, uint32_t row) {
     if (!camber_grow(list->context, &list->items, &list->capacity, list->count + 1, sizeof *list->items))
         return false;
-    /* The least number of a metatile's tiles goes by its place along the curve, and any of them does for sorting. */
+    /* Any tile's number sorts metatiles correctly, because the tiles of a metatile have consecutive numbers. */
     list->items[list->count++] = (place){camber_pmtiles_number(zoom, column * side, row * side), column, row};
     return true;
 }
@@ -173,7 +175,7 @@ camber_status camber_schedule_make(camber_tiles_engine *engine, const camber_til
     *schedule = (camber_schedule){.context = engine->context};
     for (int zoom = area->min_zoom; zoom <= area->max_zoom && status == CAMBER_OK; zoom++) {
         camber_engine_zoom *opened;
-        camber_progress(engine->context, "looking where lines are",
+        camber_progress(engine->context, "finding where lines are",
                         (double)(zoom - area->min_zoom) / (area->max_zoom - area->min_zoom + 1));
         status = camber_engine_open_zoom(engine, zoom, &opened);
         if (status != CAMBER_OK)
@@ -196,8 +198,9 @@ void camber_schedule_free(camber_schedule *schedule) {
 
 /* ---- Parts ---- */
 
-/* When a task's turn comes. Of a wide task by its cost: the largest come first. Of a deep one by the place of the first
- * metatile below it at the deepest level: a walk that goes from a metatile to those below it meets them so. */
+/* The position of a task in the walk. Wide tasks are sorted by cost, the largest first. A deep task is sorted by the
+ * first metatile below it at the deepest level: a walk that goes from each metatile to those below it visits them in
+ * this order. */
 typedef struct turn {
     uint64_t place;
     size_t task;
@@ -205,12 +208,12 @@ typedef struct turn {
 
 typedef struct walk {
     const camber_schedule *schedule;
-    size_t *order;   /* of the tasks: wide ones, then deep ones */
-    double *costs;   /* of each of them, in that order */
-    size_t wide;     /* so many are wide */
-    double joining;  /* the cost of deep tasks in a part that has a wide one, beyond their own */
-    double *loads;   /* of the parts: shards of them */
-    uint32_t shards; /* no more than tasks */
+    size_t *order;   /* the tasks: wide ones, then deep ones */
+    double *costs;   /* of the tasks, in that order */
+    size_t wide;     /* number of wide tasks */
+    double joining;  /* extra cost of deep tasks in a part that also has a wide one */
+    double *loads;   /* costs of the parts; shards of them */
+    uint32_t shards; /* at most as many as there are tasks */
 } walk;
 
 static int compare_turns(const void *left, const void *right) {
@@ -218,7 +221,7 @@ static int compare_turns(const void *left, const void *right) {
     return a->place != b->place ? (a->place < b->place ? -1 : 1) : a->task < b->task ? -1 : a->task > b->task;
 }
 
-/* Counts the wide tasks: they come by zoom, and a deep zoom has no wide one below it. */
+/* Counts the wide tasks. Tasks are sorted by zoom, and all wide zooms are lower than the deep ones. */
 static size_t count_wide(const camber_schedule *s) {
     size_t wide = 0;
     for (size_t first = 0, end; first < s->count; first = end) {
@@ -261,12 +264,14 @@ static camber_status order_tasks(walk *w) {
     return CAMBER_OK;
 }
 
-/* The most that a part takes, unless it is a single task: of parts to which a wide task is added, and a deep one. */
+/* The highest cost of a part to which a wide task is added, and of one to which a deep task is added, unless the part
+ * has only that task. */
 typedef struct limits {
     double wide, deep;
 } limits;
 
-/* Fills parts. parts gets each task's, from 1; NULL: none is wanted. Returns whether there are enough parts. */
+/* Fills the parts. parts receives the part of each task, counted from 1; it may be NULL. Returns whether the number of
+ * parts suffices. */
 static bool fill(const walk *w, limits most, uint32_t *parts) {
     uint32_t count = 0;
     for (size_t i = 0; i < w->schedule->count; i++) {
@@ -288,7 +293,7 @@ static bool fill(const walk *w, limits most, uint32_t *parts) {
     return true;
 }
 
-/* Finds the least limits between low and high with which there are enough parts. */
+/* Finds the lowest limits between low and high for which the number of parts suffices. */
 static limits lower_limits(const walk *w, limits low, limits high) {
     for (int i = 0; i < CUT_STEPS; i++) {
         const limits middle = {0.5 * (low.wide + high.wide), 0.5 * (low.deep + high.deep)};
@@ -300,12 +305,12 @@ static limits lower_limits(const walk *w, limits low, limits high) {
     return high;
 }
 
-/* First the longest part is made as short as can be, then the longest one that the other kind has. */
+/* First minimises the cost of the most expensive part, then that of the most expensive part of the other kind. */
 static limits find_limits(const walk *w) {
     double all = w->joining;
     for (size_t i = 0; i < w->schedule->count; i++)
         all += w->costs[i];
-    all *= 2.0; /* so one part is enough, however sums are rounded */
+    all *= 2.0; /* then one part suffices, however sums are rounded */
     const limits both = lower_limits(w, (limits){0.0, 0.0}, (limits){all, all});
     const limits deep = lower_limits(w, (limits){both.wide, 0.0}, both);
     return lower_limits(w, (limits){0.0, deep.deep}, deep);

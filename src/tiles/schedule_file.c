@@ -1,8 +1,9 @@
-/* Keeps schedules in files, so that each part of a run need not look where lines are, and reads what it draws alone.
+/* Saves schedules to files, so that each part of a run need not search for lines, and reads only what it draws.
  *
- * Input: a schedule of a whole run. Output: a file of JSON, written whole. A part must not take the schedule of another
- * input for its own, and cannot hash features that it does not read. So the file has a hash of the input's files, which
- * costs little: of large ones some pieces are read. It has the run's fingerprint too, which all parts then carry. */
+ * Input: the schedule of a whole run. Output: a JSON file, which is written whole or not at all. A part must not use
+ * the schedule of another input, but cannot hash features that it does not read. So the file contains a hash of the
+ * input files, which is cheap to compute, because only pieces of large files are read. It also contains the run's
+ * fingerprint, which all parts then use. */
 #define _FILE_OFFSET_BITS 64
 #define _XOPEN_SOURCE 700
 
@@ -21,8 +22,8 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* A file is hashed by pieces. One of more than MOST_PIECES is hashed by so many of them, the first and the last ones
- * included, where formats have their headers. */
+/* A file is hashed in pieces. If it has more than MOST_PIECES, only this many are hashed, including the first and the
+ * last ones, which contain the headers of most formats. */
 enum { PIECE_BYTES = 64 << 10, MOST_PIECES = 1024, TASK_TEXT = 128, NUMBERS = 7 };
 
 /* ---- The input's files ---- */
@@ -52,7 +53,7 @@ static camber_status hash_file(camber_context *context, const char *path, uint8_
     return status;
 }
 
-/* A Shapefile has its attributes in another file beside it. */
+/* The attributes of a Shapefile are in a second file with another extension. */
 static bool name_attributes(const char *path, char *name, size_t size) {
     const size_t length = strlen(path);
     if (length < 4 || length >= size || strcasecmp(path + length - 4, ".shp") != 0)
@@ -111,7 +112,8 @@ camber_status camber_schedule_write(const camber_tiles_schedule *schedule, const
     char *text = json ? json_dumps(json, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(json);
     if (!text)
-        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory for the schedule; give the run more", path);
+        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory for the schedule; raise the memory limit",
+                           path);
     camber_status status = camber_output_begin(context, path, &output);
     if (status == CAMBER_OK) {
         status = camber_write_at(context, path, output.file, text, strlen(text), 0);
@@ -123,7 +125,7 @@ camber_status camber_schedule_write(const camber_tiles_schedule *schedule, const
 
 /* ---- Reading ---- */
 
-/* Reads numbers in hexadecimal with a blank between two. false: there are others. */
+/* Reads hexadecimal numbers that are separated by single blanks. Returns false if there are not exactly `count`. */
 static bool read_numbers(const char *text, uint64_t *numbers, size_t count) {
     for (size_t i = 0; i < count; i++) {
         char *end;
@@ -158,7 +160,7 @@ static bool read_box(const json_t *json, camber_box *box) {
     return true;
 }
 
-/* Takes what the JSON says. Tasks must come by zoom. */
+/* Reads the schedule from JSON. Tasks must be sorted by zoom. */
 static bool take_json(const json_t *json, camber_tiles_schedule *made) {
     const json_t *tasks = json_object_get(json, "tasks");
     const char *fingerprint = json_string_value(json_object_get(json, "fingerprint"));
@@ -202,7 +204,7 @@ static camber_status parse(camber_context *context, const char *path, camber_til
         status = CAMBER_ERROR_MEMORY;
     else if (!take_json(json, made))
         status = camber_fail(context, CAMBER_ERROR_INPUT,
-                             "%s: is not a schedule of tiles, or is damaged; make it with --dry-run --schedule", path);
+                             "%s: not a schedule of tiles, or damaged; make it with --dry-run --schedule", path);
     if (status == CAMBER_OK)
         *schedule = made;
     else
@@ -220,9 +222,9 @@ camber_status camber_tiles_schedule_read(camber_context *context, const char *pa
     if (status == CAMBER_OK)
         status = camber_files_hash(context, inputs, input_count, &files);
     if (status == CAMBER_OK && files != made->files)
-        status =
-            camber_fail(context, CAMBER_ERROR_INPUT,
-                        "%s: is the schedule of another input; make it again with --dry-run --schedule --force", path);
+        status = camber_fail(
+            context, CAMBER_ERROR_INPUT,
+            "%s: the schedule was made from another input; make it again with --dry-run --schedule --force", path);
     if (status == CAMBER_OK && !camber_schedule_name_features(path, made->features, sizeof made->features))
         made->features[0] = 0;
     if (status == CAMBER_OK)
@@ -246,7 +248,7 @@ static double area_with(camber_region box, const camber_region *more) {
     return (box.x1 - box.x0) * (box.y1 - box.y0);
 }
 
-/* Adds a box to the few of a part: as one more, or to the one that grows least. */
+/* Adds a box to the few boxes of a part: as a new one, or by extending the one that grows least. */
 static void add_to_boxes(camber_tiles_schedule *schedule, const camber_region *more) {
     size_t best = 0;
     double least = INFINITY;
@@ -264,7 +266,8 @@ static void add_to_boxes(camber_tiles_schedule *schedule, const camber_region *m
         add_box(schedule->boxes + best, more);
 }
 
-/* How far from a tile lines may lie that reach it, world units: meshes are drawn at all zooms up to the next. */
+/* Returns how far from a tile a line that reaches it may be, in world units. Meshes are drawn at all zooms up to the
+ * next. */
 static double margin_of(const camber_features *features, const camber_tiles_engine_desc *desc, int zoom) {
     double most = 0.0;
     for (size_t s = 0; s < (desc->meshes ? CAMBER_MESH_SAMPLES : 1); s++) {

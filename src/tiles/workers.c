@@ -17,7 +17,7 @@ camber_status camber_workers_make(camber_context *context, size_t count, camber_
             .log = keep_message, .log_user = workers->messages[i], .cache_dir = "", .budget = context->budget};
         const camber_status status = camber_context_create(&desc, &workers->contexts[i]);
         if (status != CAMBER_OK)
-            return camber_fail(context, status, "a thread's context: out of memory; give the run more");
+            return camber_fail(context, status, "a thread's context: out of memory; raise the memory limit");
     }
     return CAMBER_OK;
 }

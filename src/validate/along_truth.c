@@ -1,20 +1,21 @@
-/* Each pixel's 256 samples find the nearest point of the line, their foot on it, and take the colour that the paint has
- * there: the gap between the line's two sides, its blur, dashes, trim, ramp and image. Under a pitch rays find where
- * samples lie. No formula is shared with kernels and shaders, nor with src/base/perspective.h. */
+/* For each of a pixel's 256 samples, finds the nearest point of the line, called its foot, and takes the colour that
+ * the paint has there: the gap between the line's two sides, its blur, dashes, trim, ramp and image. With a pitch, rays
+ * give the positions of samples in the plane. Shares no formula with kernels and shaders, nor with
+ * src/base/perspective.h. */
 #include "validate/along_truth.h"
 
 #include <math.h>
 
-enum { SAMPLES = 16 }; /* across and down */
+enum { SAMPLES = 16 }; /* in each direction */
 
-/* Where a sample lies. */
+/* The nearest point of the line to a sample. */
 typedef struct foot {
     double along, distance; /* px */
-    bool is_right;          /* of the line's direction */
-    bool is_past;           /* an end */
+    bool is_right;          /* the sample is on the right, seen in the line's direction */
+    bool is_past;           /* the sample is beyond an end of the line */
 } foot;
 
-/* hypot is right for numbers that are far from here, too, and takes several times as long. */
+/* hypot also works for huge numbers, and takes several times as long. */
 static double length_of(double x, double y) {
     return sqrt(x * x + y * y);
 }
@@ -44,7 +45,7 @@ static foot foot_of(const camber_along_desc *d, double x, double y) {
     return nearest;
 }
 
-/* How far along the line the nearest dash is. */
+/* Returns the distance along the line to the nearest dash. */
 static double dash_distance(const camber_along_desc *d, double along) {
     const double unit = d->paint->dash_unit_px > 0.0f ? (double)d->paint->dash_unit_px : 1;
     const size_t count = d->paint->dash->count * (d->paint->dash->count % 2 ? 2 : 1);
@@ -63,7 +64,7 @@ static double dash_distance(const camber_along_desc *d, double along) {
     return nearest;
 }
 
-/* How much of the paint there is at a foot. */
+/* Returns the opacity of the paint at a foot, 0 to 1. */
 static double share_at(const camber_along_desc *d, foot p, double progress) {
     const camber_paint *paint = d->paint;
     const double width = (double)paint->width_px, gap = (double)paint->gap_px, blur = (double)paint->blur_px;
@@ -87,7 +88,7 @@ static double share_at(const camber_along_desc *d, foot p, double progress) {
     return p.distance <= outer && (gap <= 0 || p.distance >= 0.5 * gap) ? 1 : 0;
 }
 
-/* Premultiplied. */
+/* Computes the ramp's premultiplied colour. */
 static void color_at(const camber_ramp *ramp, double progress, double color[4]) {
     const camber_ramp_stop *stops = ramp->stops;
     size_t i = 0;
@@ -109,7 +110,7 @@ static void color_at(const camber_ramp *ramp, double progress, double color[4]) 
 
 bool camber_ray_meets_plane(double pitch_deg, const double size[2], double x, double y, double met[2], double *depth) {
     const double pi = 3.14159265358979323846, angle = pitch_deg * pi / 180;
-    const double view = 0.6435011087932844; /* rad, from the picture's bottom to its top */
+    const double view = 0.6435011087932844; /* rad, the camera's vertical angle of view */
     const double away = 0.5 * size[1] / tan(0.5 * view);
     const double eye[] = {0, away * sin(angle), away * cos(angle)}, down[] = {0, cos(angle), -sin(angle)};
     const double right = x - 0.5 * size[0], below = y - 0.5 * size[1];
@@ -134,7 +135,7 @@ double camber_image_red(const camber_image *image, double u, double v) {
     return red;
 }
 
-/* A copy of the image is as high as the line is wide, and its top lies to the right. */
+/* A copy of the image is as high as the line is wide. The image's top is on the line's right side. */
 static double image_at(const camber_paint *paint, foot p) {
     const double across = p.distance / (double)paint->width_px;
     return camber_image_red(paint->image, p.along / (double)paint->image_px, 0.5 + (p.is_right ? -across : across));
@@ -156,7 +157,7 @@ static void add_sample(const camber_along_desc *d, double total, double x, doubl
         sum[i] += share * color[i] * by[i] * (double)c.a;
 }
 
-/* Where a place of the window lies among the line's points; false: nowhere. */
+/* Computes which position of the line's plane is seen at a position in the window. Returns false if none is. */
 static bool place_of(const camber_along_desc *d, camber_window window, double x, double y, double at[2]) {
     const double size[] = {window.width, window.height};
     double depth;
@@ -165,11 +166,12 @@ static bool place_of(const camber_along_desc *d, camber_window window, double x,
     return d->pitch_deg <= 0 || camber_ray_meets_plane(d->pitch_deg, size, x, y, at, &depth);
 }
 
-/* Whether the line may have part of a pixel; reach: how far from its middle it is drawn, px. */
+/* Whether a pixel may contain part of the line. reach: the largest distance from the line's middle at which it is
+ * drawn, px. */
 static bool may_have(const camber_along_desc *d, camber_window window, int x, int y, double reach) {
     double middle[2], corner[2], span = 0;
     if (!place_of(d, window, x + 0.5, y + 0.5, middle))
-        return true; /* the horizon passes */
+        return true; /* the horizon passes through the pixel */
     for (int k = 0; k < 4; k++) {
         if (!place_of(d, window, x + k % 2, y + k / 2, corner))
             return true;
@@ -180,7 +182,8 @@ static bool may_have(const camber_along_desc *d, camber_window window, int x, in
 
 void camber_along_add(const camber_along_desc *d, camber_window window, float *rgba) {
     const double total = camber_along_length(d->points, d->count);
-    const double reach = (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 0.5; /* a blur's half pixel */
+    const double reach =
+        (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 0.5; /* plus half a pixel for a blur */
     for (int y = 0; y < window.height; y++)
         for (int x = 0; x < window.width; x++) {
             float *pixel = rgba + 4 * ((size_t)y * (size_t)window.width + (size_t)x);

@@ -1,31 +1,31 @@
-/* The truth about lines that change along them: 256 samples a pixel, each by the place of the line that is nearest; and
- * where a place of a picture lies in a plane that is seen at an angle. */
+/* The truth about lines whose look changes along them: 256 samples per pixel, each coloured by the nearest position of
+ * the line. Also says which position of a plane that is seen at an angle appears at a position in the picture. */
 #ifndef CAMBER_VALIDATE_ALONG_TRUTH_H
 #define CAMBER_VALIDATE_ALONG_TRUTH_H
 
 #include "validate/coverage_truth.h"
 
-/* A line whose parts lie apart from each other, with round joins, and round or butt caps. */
+/* A line whose parts are far apart from each other, with round joins, and round or butt caps. */
 typedef struct camber_along_desc {
-    const float *points; /* count pairs of x, y px */
+    const float *points; /* count pairs of x and y, px */
     size_t count;
     camber_cap cap;
-    /* The ends of its dashes are those of the line. An image is opaque, without a stride or a ramp beside it, and with
-     * its image_px; its red alone is right. */
+    /* Dashes have the same caps as the line. An image must be opaque, without a stride or a ramp, and with its
+     * image_px. Only its red channel is computed. */
     const camber_paint *paint;
-    double pitch_deg; /* 0: from above */
+    double pitch_deg; /* 0: seen from above */
 } camber_along_desc;
 
 double camber_along_length(const float *points, size_t count);
-/* Where the ray through a place of a picture of this size meets the plane, px of the plane, which in the picture's
- * middle are those of the picture; and how deep, 1 in the middle. false: nowhere in front of the camera, which stands
- * where MapLibre's does. */
+/* Finds where the ray through a position in a picture of this size meets the plane. met is in px of the plane, which
+ * equal the picture's px in its middle; depth is 1 in the middle. Returns false if the ray does not meet the plane in
+ * front of the camera. The camera is where MapLibre's is. */
 bool camber_ray_meets_plane(double pitch_deg, const double size[2], double x, double y, double met[2], double *depth);
-/* The red of an image without a stride, 0 to 1, at shares u and v of its width and height, any finite numbers:
- * bilinear, and repeated both ways. */
+/* Returns the red channel of an image without a stride, 0 to 1, at fractions u and v of its width and height. The image
+ * is sampled bilinearly and repeated in both directions; u and v may be any finite numbers. */
 double camber_image_red(const camber_image *image, double u, double v);
-/* Adds the premultiplied colour of each pixel of the window to rgba: 4 * width * height, rows from the top down. With a
- * pitch the window is the whole picture. */
+/* Adds the premultiplied colour of each pixel of the window to rgba: 4 * width * height values, rows from the top down.
+ * With a pitch, the window must be the whole picture. */
 void camber_along_add(const camber_along_desc *desc, camber_window window, float *rgba);
 
 #endif

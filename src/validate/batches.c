@@ -2,7 +2,7 @@
 
 typedef struct batches {
     size_t count;
-    uint32_t least, most; /* vertices of the batch under way */
+    uint32_t least, most; /* vertices of the current batch */
     uint32_t vertices_max;
 } batches;
 

@@ -1,5 +1,5 @@
-/* Lines that have two sides and a gap, fade, are dashed, drawn in part, change their colour or show an image, and areas
- * that the same points bound, some of them seen at an angle: against samples. */
+/* Compares with samples: lines with two sides and a gap, and lines that fade, are dashed, are drawn in part, change
+ * their colour or show an image; and the areas that the same points enclose. Some are seen at an angle. */
 #include "validate/along_truth.h"
 #include "validate/checks.h"
 
@@ -9,8 +9,8 @@
 
 enum { SIDE_PX = 96, LINES = 3, RINGS = 6, PIXELS = SIDE_PX * SIDE_PX };
 
-/* Lines apart from each other: straight, bent, curved. Rings are these, closed, a square, and two bars over each other
- * that are narrower than a pixel. */
+/* Lines that are far apart from each other: straight, bent and curved. The rings are these lines, closed, then a
+ * square, and two crossing bars that are narrower than a pixel. */
 static const float points[] = {6.3f,  9.6f,  89.1f, 20.2f, 10.3f, 34.6f, 38.1f, 30.2f, 60.8f, 47.4f, 86.7f,
                                43.9f, 8.0f,  66.f,  18.0f, 58.0f, 28.0f, 56.0f, 38.0f, 60.0f, 46.0f, 68.0f,
                                56.0f, 76.0f, 68.0f, 80.0f, 80.f,  78.0f, 88.0f, 70.0f, 54.3f, 2.4f,  66.6f,
@@ -24,14 +24,14 @@ static const camber_ramp_stop shades[] = {{0.1f, {1, 0, 0, 1}},    {0.4f, {0.2f,
                                           {0.6f, {0.8f, 0, 0, 1}}, {0.6f, {0.1f, 0, 0, 1}}, {0.9f, {1, 0, 0, 1}}};
 static const camber_ramp_stop panes[] = {
     {0.1f, {1, 0, 0, 0.2f}}, {0.5f, {0.5f, 0, 0, 0.9f}}, {0.5f, {1, 0, 0, 0.4f}}, {1, {1, 0, 0, 1}}};
-/* From dark to light and back within a pixel or two. */
+/* A ramp that goes from dark to light and back within a pixel or two. */
 static const camber_ramp_stop steps[] = {{0.2f, {0.1f, 0, 0, 1}}, {0.22f, {1, 0, 0, 1}}, {0.45f, {1, 0, 0, 1}},
                                          {0.46f, {0, 0, 0, 1}},   {0.7f, {0, 0, 0, 1}},  {0.715f, {1, 0, 0, 1}},
                                          {0.74f, {0.3f, 0, 0, 1}}};
 static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}, {steps, 7}};
 
-/* Six by four texels, whose reds differ along and across; the lowest row equals the top one, so that nothing jumps
- * where one copy follows the other. */
+/* Six by four texels, whose red values differ in both directions. The lowest row equals the top one, so that nothing
+ * jumps from one copy to the next. */
 #define RED(r) r, 0, 0, 255
 static const uint8_t texels[] = {RED(250), RED(200), RED(140), RED(80),  RED(140), RED(200), /**/
                                  RED(190), RED(120), RED(60),  RED(20),  RED(60),  RED(120), /**/
@@ -44,7 +44,7 @@ static const camber_fill fills[] = {{WHITE},
                                     {WHITE, .rule = CAMBER_FILL_EVENODD},
                                     {WHITE, .image = &image, .width_px = 24, .height_px = 18, .x_px = 3}};
 
-/* Lines as they are drawn, and the bounds of their pixels: measured with llvmpipe, with a third on top. */
+/* The lines that are drawn, and the bounds of their pixels: measured with llvmpipe, plus a third. */
 static const struct {
     const char *name;
     camber_cap cap;
@@ -79,7 +79,7 @@ static const struct {
     {"areas at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}, 40},
 };
 
-/* Red, then alpha. */
+/* Red and alpha. */
 typedef struct channels {
     uint8_t levels[2 * PIXELS];
 } channels;
@@ -93,7 +93,7 @@ static bool take(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t r
     return true;
 }
 
-/* How often a ring winds around a point: by its edges that pass to the left. */
+/* Returns how often a ring winds around a point, counted by its edges that pass to the left of the point. */
 static int winding_around(size_t ring, double x, double y) {
     int winding = 0;
     const size_t first = offsets[ring], count = offsets[ring + 1] - first;
@@ -113,7 +113,7 @@ static bool is_inside(camber_fill_rule rule, const double at[2]) {
     return rule == CAMBER_FILL_EVENODD ? winding % 2 != 0 : winding != 0;
 }
 
-/* Adds what all rings have inside, by samples. */
+/* Adds the inside of all rings, by samples. */
 static void add_inside(const camber_fill *fill, double pitch_deg, float *rgba) {
     enum { SAMPLES = 32 };
     static const double size[] = {SIDE_PX, SIDE_PX};
@@ -135,7 +135,7 @@ static void add_inside(const camber_fill *fill, double pitch_deg, float *rgba) {
     }
 }
 
-/* A row, and its pixels by samples. */
+/* A row, and its expected pixels from samples. */
 typedef struct expected {
     size_t number;
     float levels[2 * PIXELS];
@@ -188,7 +188,7 @@ static camber_status draw(camber_context *context, const camber_drawing_path *pa
     return status;
 }
 
-/* The pixel that is farthest off, and what passes the bounds. */
+/* Finds the pixel with the largest error, and whether the bounds are exceeded. */
 static bool find(const float *truth, const channels *drawn, camber_check *check) {
     const camber_difference d = camber_difference_of(truth, drawn->levels, 2 * PIXELS);
     const camber_pixel_bounds is = {camber_difference_mean(&d), (double)d.past_16 / (double)(d.touched ? d.touched : 1),
@@ -242,7 +242,7 @@ static camber_status check_drawer(camber_validation *v, const camber_checked_dev
     return status;
 }
 
-/* Each row is a group: samples take the most time. */
+/* Each row is a group, because samples take most of the time. */
 camber_status camber_check_along(camber_validation *v) {
     expected *row = malloc(sizeof *row);
     camber_status status = row ? CAMBER_OK : CAMBER_ERROR_MEMORY;

@@ -1,11 +1,11 @@
-/* A map's areas. Input: the map's rings and lines, and the frame that draws them. The frame is drawn as it is, and each
- * layer of areas by itself, its rings as one path. */
+/* Checks a map's areas. Input: the map's rings and lines, and the frame that draws them. The frame is drawn as it is,
+ * and each layer of areas by itself, with its rings as one path. */
 #include "validate/checks.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The rings of one pass: polylines of their own, of which all are filled. */
+/* The rings of one pass, as polylines of their own. All of them are filled. */
 typedef struct area_layer {
     uint32_t *offsets;
     float *points;
@@ -17,7 +17,7 @@ static bool is_filled(const camber_subject *s, const camber_pass *pass, size_t p
     return row < pass->paint_count && pass->paints[row].fill;
 }
 
-/* Takes the filled polylines of a pass: an outline may be drawn by it as well. false: out of memory. */
+/* Takes the filled polylines of a pass, which may also draw outlines. Returns false if memory is exhausted. */
 static bool take_layer(const camber_subject *s, const camber_pass *pass, area_layer *made) {
     const uint32_t *offsets = s->lines.offsets;
     const size_t first = pass->first_polyline, end = first + pass->polyline_count;

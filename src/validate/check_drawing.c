@@ -1,4 +1,5 @@
-/* The kernels that draw against their CPU twin, stage by stage and byte for byte; and in slices against the whole. */
+/* Compares the kernels that draw with their CPU twin, stage by stage and byte for byte; and drawing in slices with
+ * drawing at once. */
 #include "validate/checks.h"
 
 #include <stdio.h>
@@ -6,21 +7,23 @@
 #include <string.h>
 
 enum { PASSES = 3, SIDE_PX = 2048, RECORDS_MAX = 1 << 20 };
-/* Side of the picture of a made-up scene, unless the checks are full: the twin takes longer than all else. */
+/* The side of the picture of a made-up scene, unless all checks are requested: the twin takes longer than everything
+ * else. */
 enum { PART_PX = 512 };
 
-/* ---- The picture: lines over each other, united, and in a group ---- */
+/* ---- The picture: crossing lines, a united layer, and a group ---- */
 
-/* Fills of neighbouring rows. */
+/* Fills of consecutive rows. */
 static const camber_fill fills[] = {{.color = {1, 0.5f, 0, 1}},
                                     {.color = {0, 0.5f, 1, 0.5f}, .rule = CAMBER_FILL_EVENODD}};
 
-/* Kernels are built in variants: without sides beside lines, with them, and for planes that are seen at an angle. */
+/* Kernels are built in variants: without rails next to the lines, with them, and for planes that are seen at an
+ * angle. */
 static const struct {
     const char *name;
     float gap_px, blur_px;
     double pitch_deg;
-    bool fills; /* what is inside of the lines, too */
+    bool fills; /* also fills the inside of the lines */
 } variants[] = {{"", 0, 0, 0, false},
                 {", gaps and blurs", 1.5f, 0.8f, 0, false},
                 {", at 40 degrees", 0, 0, 40, false},
@@ -28,7 +31,7 @@ static const struct {
 enum { VARIANTS = sizeof variants / sizeof *variants, AREAS = VARIANTS - 1 };
 
 typedef struct drawn {
-    camber_paint *paints; /* of a pass, stroke_count each */
+    camber_paint *paints; /* of a pass, stroke_count of them */
     camber_pass passes[PASSES];
     camber_frame frame;
 } drawn;
@@ -96,7 +99,8 @@ static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_
     return false;
 }
 
-/* Compares words that each segment has so many of. Segments that are not drawn have whatever lay there. */
+/* Compares words, of which each segment has `words`. Those of segments that are not drawn are undefined, so they are
+ * skipped. */
 static bool words_differ(const char *field, const float *got, const float *expected, size_t words,
                          const camber_drawing_stages *of, camber_finding *finding) {
     char where[96];
@@ -153,7 +157,7 @@ static bool pixels_differ(const camber_drawing_stages *got, const camber_drawing
     return false;
 }
 
-/* Stage by stage, since what one gets wrong the next ones inherit. */
+/* Compares stage by stage, because later stages inherit the errors of earlier ones. */
 static bool stages_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
                           camber_finding *finding) {
     return boxes_differ(got, expected, finding) || shapes_differ(got, expected, finding) ||
@@ -184,7 +188,7 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
     return status;
 }
 
-/* How many records a mesh has, or would have if it is drawn from its points. */
+/* Returns how many records a mesh has, or would have if it were not drawn from its points. */
 static size_t count_records(camber_mesh *mesh) {
     (void)camber_mesh_count_joins(mesh); /* a failure is logged, and the count is 0 */
     return camber_mesh_get_info(mesh).record_count;
@@ -194,7 +198,7 @@ static bool is_long(camber_mesh *mesh) {
     return count_records(mesh) > RECORDS_MAX;
 }
 
-/* Takes a check that was made. What would take larger buffers, or has no stages to compare, is skipped. */
+/* Adds a check that was run. It is skipped if it needs larger buffers, or has no stages to compare. */
 static camber_status end_check(camber_validation *v, camber_check *check, camber_status status) {
     char reason[sizeof check->reason];
     if (status == CAMBER_ERROR_LIMIT) {
@@ -209,7 +213,7 @@ static camber_status end_check(camber_validation *v, camber_check *check, camber
 
 static const char too_long[] = "there are more than a million points, which take the twin minutes";
 
-/* Kernels that draw: with the device's own vectors, or with those of the other width. */
+/* The kernels that draw, with the device's own vector width or the other one. */
 typedef struct kernels {
     const char *name, *how;
     camber_drawing_path path;
@@ -255,8 +259,8 @@ static void close_path(camber_drawing_path *path) {
     camber_renderer_destroy(path->renderer);
 }
 
-/* With the vectors that the n-th of the device's other work-groups was opened with; areas, too, of which such a vector
- * may take other rows and columns of cells. */
+/* Checks with the vector width of the n-th of the device's other work-groups. Areas are checked, too, because vectors
+ * of another width take other rows and columns of cells. */
 static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
                                  const char *name, size_t n) {
     camber_device *device = checked->groups[n].device;
@@ -273,19 +277,20 @@ static camber_status check_lanes(camber_validation *v, const camber_subject *s, 
     return status;
 }
 
-/* ---- In slices, between which tiles are spilled ---- */
+/* ---- Slices, between which tiles are spilled ---- */
 
-/* A segment's bytes in the buffer of segments; a tile spills less than the other. */
+/* Bytes of a segment in the buffer of segments; the largest number of bytes that a tile spills. */
 enum { SEGMENT_BYTES = 64, TILE_BYTES = 160 * 1024 };
 
-/* A bound for buffers under which the frame takes slices; three, where a tile's spill fits. 0: for lack of segments. */
+/* Returns a memory limit with which the frame is drawn in slices: in three, if the spill of a tile fits. Returns 0 if
+ * there are too few segments. */
 static uint64_t slice_bytes(camber_mesh *mesh) {
     const uint64_t all = PASSES * (uint64_t)count_records(mesh) * SEGMENT_BYTES;
     const uint64_t wanted = all / 3 > TILE_BYTES ? all / 3 : TILE_BYTES;
     return wanted < all ? wanted : 0;
 }
 
-/* Draws the frame's picture, the one stage that is filled in. The caller frees it. */
+/* Draws the frame's picture, and leaves the other stages empty. The caller frees it. */
 static camber_status draw_picture(camber_renderer *renderer, const camber_frame *frame,
                                   camber_drawing_stages *picture) {
     *picture = (camber_drawing_stages){.width = frame->width, .height = frame->height};
@@ -293,7 +298,7 @@ static camber_status draw_picture(camber_renderer *renderer, const camber_frame 
     return picture->rgba ? camber_renderer_render_into(renderer, frame, picture->rgba, 0, NULL) : CAMBER_ERROR_MEMORY;
 }
 
-/* Skips the check where the frame has stages to read after all: it is drawn in one slice then. */
+/* Skips the check if the frame has stages to read, which means that it was drawn in one slice. */
 static camber_status want_slices(const camber_validation *v, camber_renderer *renderer, const camber_frame *frame,
                                  camber_check *check) {
     camber_drawing_stages stages = {0};
@@ -311,7 +316,7 @@ static camber_status want_slices(const camber_validation *v, camber_renderer *re
     return status;
 }
 
-/* small: the same mesh, on a device of small buffers. */
+/* small: the same mesh, on a device with small buffers. */
 static camber_status compare_slices(const camber_validation *v, const camber_subject *s,
                                     const camber_drawing_path *whole, const camber_drawing_path *small, int variant,
                                     camber_check *check) {
@@ -333,7 +338,7 @@ static camber_status compare_slices(const camber_validation *v, const camber_sub
     return status;
 }
 
-/* One variant. reason: the check cannot be made; else NULL. */
+/* Checks one variant. reason: why the check cannot be run; otherwise NULL. */
 static camber_status check_sliced(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
                                   const camber_checked_drawer *drawer, const camber_drawing_path *small, int variant,
                                   const char *reason) {
@@ -395,7 +400,7 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
     return status;
 }
 
-/* ---- A frame as it is ---- */
+/* ---- A frame without changes ---- */
 
 static camber_status check_frame_on(camber_validation *v, const camber_subject *s, const camber_frame *frame,
                                     const camber_checked_device *checked, const camber_checked_drawer *drawer) {

@@ -1,5 +1,5 @@
-/* The kernels against the CPU twin, stage by stage and byte for byte, and against themselves: from run to run, in other
- * work-groups, in parts. */
+/* Compares the kernels with the CPU twin, stage by stage and byte for byte, and with themselves: from run to run, with
+ * other work-group sizes, and in parts. */
 #include "validate/checks.h"
 
 #include <stdio.h>
@@ -34,7 +34,7 @@ bool camber_draws_method(const camber_validation_desc *desc, camber_method metho
     return desc->full || (int)method == (desc->method < 0 ? CAMBER_METHOD_STRIP : desc->method);
 }
 
-/* ---- Reading both ---- */
+/* ---- Reading back ---- */
 
 static camber_status see_twin(camber_validation *v, const camber_subject *s, const camber_tessellation_desc *desc,
                               camber_mesh_state *state) {
@@ -59,7 +59,7 @@ typedef struct job {
     camber_tessellation_desc desc;
 } job;
 
-/* A mesh against what was expected; with stages, the first that differs is named. */
+/* Compares a mesh with the expected one. With stages, the first stage that differs is named. */
 static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_mesh_state *expected, bool with_stages,
                                   camber_check *check) {
     camber_mesh_state got = {0};
@@ -70,9 +70,9 @@ static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_mesh_s
     return status;
 }
 
-/* ---- Against the twin ---- */
+/* ---- Comparison with the twin ---- */
 
-/* One for every join and cap, and the last with offsets. */
+/* One style for every join and cap; the last one has offsets. */
 enum { BESIDE = 9, STYLES };
 
 static void every_join_and_cap(camber_stroke *stroke, size_t row, size_t number) {
@@ -82,8 +82,8 @@ static void every_join_and_cap(camber_stroke *stroke, size_t row, size_t number)
     stroke->offset_px = number == BESIDE ? offsets_px[row % (sizeof offsets_px / sizeof *offsets_px)] : 0.0f;
 }
 
-/* The strokes of a check that follows; NULL: out of memory. A network's stand: its twin's polylines are made for them.
- */
+/* Returns the strokes for the next check; NULL if memory is exhausted. A network keeps its strokes, because its twin's
+ * polylines are made with them. */
 static camber_stroke *style(job *j, camber_style_fn *styled, size_t number) {
     camber_stroke *strokes =
         camber_strokes_styled(j->s->strokes, j->s->stroke_count, j->s->network ? camber_style_kept : styled, number);
@@ -107,7 +107,7 @@ static camber_status check_twin(job *j, size_t number) {
         made = compare_mesh(j, j->checked->mesh, &twin, true, &check);
     camber_status status = made;
     if (status == CAMBER_OK && check.result == CAMBER_RESULT_FAILED) {
-        /* One picture: what breaks one style mostly breaks all of them. */
+        /* one picture is enough, because a fault in one style usually affects all of them */
         if (!j->checked->broken[j->desc.method])
             status = camber_failure_image_of_mesh(j->v, j->checked, j->s, &j->desc, &check.finding);
         j->checked->broken[j->desc.method] = true;
@@ -119,7 +119,7 @@ static camber_status check_twin(job *j, size_t number) {
     return status;
 }
 
-/* ---- Against itself ---- */
+/* ---- Comparison with itself ---- */
 
 void camber_style_mixed(camber_stroke *stroke, size_t row, size_t number) {
     stroke->join = (camber_join)((row + number) % 3);
@@ -132,12 +132,12 @@ void camber_style_kept(camber_stroke *stroke, size_t row, size_t number) {
     (void)number;
 }
 
-/* Devices take no smaller limit: camber_device_desc. */
+/* The smallest limit of camber_device_desc. */
 enum { LEAST_BUFFER_BYTES = 4096 };
 
-enum { REASON_BYTES = 501 }; /* of a message that becomes a reason */
+enum { REASON_BYTES = 501 }; /* size of a message that becomes a reason */
 
-/* A limit that the largest polyline fits in and the whole mesh does not. 0: there is none. */
+/* Returns a memory limit that is enough for the largest polyline, but not for the whole mesh. 0: there is none. */
 static uint64_t part_bytes(const camber_mesh_state *whole, size_t stroke_count) {
     const camber_point_stages *points = whole->stages.points;
     const camber_mesh_info *info = &whole->mesh.info;
@@ -149,7 +149,7 @@ static uint64_t part_bytes(const camber_mesh_state *whole, size_t stroke_count) 
         const bool last = i + 1 == whole->stages.point_count;
         if (!last && points[i + 1].polyline == points[i].polyline)
             continue;
-        /* Strips have two indices a record; kite and fan have a record a point, in whole work-groups. */
+        /* strips have two indices per record; kite and fan have one record per point, in whole work-groups */
         const uint64_t indices = (last ? info->index_count : points[i + 1].first_index) - points[from].first_index;
         const uint64_t records = info->strips ? indices / 2 : i - from + 512;
         const uint64_t bytes[] = {records * sizeof(camber_record), info->strips ? 0 : indices * sizeof(uint32_t),
@@ -162,13 +162,14 @@ static uint64_t part_bytes(const camber_mesh_state *whole, size_t stroke_count) 
     return wanted < mesh_bytes ? wanted : 0;
 }
 
-/* The same for a network, whose points are the device's too: a polyline may have more of them than anybody sees. */
+/* The same for a network, whose points are on the device, too. A polyline may have more points there than are
+ * visible. */
 static uint64_t network_part_bytes(const camber_subject *s) {
     const uint64_t wanted = 4 * (uint64_t)camber_network_get_stats(s->network).kept_points / 3;
     return wanted > LEAST_BUFFER_BYTES ? wanted : 0;
 }
 
-/* In parts, which only a mesh of several polylines has. */
+/* Compares with the mesh made in parts, which requires several polylines. */
 static camber_status compare_parts(job *j, const camber_mesh_state *whole, camber_check *check) {
     const bool broken = j->checked->broken[j->desc.method];
     const uint64_t most = broken ? 0 : part_bytes(whole, j->s->stroke_count);
@@ -199,7 +200,7 @@ static camber_status compare_parts(job *j, const camber_mesh_state *whole, cambe
 
 enum { AGAIN, IN_GROUPS, IN_PARTS = IN_GROUPS + CAMBER_CHECKED_GROUPS, WAYS };
 
-/* Once more, in one of the ways. */
+/* Makes the mesh again in one of the ways, and compares it. */
 static camber_status check_way(job *j, int way, const camber_mesh_state *first) {
     char what[64] = "from run to run";
     if (way == IN_PARTS)

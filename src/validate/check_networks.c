@@ -1,5 +1,5 @@
-/* Networks under several cameras: what the device sees against the CPU twin, no vertex far away, and pictures against
- * lines that are projected from the definition alone. */
+/* Checks networks with several cameras: compares what the device sees with the CPU twin, checks that no vertex is far
+ * away, and compares pictures with lines that are projected from the definition. */
 #include "validate/samples.h"
 
 #include "validate/network_truth.h"
@@ -9,24 +9,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A network, and the camera that the others are made from. */
+/* A network, and the camera from which the others are derived. */
 typedef struct job {
     camber_validation *v;
     const camber_subject *s;
     camber_network *network;
     camber_camera camera;
-    camber_stroke *strokes; /* stroke_count */
+    camber_stroke *strokes; /* stroke_count of them */
     size_t stroke_count;
-    bool is_own; /* of the subject's lines, described by: */
+    bool is_own; /* made from the subject's lines, and described by: */
     camber_network_desc desc;
 } job;
 
-/* Some see all of it in a few pixels, some a part, some a stretch of a segment whose ends lie a million pixels away. */
+/* Some cameras see the whole network in a few pixels, some see a part of it, and some see a piece of a segment whose
+ * ends are a million pixels away. */
 static const struct {
     const char *name;
-    double times, bearing_deg; /* of the camera that the subject is seen with */
-    double simplify_px;        /* below 0: that camera's */
-    const char *scene;         /* whose bounds its pixels keep. NULL: the subject's */
+    double times, bearing_deg; /* relative to the camera with which the subject is seen */
+    double simplify_px;        /* negative: that camera's */
+    const char *scene;         /* the scene whose bounds its pixels must keep; NULL: the subject's */
 } cameras[] = {{"zoomed out", 0.2, 0, -1, NULL},
                {"cut", 1, 0, -1, NULL},
                {"simplified, turned", 2, 33.7, 2, NULL},
@@ -35,7 +36,7 @@ static const struct {
 
 /* ---- A network of the subject's lines ---- */
 
-/* Powers of two from 1/16 to 128 px: tolerances come to equal them. */
+/* Returns powers of two from 1/16 to 128 px, so that some are equal to tolerances. */
 static float importance_of(size_t i) {
     const uint32_t hash = (uint32_t)i * 2654435761u;
     return ldexpf(0.0625f, (int)(hash >> 16) % 12);
@@ -68,7 +69,7 @@ static camber_status make_own(job *j) {
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < lines->point_count; i++) {
         const float *from = lines->points + 2 * i;
-        const bool valid = fabsf(from[0]) <= 1e9f && fabsf(from[1]) <= 1e9f; /* as camber_polylines_create has it */
+        const bool valid = fabsf(from[0]) <= 1e9f && fabsf(from[1]) <= 1e9f; /* as in camber_polylines_create */
         points[2 * i] = valid ? (double)from[0] : (double)NAN;
         points[2 * i + 1] = (double)from[1];
         importance[i] = importance_of(i);
@@ -86,7 +87,7 @@ static bool lies_in(const camber_subject *s, const float *point) {
     return point[0] >= 0 && point[1] >= 0 && point[0] < (float)s->width && point[1] < (float)s->height;
 }
 
-/* A point on a long segment in the picture, not halfway; other numbers find other ones. */
+/* Finds a point on a long segment in the picture, but not its middle. Each number finds another point. */
 static void find_place(const camber_subject *s, size_t number, double *x, double *y) {
     enum { TRIES = 64 };
     static const double PART = 0.37;
@@ -121,20 +122,21 @@ static camber_camera aim(const job *j, size_t number) {
 
 /* ---- Checks ---- */
 
-/* How far from its polyline the widest stroke draws. */
+/* Returns how far from its polyline the widest stroke is drawn. */
 static double reach_of(const job *j) {
     double reach = 0;
     for (size_t i = 0; i < j->stroke_count; i++) {
         const camber_stroke *stroke = j->strokes + i;
         const double limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2;
-        /* With an offset points lie up to a tip away, and the window is as far again as decides what is drawn. */
+        /* With an offset, points may be as far away as the tip of a miter join, and the window is extended by the same
+         * again. */
         const double offset = fabs((double)stroke->offset_px);
         reach = fmax(reach, 0.5 * (double)stroke->width_px * fmax(limit, 1.5) + offset * (2 * fmax(limit, 1.1) + 7));
     }
     return reach;
 }
 
-/* Checks what camber_mesh_tessellate_network promises of the window, on every point that the twin sees. */
+/* Checks the promise of camber_mesh_tessellate_network about the window, for every point that the twin sees. */
 static camber_status check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
@@ -153,7 +155,7 @@ static camber_status check_window(job *j, const camber_subject *s) {
         check.finding =
             (camber_finding){"project", true, at->polyline, at->point, x, y, "distance", out, most, "", NULL};
         snprintf(check.finding.what, sizeof check.finding.what,
-                 "project: polyline %u, point %u at (%.9g, %.9g) lies %.9g px outside the picture, at most %.9g",
+                 "project: polyline %u, point %u at (%.9g, %.9g) is %.9g px outside the picture, at most %.9g",
                  at->polyline, at->point, x, y, out, most);
         break;
     }
@@ -162,7 +164,8 @@ static camber_status check_window(job *j, const camber_subject *s) {
     return status;
 }
 
-/* The subject is what the camera sees. Zoomed out, what is smaller than a pixel has no shape to hold pixels to. */
+/* The subject is what the camera sees. has_shape: false if the camera is so far out that lines are smaller than a
+ * pixel, so that their pixels cannot be checked. */
 static camber_status check_seen(job *j, camber_subject *s, bool has_shape) {
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
     camber_polylines *twin = NULL;

@@ -1,13 +1,14 @@
-/* Lines beside others: kernels and CPU twin share how they are made, so that only where their points lie can tell. */
+/* Checks offset lines. Kernels and CPU twin share the code that makes them, so a mistake shows only in the positions of
+ * their points. */
 #include "validate/checks.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* A line that bends, to a side and about a circle: a straight, a turn, a straight. */
+/* A line that bends to one side around a circle: a straight part, a turn, a straight part. */
 typedef struct bend {
     const char *name;
-    double radius, turn; /* px, radians: clockwise as seen */
+    double radius, turn; /* px, radians; clockwise as seen */
     double step;         /* px */
 } bend;
 
@@ -65,7 +66,7 @@ static void fail(camber_check *check, const camber_point_stages *at, const char 
              (double)at->y, field, got, expected);
 }
 
-/* Arcs may lie farther out by an eighth of a pixel, and rounding is told from less. */
+/* Arcs may be up to an eighth of a pixel too far out; rounding errors are smaller than that. */
 static void check_points(const bend *b, const path *p, double offset, const camber_stages *stages,
                          camber_check *check) {
     static const double OUTSIDE_PX = 0.13, INSIDE_PX = 0.04, ROUNDING_PX = 1e-3;
@@ -91,7 +92,7 @@ static camber_status check_bend(camber_validation *v, const bend *b, double offs
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
     const camber_polylines_desc given = {
         .points = p.points, .point_count = p.count, .offsets = (const uint32_t[]){0, p.count}, .polyline_count = 1};
-    camber_check check = camber_check_start(NULL, NULL, "lines beside: %s %s: keep their distance",
+    camber_check check = camber_check_start(NULL, NULL, "offset lines: %s %s: keep their distance",
                                             b->turn * offset > 0 ? "inside" : "outside", b->name);
     camber_polylines *polylines = NULL;
     camber_stages stages = {0};

@@ -1,5 +1,5 @@
-/* Pictures: against the oracle on sampled windows, the sharing paths against each other, the GL back ends and OpenCL
- * against each other. */
+/* Checks pictures: against the oracle in sampled windows, the sharing paths against each other, and GL back ends and
+ * OpenCL against each other. */
 #include "validate/levels.h"
 #include "validate/samples.h"
 #include "validate/scenes.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Two layers at this alpha let less than a half through, and more than nothing. */
+/* Two layers with this alpha let less than half through, but not nothing. */
 static const float TRANSLUCENT = 0.6f;
 
 /* A subject in one style: its truth, and its pictures on one device with one method. */
@@ -20,15 +20,15 @@ typedef struct job {
     camber_tessellation_desc desc;
     char style[64]; /* "round joins, butt caps" */
     bool is_drawn_once;
-    bool is_shared; /* other sharing paths are tried too: the style does not matter to them */
+    bool is_shared; /* also try other sharing paths, for which the style does not matter */
     camber_samples samples;
     camber_pixel_bounds bounds;
-    uint8_t *first, *own,
-        *other;     /* of the first back end, of this one, of another path to it or drawn in another way */
+    /* from the first back end; from this one; from it by another path or in another way */
+    uint8_t *first, *own, *other;
     uint8_t *twice; /* drawn twice, translucent */
 } job;
 
-/* A few straight edges of a ramp can be off by more than many; what a camera sees does not depend on it. */
+/* A few straight edges of a ramp can have larger errors than many edges; this does not depend on the camera. */
 static camber_coverage coverage_of(const job *j) {
     return j->s->network ? CAMBER_COVERAGE_EXACT : (camber_coverage)j->v->desc->coverage;
 }
@@ -49,14 +49,14 @@ static camber_status draw(const job *j, const camber_drawing_path *path, const c
     return status == CAMBER_OK ? camber_draw_levels(path, drawing, levels) : status;
 }
 
-/* ---- Against the truth ---- */
+/* ---- Comparison with the truth ---- */
 
 static camber_status check_truth(job *j, camber_check *check, camber_truth_kind kind, const uint8_t *levels) {
     size_t worst = 0;
     camber_status status = CAMBER_OK;
     camber_finding *finding = &check->finding;
     if (j->samples.count == 0) {
-        camber_results_skip(&j->v->results, *check, "no point lies in the picture");
+        camber_results_skip(&j->v->results, *check, "no point is in the picture");
         return status;
     }
     check->has_error = true;
@@ -90,9 +90,9 @@ static camber_status check_truth(job *j, camber_check *check, camber_truth_kind 
     return status;
 }
 
-/* ---- Pictures against each other ---- */
+/* ---- Comparison of pictures ---- */
 
-/* The window about the first pixel that differs, the first picture as the truth. */
+/* Writes an image of the window around the first pixel that differs, with the first picture as the truth. */
 static camber_status show_pixel(job *j, const uint8_t *first, const uint8_t *second, size_t at,
                                 camber_finding *finding) {
     enum { SIDE_PX = 48 };
@@ -112,7 +112,7 @@ static camber_status show_pixel(job *j, const uint8_t *first, const uint8_t *sec
     return camber_failure_image_write(j->v, window, truth, drawn, finding);
 }
 
-/* The first pixel where two pictures differ. */
+/* Finds the first pixel in which two pictures differ. */
 static bool first_pixel(const job *j, const uint8_t *first, const uint8_t *second, camber_finding *finding,
                         size_t *pixel) {
     const size_t count = (size_t)j->s->width * j->s->height;
@@ -141,7 +141,7 @@ static camber_status meshes_differ(camber_checked_drawer *drawer, size_t path, c
     return status;
 }
 
-/* A sharing path against the first: the mesh's bytes and the picture's. */
+/* Compares a sharing path with the first one: the bytes of the mesh and of the picture. */
 static camber_status check_path(job *j, camber_checked_drawer *drawer, size_t path) {
     camber_check check =
         camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: %s as %s, on %s, %s", j->s->name,
@@ -168,7 +168,7 @@ static camber_status check_path(job *j, camber_checked_drawer *drawer, size_t pa
     return status;
 }
 
-/* One drawer's picture against the first one's. */
+/* Compares one drawer's picture with that of the first one. */
 static camber_status check_drawer(job *j, const camber_checked_drawer *drawer) {
     camber_check check = camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
                                             camber_method_get_name(j->desc.method), j->style, drawer->name,
@@ -189,9 +189,9 @@ static camber_status check_drawer(job *j, const camber_checked_drawer *drawer) {
     return status;
 }
 
-/* ---- All of it ---- */
+/* ---- All checks ---- */
 
-/* The layers of translucent lines, drawn opaque: against the union of all lines. */
+/* Compares the layers of translucent lines, drawn opaque, with the union of all lines. */
 static camber_status check_united(job *j, const camber_checked_drawer *drawer) {
     camber_check check =
         camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: united, on %s, %s", j->s->name,
@@ -201,9 +201,9 @@ static camber_status check_united(job *j, const camber_checked_drawer *drawer) {
     return status == CAMBER_OK ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
 }
 
-/* The opaque layer, j->other, tells how much two translucent ones let through. A level is rounded, by a half at most,
- * in the opaque layer, which counts 1.2 times at 0.6; in each of the two, which counts 0.6 times; and when each is put
- * on the picture: 0.6 + 2 * 0.3 + 2 * 0.5 in all. */
+/* The opaque layer, in j->other, determines how much two translucent layers let through. Levels are rounded, with an
+ * error of at most a half: in the opaque layer, whose error is multiplied by 1.2 at alpha 0.6; in each of the two
+ * layers, multiplied by 0.6; and when each is put onto the picture. The sum is 0.6 + 2 * 0.3 + 2 * 0.5. */
 static bool layers_differ(const job *j, camber_finding *finding, size_t *pixel) {
     static const double MOST = 2.2;
     for (size_t i = 0; i < (size_t)j->s->width * j->s->height; i++) {
@@ -213,7 +213,7 @@ static bool layers_differ(const job *j, camber_finding *finding, size_t *pixel) 
         *pixel = i;
         *finding = (camber_finding){.stage = "layers", .field = "level", .got = j->twice[i], .expected = expected};
         snprintf(finding->what, sizeof finding->what,
-                 "layers: pixel %zu, %zu: level %u of two layers at %.1f, not %.1f, since one that is opaque has %u",
+                 "layers: pixel %zu, %zu: level %u of two layers at %.1f, not %.1f, because an opaque one has %u",
                  i % j->s->width, i / j->s->width, j->twice[i], (double)TRANSLUCENT, expected, j->other[i]);
         return true;
     }
@@ -238,7 +238,7 @@ static camber_status check_translucent(job *j, const camber_checked_drawer *draw
     return status;
 }
 
-/* Neighbouring segments share their edges to the last bit. */
+/* Checks that neighbouring segments share their edges to the last bit. */
 static camber_status check_once(job *j, const camber_checked_drawer *drawer) {
     camber_check check =
         camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: each pixel once, on %s, %s", j->s->name,
@@ -276,7 +276,7 @@ static camber_status check_drawn(job *j, size_t which) {
     const bool counts = drawer->in_gl && j->desc.method != CAMBER_METHOD_FAN;
     if (status == CAMBER_OK && j->is_drawn_once && counts)
         status = check_once(j, drawer);
-    /* Kernels draw any mesh as strips are. */
+    /* kernels draw any mesh in the same way as strips */
     const bool alike = drawer->in_gl == j->checked->drawers[0].in_gl;
     if (status == CAMBER_OK && which > 0 && (alike || j->desc.method == CAMBER_METHOD_STRIP))
         status = check_drawer(j, drawer);
@@ -289,7 +289,7 @@ static camber_status check_drawn(job *j, size_t which) {
 
 static camber_status check_device(job *j) {
     camber_status status = CAMBER_OK;
-    /* Wrong indices can take a GPU minutes, or down. */
+    /* Wrong indices can make a GPU hang for minutes, or crash it. */
     if (j->checked->broken[j->desc.method]) {
         camber_results_skip(&j->v->results,
                             camber_check_start(j->checked->name, NULL, "%s: %s, %s: pixels, on %s", j->s->name,
@@ -315,7 +315,7 @@ static camber_status check_style(job *j) {
     return status;
 }
 
-/* Every join and every cap, and each variant of the shader that they ask for. */
+/* Every join and every cap, and each variant of the shader that they need. */
 static const struct {
     camber_join join;
     camber_cap cap;
@@ -331,7 +331,7 @@ static void set_style(camber_stroke *stroke, size_t row, size_t number) {
     stroke->cap = styles[number].cap;
 }
 
-/* With the share of tight and split joins, which the twin tells. */
+/* The bounds depend on the share of tight and split joins, which the twin counts. */
 static camber_status find_bounds(job *j) {
     camber_context *context = j->v->desc->context;
     camber_mesh_data twin = {0};
@@ -371,11 +371,11 @@ static camber_status check_number(job *j, size_t number) {
     return status;
 }
 
-/* The truth of pixels is that of the lines themselves. */
+/* The truth is computed for the lines without offsets. */
 static camber_status skip_offsets(camber_validation *v, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: pixels", s->name);
     check.result = CAMBER_RESULT_SKIPPED;
-    snprintf(check.reason, sizeof check.reason, "lines have offsets, and are drawn beside where they lie");
+    snprintf(check.reason, sizeof check.reason, "the lines have offsets, so they are not drawn where their points are");
     camber_results_add(&v->results, &check);
     return CAMBER_OK;
 }

@@ -1,22 +1,22 @@
-/* The truth of a window, pixel by pixel: each line by the oracle, united with the others or laid over them; or what all
- * lines wind around. */
+/* Computes the truth of a window, pixel by pixel: the oracle's coverage of each line, united with the others or laid
+ * over them; or the areas that all lines wind around. */
 #include "validate/coverage_truth.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* A line, or a part of it between points that are not numbers. */
+/* A line, or a part of it between invalid points. */
 typedef struct open_line {
     const float *points;
     size_t count;
     camber_oracle_style style;
 } open_line;
 
-/* Where results of a line's own go before they are laid over what is there. */
+/* Each line is drawn by itself, before it is laid over the pixels so far. */
 typedef struct canvas {
     const camber_truth_desc *desc;
     camber_window window;
-    camber_oracle_window ink; /* UNION: all lines; OVER: the line under way, its part of the window only */
+    camber_oracle_window ink; /* UNION: all lines; OVER: the part of the current line inside the window */
     float *coverage;
 } canvas;
 
@@ -24,14 +24,14 @@ static bool is_number(const float *point) {
     return fabsf(point[0]) <= 1e9f && fabsf(point[1]) <= 1e9f;
 }
 
-/* The part of the window that a line may touch; false: none. */
+/* Finds the part of the window that a line may touch. Returns false if it touches none. */
 static bool reach_of(const open_line *p, camber_window window, camber_window *part) {
     double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
     for (size_t i = 0; i < p->count; i++) {
         left = fmin(left, (double)p->points[2 * i]), right = fmax(right, (double)p->points[2 * i]);
         top = fmin(top, (double)p->points[2 * i + 1]), bottom = fmax(bottom, (double)p->points[2 * i + 1]);
     }
-    /* Corners of square caps lie sqrt(2) half widths away, miter tips as far as their limit. */
+    /* Corners of square caps are sqrt(2) half widths away, and miter tips as far as their limit. */
     const double tip = p->style.join != CAMBER_JOIN_BEVEL ? fmax(p->style.miter_limit, 1.5) : 1.5;
     const double reach = p->style.width_px / 2 * tip + 1;
     left = fmax(floor(left - reach), window.x0), right = fmin(ceil(right + reach), window.x0 + window.width);
@@ -85,7 +85,7 @@ static bool draw_line(canvas *c, size_t line) {
     return drawn;
 }
 
-/* The inside of the lines, in the window's own pixels: near it the moved points are exact. */
+/* Fills the inside of the lines, in the window's own coordinates: near it the shifted points are exact. */
 static bool fill_window(const camber_truth_desc *desc, camber_window window, float *coverage) {
     const camber_lines *lines = desc->lines;
     const bool sums = desc->kind == CAMBER_TRUTH_OVER;

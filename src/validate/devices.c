@@ -1,5 +1,5 @@
-/* Opens a device three times without what draws, in three work-group sizes, and once more for each drawer: a renderer
- * decides how a device shares its buffers. What cannot be opened becomes a check that is skipped, with its reason. */
+/* Opens a device three times without a renderer, with three work-group sizes, and once more for each drawer, because a
+ * renderer decides how a device shares its buffers. If something cannot be opened, a skipped check gives the reason. */
 #include "validate/devices.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@ static const camber_sharing sharings[CAMBER_CHECKED_PATHS] = {CAMBER_SHARING_GL,
 
 static const uint32_t group_sizes[CAMBER_CHECKED_GROUPS] = {64, 128, 256}, lanes[CAMBER_CHECKED_GROUPS] = {8, 16, 1};
 
-/* The message of a failed call becomes the reason of a skip. */
+/* Skips a check. The reason is the message of the failed call. */
 static void skip(camber_validation *v, camber_check check, camber_status status) {
     char message[sizeof check.reason];
     v->desc->host.take_message(v->desc->host.user, message, sizeof message);
@@ -72,13 +72,13 @@ static void close_drawer(camber_checked_drawer *drawer) {
     *drawer = (camber_checked_drawer){0};
 }
 
-/* Whether it was named: then it is an error that it is not there. */
+/* Whether the options name it, so that it is an error if it is missing. */
 static bool is_asked_for(camber_fixture_drawer kind, const camber_validation_desc *desc) {
     return kind == CAMBER_FIXTURE_OPENCL ? desc->rasterizer == CAMBER_RASTERIZER_OPENCL
                                          : desc->backend == camber_fixture_backend(kind);
 }
 
-/* A kind of drawing leaves its own drawers, and a back end leaves itself. */
+/* Whether the options allow it: a kind of drawing allows its own drawers, and a back end allows itself. */
 static bool is_wanted(camber_fixture_drawer kind, const camber_validation_desc *desc) {
     const camber_rasterizer rasterizer =
         kind == CAMBER_FIXTURE_OPENCL ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL;
@@ -86,7 +86,7 @@ static bool is_wanted(camber_fixture_drawer kind, const camber_validation_desc *
     return allowed && (is_asked_for(kind, desc) || desc->backend == CAMBER_BACKEND_AUTO);
 }
 
-/* A drawer that is not there is skipped, or an error where it was asked for. */
+/* Opens a drawer. A missing one is skipped, or is an error if the options name it. */
 static camber_status open_drawer(camber_validation *v, camber_checked_device *checked, camber_fixture_drawer kind) {
     const camber_fixture_desc desc = {
         .device = device_desc(v, checked), .drawers = 1u << kind, .on_surface = true, .surfaces_alone = true};
@@ -120,11 +120,11 @@ static void close_device(camber_checked_device *checked) {
     *checked = (camber_checked_device){0};
 }
 
-/* The device and its work-group sizes, without what draws. */
+/* Opens the device with its work-group sizes, without a renderer. */
 static camber_status open_plain(camber_validation *v, camber_checked_device *checked) {
     camber_device_desc desc = device_desc(v, checked);
     camber_status status = open_alone(v, &desc, &checked->device, &checked->mesh);
-    /* A GPU has one lane, and its compiler takes minutes over vectors. */
+    /* a GPU has one lane, and its compiler takes minutes for vectors */
     const bool has_vectors =
         status == CAMBER_OK && camber_device_get_info(checked->device).type == CAMBER_DEVICE_TYPE_CPU;
     for (size_t i = 0; i < CAMBER_CHECKED_GROUPS && status == CAMBER_OK; i++) {
@@ -138,7 +138,7 @@ static camber_status open_plain(camber_validation *v, camber_checked_device *che
 static camber_status open_device(camber_validation *v, camber_checked_device *checked) {
     const camber_status status = open_plain(v, checked);
     if (status != CAMBER_OK) {
-        /* The check may not keep the name: the next device takes its place. */
+        /* the name must not be stored in the check, because the next device replaces it */
         skip(v, camber_check_start(NULL, NULL, "kernels, on %s", checked->name), status);
         close_device(checked);
         return CAMBER_OK;
@@ -151,11 +151,12 @@ static camber_status open_device(camber_validation *v, camber_checked_device *ch
     return opened;
 }
 
-/* "NAME", or "NAME (2)" for the second of that name. */
-static void name_device(camber_checked_device *checked, camber_context *context, size_t at, const char *name) {
+/* Writes "NAME", or "NAME (2)" for the second device with this name. */
+static void name_device(camber_checked_device *checked, const camber_validation_desc *desc, size_t at,
+                        const char *name) {
     const camber_device_info *earlier = NULL;
     size_t before = 0;
-    for (size_t i = 0; i < at && camber_device_list(context, i, &earlier) == CAMBER_OK; i++)
+    for (size_t i = 0; i < at && camber_device_list(desc->context, desc->match, i, &earlier) == CAMBER_OK; i++)
         before += strcmp(earlier->name, name) == 0;
     if (before)
         snprintf(checked->name, sizeof checked->name, "%s (%zu)", name, before + 1);
@@ -164,23 +165,23 @@ static void name_device(camber_checked_device *checked, camber_context *context,
 }
 
 static camber_status open_all(camber_validation *v) {
-    camber_context *context = v->desc->context;
+    const camber_validation_desc *desc = v->desc;
     const camber_device_info *info = NULL;
     camber_status status = CAMBER_OK;
-    uint32_t number = 0;
-    for (size_t i = 0; camber_device_list(context, i, &info) == CAMBER_OK && info && status == CAMBER_OK; i++) {
-        if (!camber_device_info_matches(info, v->desc->match))
-            continue;
+    for (uint32_t i = 0; status == CAMBER_OK; i++) {
+        status = camber_device_list(desc->context, desc->match, i, &info);
+        if (status != CAMBER_OK || !info)
+            break;
         camber_checked_device *checked = &v->devices.list[v->devices.count];
-        name_device(checked, context, i, info->name);
-        checked->number = ++number;
+        name_device(checked, desc, i, info->name);
+        checked->number = i + 1;
         status = open_device(v, checked);
     }
     if (status != CAMBER_OK || v->devices.count)
         return status;
-    /* There is none: opening one says why. */
+    /* there is no device; opening one logs the reason */
     camber_device *none = NULL;
-    status = camber_device_create(v->desc->context, &(camber_device_desc){.match = v->desc->match}, &none);
+    status = camber_device_create(desc->context, &(camber_device_desc){.match = desc->match}, &none);
     camber_device_destroy(none);
     return status == CAMBER_OK ? CAMBER_ERROR_DEVICE : status;
 }
@@ -188,9 +189,9 @@ static camber_status open_all(camber_validation *v) {
 camber_status camber_checked_devices_open(camber_validation *v) {
     const camber_device_info *info = NULL;
     size_t count = 0;
-    camber_status status = camber_device_list(v->desc->context, 0, &info);
+    camber_status status = camber_device_list(v->desc->context, v->desc->match, 0, &info);
     while (status == CAMBER_OK && info)
-        status = camber_device_list(v->desc->context, ++count, &info);
+        status = camber_device_list(v->desc->context, v->desc->match, ++count, &info);
     v->devices = (camber_checked_devices){.list = calloc(count + 1, sizeof *v->devices.list)};
     if (status == CAMBER_OK && !v->devices.list)
         status = CAMBER_ERROR_MEMORY;

@@ -1,5 +1,5 @@
-/* Every OpenCL device that checks run on, opened in each way that they need: alone, with other work-group sizes, and
- * once for each drawer, with every path on which a mesh may reach it. */
+/* Every OpenCL device on which checks run, opened in each way that they need: by itself, with other work-group sizes,
+ * and once for each drawer, with every path by which it may receive a mesh. */
 #ifndef CAMBER_VALIDATE_DEVICES_H
 #define CAMBER_VALIDATE_DEVICES_H
 
@@ -8,25 +8,25 @@
 
 enum { CAMBER_CHECKED_PATHS = 3, CAMBER_CHECKED_GROUPS = 3 };
 
-/* A path on which a mesh reaches what draws it. */
+/* A path by which a mesh reaches a drawer. */
 struct camber_drawing_path {
-    const char *name; /* "gl", "zero-copy", "copy", as camber_sharing has them, or "no sharing" */
+    const char *name; /* "gl", "zero-copy" or "copy", as in camber_sharing, or "no sharing" */
     camber_renderer *renderer;
     camber_mesh *mesh;
 };
 
-/* A GL back end, or OpenCL without any, with the device opened once more for it. */
+/* A GL back end or OpenCL, with the device opened once more for it. */
 typedef struct camber_checked_drawer {
     const char *name; /* "EGL", "OSMesa", "OpenCL" */
     bool in_gl;
     camber_fixture fixture;
-    camber_drawing_path paths[CAMBER_CHECKED_PATHS]; /* path_count, those that work; never none */
+    camber_drawing_path paths[CAMBER_CHECKED_PATHS]; /* path_count of them: those that work, at least one */
     size_t path_count;
 } camber_checked_drawer;
 
 struct camber_checked_device {
-    char name[160];  /* of the device, and which of several of that name */
-    uint32_t number; /* camber_device_desc's */
+    char name[160];  /* name of the device, with a number if several have the same name */
+    uint32_t number; /* as in camber_device_desc */
     camber_device *device;
     camber_mesh *mesh;
     struct {
@@ -34,18 +34,19 @@ struct camber_checked_device {
         camber_device *device;
         camber_mesh *mesh;
     } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes and lanes */
-    camber_checked_drawer drawers[CAMBER_FIXTURE_DRAWERS]; /* drawer_count */
+    camber_checked_drawer drawers[CAMBER_FIXTURE_DRAWERS]; /* drawer_count of them */
     size_t drawer_count;
-    /* By camber_method: meshes of the subject at hand differ from the twin's, and are not drawn. */
+    /* [camber_method]: the current subject's mesh differs from the twin's, and is not drawn */
     bool broken[3];
 };
 
-/* Opens what the options allow. What is not there becomes a skip. No device at all, or not the one that was asked for,
- * is CAMBER_ERROR_DEVICE. Closed by the caller in any case. */
+/* Opens what the options allow. Anything missing becomes a skipped check. It is CAMBER_ERROR_DEVICE if there is no
+ * device, or not the one that was selected. The caller closes it in any case. */
 camber_status camber_checked_devices_open(camber_validation *validation);
 void camber_checked_devices_close(camber_checked_devices *devices);
 
-/* Opens the same device with no buffer larger than this, and a mesh on it that is not drawn. mesh NULL: none. */
+/* Opens the same device again with a limit for buffer sizes, and a mesh on it that is not drawn. mesh: NULL if no mesh
+ * is needed. */
 camber_status camber_checked_device_open_small(const camber_checked_device *checked,
                                                const camber_validation *validation, uint64_t largest_buffer_bytes,
                                                camber_device **device, camber_mesh **mesh);

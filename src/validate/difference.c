@@ -33,11 +33,11 @@ double camber_difference_mean(const camber_difference *difference) {
     return difference->touched ? difference->sum / (double)difference->touched : 0;
 }
 
-/* ---- Pictures of it ---- */
+/* ---- Images of differences ---- */
 
 enum { PANELS = 3, GAP_PX = 4 };
 
-/* Black ink on white; the difference on grey: red where there is too much ink, blue where there is too little. */
+/* Black ink on white. The difference is drawn on grey: red for too much ink, blue for too little. */
 static void shade(uint8_t pixel[4], int panel, int truth, int drawn) {
     const int level = 255 - (panel == 0 ? truth : drawn), apart = drawn - truth;
     const int red = apart < 0 ? -apart : 0, green = abs(apart), blue = apart > 0 ? apart : 0;

@@ -1,4 +1,4 @@
-/* Pictures of failures: truth, drawn and their difference beside each other. The host writes them where it likes. */
+/* Images of failures: truth, drawn and their difference next to each other. The host decides where to write them. */
 #include "validate/checks.h"
 #include "validate/levels.h"
 
@@ -23,7 +23,7 @@ camber_status camber_failure_image_write(camber_validation *v, camber_window win
 
 /* ---- A mesh ---- */
 
-/* The lines with a point moved to the middle of the window, by whole pixels. */
+/* Copies the lines, shifted by whole pixels so that a point is in the middle of the window. */
 static bool shift_lines(const camber_lines *lines, const camber_finding *finding, float **points) {
     const double dx = SIDE_PX / 2 - floor(finding->x), dy = SIDE_PX / 2 - floor(finding->y);
     *points = calloc(2 * lines->point_count + 1, sizeof **points);
@@ -34,7 +34,7 @@ static bool shift_lines(const camber_lines *lines, const camber_finding *finding
     return *points != NULL;
 }
 
-/* Whether GL can be given the mesh: its indices lead to vertices. */
+/* Whether GL can draw the mesh safely: all its indices refer to vertices. */
 static camber_status look_at_indices(camber_mesh *mesh, bool *sound) {
     camber_mesh_data data = {0};
     const camber_status status = camber_mesh_read(mesh, &data);
@@ -45,7 +45,7 @@ static camber_status look_at_indices(camber_mesh *mesh, bool *sound) {
     return status;
 }
 
-/* Draws nothing where the mesh is not fit for it. */
+/* Draws the subject, or nothing if the mesh cannot be drawn safely. */
 static camber_status draw_subject(camber_validation *v, const camber_drawing_path *path, const camber_subject *subject,
                                   const camber_tessellation_desc *desc, uint8_t *levels) {
     const camber_drawing drawing = {.strokes = desc->strokes,
@@ -62,7 +62,7 @@ static camber_status draw_subject(camber_validation *v, const camber_drawing_pat
     return status;
 }
 
-/* Draws the subject in the window: its lines are moved there, or the camera. */
+/* Draws the subject in the window, after moving its lines or the camera. */
 static camber_status draw_shifted(camber_validation *v, const camber_drawing_path *path, const camber_subject *subject,
                                   const camber_tessellation_desc *desc, const camber_finding *finding,
                                   uint8_t *levels) {

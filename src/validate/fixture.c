@@ -1,4 +1,4 @@
-/* Surfaces open first, then the device, since it may share buffers with a surface; renderers last. */
+/* Surfaces are opened first, then the device, which may share buffers with a surface, and renderers last. */
 #include "validate/fixture.h"
 
 static const struct {

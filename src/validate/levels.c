@@ -12,7 +12,7 @@ bool camber_levels_take(void *user, const uint8_t *rgba, uint32_t first_row, uin
 
 static const camber_fill white = {.color = {1, 1, 1, 1}};
 
-/* Returns paints to be freed with free. NULL: out of memory. */
+/* Returns paints, to be freed with free; NULL if memory is exhausted. */
 static camber_paint *make_paints(const camber_drawing *drawing) {
     camber_paint *paints = calloc(drawing->stroke_count + 1, sizeof *paints);
     for (size_t row = 0; paints && row < drawing->stroke_count; row++)

@@ -1,4 +1,4 @@
-/* The first element in which two tessellations differ: stage, polyline, point, field and both values. */
+/* Finds the first element in which two tessellations differ: stage, polyline, point, field and both values. */
 #include "validate/checks.h"
 
 #include <stddef.h>
@@ -24,7 +24,7 @@ static void locate(camber_finding *finding, const camber_point_stages *point) {
     finding->y = (double)point->y;
 }
 
-/* One field of a struct, got and expected. */
+/* One field of a struct, actual and expected. */
 typedef struct field_pair {
     const char *name;
     double got, expected;
@@ -83,7 +83,7 @@ static bool scan_differs(const camber_point_stages *got, const camber_point_stag
     return take_first(fields, sizeof fields / sizeof *fields, finding);
 }
 
-/* Stage by stage, since what one gets wrong the next ones inherit. */
+/* Compares stage by stage, because later stages inherit the errors of earlier ones. */
 static bool stages_differ(const camber_stages *got, const camber_stages *expected, bool of_network,
                           camber_finding *finding) {
     const struct {
@@ -106,7 +106,8 @@ static bool stages_differ(const camber_stages *got, const camber_stages *expecte
 
 /* ---- Meshes ---- */
 
-/* The last point that begins at or before the element: points that emit nothing begin where the next one does. */
+/* Returns the last point whose elements begin at or before the element. A point without elements has the same start as
+ * the next one. */
 static const camber_point_stages *point_of(const camber_stages *stages, uint64_t element, bool index) {
     size_t low = 0, high = stages->point_count;
     while (high - low > 1) {
@@ -165,7 +166,8 @@ static bool indices_differ(const camber_mesh_state *g, const camber_mesh_state *
     return false;
 }
 
-/* The records that the mesh is kept as. Vertices and indices, which come of them, are told first, by their points. */
+/* Compares the records that the mesh is stored as. Vertices and indices, which are made from records, are compared
+ * first, because they can be related to points. */
 static bool records_differ(const camber_mesh_data *g, const camber_mesh_data *e, camber_finding *finding) {
     for (size_t i = 0; i < g->info.record_count && i < e->info.record_count; i++) {
         const camber_record *got = g->records + i, *expected = e->records + i;

@@ -1,31 +1,31 @@
-/* Triangles in a row that carry one segment are that segment; where one ends and the next begins at the same point they
- * meet in a join. Its room follows from lengths and angles in double precision. */
+/* Consecutive triangles with the same segment form that segment. If one segment ends where the next one begins, there
+ * is a join between them. The room of a join is computed from lengths and angles in double precision. */
 #include "validate/mesh_joins.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Past it a join is split. */
+/* A join with a larger tangent is split. */
 static const double TAN_SPLIT = 2.0;
-/* So near the bound the mesh's single precision may decide either way. */
+/* So close to the bound, the mesh's single precision may decide either way. */
 static const double AT_BOUND = 1e-5;
 
-/* A triangle by the places of its indices. */
+/* A triangle, by the positions of its indices. */
 typedef struct triangle {
     uint64_t first_index, end_index;
     uint32_t least, most; /* vertices */
     const camber_vertex *segment;
 } triangle;
 
-/* Triangles in a row that carry one segment. */
+/* Consecutive triangles with the same segment. */
 typedef struct drawn_segment {
     uint64_t first_index, end_index;
-    uint32_t least; /* vertex of the first triangle */
-    uint32_t most;  /* of all */
+    uint32_t least; /* first vertex of its first triangle */
+    uint32_t most;  /* last vertex of all its triangles */
     const camber_vertex *segment;
 } drawn_segment;
 
-/* Walks the triangles of a mesh in the order of their indices. */
+/* Iterates over the triangles of a mesh in index order. */
 typedef struct walk {
     const camber_mesh_data *mesh;
     uint64_t next; /* index */
@@ -76,7 +76,7 @@ static double length_of(const camber_vertex *v) {
     return hypot((double)v->dx, (double)v->dy);
 }
 
-/* Whether two places are the same to what single precision left of them. */
+/* Whether two points are equal, apart from errors of single precision. */
 static bool is_near(point a, point b, double length) {
     return hypot(a.x - b.x, a.y - b.y) <= 0.25 * length;
 }
@@ -86,12 +86,12 @@ static bool same_segment(const camber_vertex *v, const camber_vertex *w) {
            (v->dx == w->dx && v->dy == w->dy && v->row == w->row && is_near(end_of(v), end_of(w), length_of(v)));
 }
 
-/* Whether a drawn segment is the first segment of its polyline again, which begins with a join: a ring's seam. */
+/* Whether a drawn segment repeats the first segment of its polyline, which begins with a join: the seam of a ring. */
 static bool is_again(const camber_vertex *first, const camber_vertex *v) {
     return first->turn_a != 0 && first->turn_a == v->turn_a && same_segment(first, v);
 }
 
-/* Turn and room of the join from one segment to the next. */
+/* Computes turn and room of the join between two segments. */
 static void judge(camber_found_join *join, const camber_vertex *in, const camber_vertex *out,
                   const camber_stroke *stroke) {
     const double dx = (double)in->dx, dy = (double)in->dy, ex = (double)out->dx, ey = (double)out->dy;
@@ -109,8 +109,8 @@ static void judge(camber_found_join *join, const camber_vertex *in, const camber
                                                      : CAMBER_JOIN_PLAIN;
 }
 
-/* Whether the second of two drawn segments goes on where the first ends. Within a polyline a drawn segment shares
- * vertices with the next, but where a strip is split: there it turns back from the same place. */
+/* Whether the second drawn segment continues where the first ends. Within a polyline, consecutive drawn segments share
+ * vertices, except where a strip is split and continues from the same point. */
 static bool is_next(const drawn_segment *a, const drawn_segment *b, camber_join_room room) {
     const camber_vertex *in = a->segment, *out = b->segment;
     const double shorter = fmin(length_of(in), length_of(out));
@@ -127,8 +127,8 @@ typedef struct search {
     camber_mesh_joins found;
     size_t capacity;
     drawn_segment before, now;
-    const camber_vertex *first; /* the segment that the polyline begins with */
-    bool joined;                /* the drawn segment before is not the polyline's first */
+    const camber_vertex *first; /* the polyline's first segment */
+    bool joined;                /* the previous drawn segment is not the polyline's first */
 } search;
 
 static bool append(search *s, const camber_found_join *join) {
@@ -144,7 +144,7 @@ static bool append(search *s, const camber_found_join *join) {
     return true;
 }
 
-/* Adds the join between a drawn segment that is complete and the one before it. */
+/* Adds the join between a complete drawn segment and the one before it. */
 static bool end_segment(search *s) {
     camber_found_join join = {0};
     bool joined = false;
@@ -159,7 +159,7 @@ static bool end_segment(search *s) {
         join.y = (float)at.y;
         join.row = s->now.segment->row;
         join.seam = !s->mesh->info.strips && is_again(s->first, s->now.segment);
-        if (s->joined) /* what more follows on is no seam */
+        if (s->joined) /* the join before was not a seam, because the line continues */
             s->found.items[s->found.count - 1].seam = false;
         if (!append(s, &join))
             return false;

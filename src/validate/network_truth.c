@@ -1,5 +1,5 @@
-/* The truth about networks, by other means than the kernels: projects each point in double precision, keeps those that
- * their importance asks for, and says which must lie in the projected polylines, and where. */
+/* Computes the truth about networks without the kernels' methods: projects each point in double precision, keeps the
+ * points whose importance requires it, and says which points must be in the projected polylines, and where. */
 #define _XOPEN_SOURCE 700 /* M_PI */
 
 #include "validate/network_truth.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double LONGEST_PX = 128; /* that is left in one, a bit longer than half a picture's window */
+static const double LONGEST_PX = 128; /* longest piece of a segment, a bit longer than half a picture's window */
 
 /* A point that the camera keeps. */
 typedef struct seen_point {
@@ -18,13 +18,13 @@ typedef struct seen_point {
 typedef struct projector {
     const camber_network_desc *network;
     const camber_camera *camera;
-    double x0, y0, step; /* of world coordinates */
+    double x0, y0, step; /* in world coordinates */
     double cosine, sine;
-    double least, most_x, most_y; /* px: where lines are cut */
+    double least, most_x, most_y; /* px: bounds at which lines are cut */
     seen_point *points;           /* as many as the longest polyline has */
     size_t run_count;
     camber_projected *made;
-    bool failed; /* out of memory */
+    bool failed; /* memory is exhausted */
 } projector;
 
 /* ---- Coordinates ---- */
@@ -33,7 +33,7 @@ static bool is_number(const camber_network_desc *from, const camber_network_entr
     return isfinite(from->points[2 * i] + entry->shift_x) && isfinite(from->points[2 * i + 1]);
 }
 
-/* The box of all points and the longest polyline. */
+/* Finds the bounding box of all points and the longest polyline. */
 static size_t measure(projector *p) {
     const camber_network_desc *from = p->network;
     double x1 = -INFINITY, y1 = -INFINITY;
@@ -64,7 +64,7 @@ static seen_point project(const projector *p, double x, double y, uint32_t point
                         point};
 }
 
-/* ---- Putting ---- */
+/* ---- Output ---- */
 
 static void put(projector *p, double x, double y, uint32_t point) {
     camber_projected *made = p->made;
@@ -84,7 +84,7 @@ static void put(projector *p, double x, double y, uint32_t point) {
     made->places[made->lines.point_count++] = point;
 }
 
-/* Narrows the part of a segment, from its start on by delta, to what lies between the bounds. */
+/* Restricts the part of a segment, which goes from start to start + delta, to the range between the bounds. */
 static void clip(double start, double delta, double least, double most, double part[2]) {
     if (delta == 0) {
         if (start < least || start > most)
@@ -100,8 +100,8 @@ static bool is_outside(const projector *p, const seen_point *at) {
     return at->x < p->least || at->x > p->most_x || at->y < p->least || at->y > p->most_y;
 }
 
-/* The part of a segment that is near the picture; open: the line before goes on here. Returns whether the next goes on
- * from its end. */
+/* Adds the part of a segment that is near the picture. open: the line before continues here. Returns whether the next
+ * segment continues at its end. */
 static bool put_segment(projector *p, const seen_point *a, const seen_point *b, bool open) {
     const double dx = b->x - a->x, dy = b->y - a->y;
     double part[2] = {0, 1};
@@ -127,7 +127,7 @@ static bool put_segment(projector *p, const seen_point *a, const seen_point *b, 
     return part[1] >= 1;
 }
 
-/* A polyline between points that are not numbers. A ring that is cut begins where it is, for its seam is a join. */
+/* Adds a polyline between invalid points. A ring that is cut still begins at its start, because its seam is a join. */
 static void put_line(projector *p, bool ring) {
     const size_t count = p->run_count, segments = count ? count - 1 : 0;
     const camber_lines *lines = &p->made->lines;

@@ -1,5 +1,5 @@
 /* A stroke is a list of shapes, each an intersection of half-planes and a disc. Each pixel has 16 x 16 samples, one bit
- * each; a shape sets the bits of the samples that lie in it. */
+ * each. A shape sets the bits of the samples inside it. */
 #include "validate/oracle.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 enum { SIDE = 16, SAMPLES = SIDE * SIDE, PLANES_MAX = 4 };
 
-/* Every part of a stroke is an intersection of half-planes a x + b y <= c, and of a disc where radius > 0. */
+/* An intersection of half-planes a x + b y <= c, and of a disc if radius > 0. Every part of a stroke is one. */
 typedef struct shape {
     double planes[PLANES_MAX][3];
     int plane_count;
@@ -49,26 +49,27 @@ double camber_oracle_coverage(const camber_oracle_window *window, int column, in
     return count / (double)SAMPLES;
 }
 
-/* Sample (i, j) of a pixel lies in cell (i, j) of 16 x 16, at a place that differs from cell to cell, so that edges
- * along an axis are met by 256 levels and not by 16: j with its bits reversed, in 16ths of the cell. */
+/* Sample (i, j) of a pixel is in cell (i, j) of 16 x 16. Its position within the cell, in 16ths, is j with its bits
+ * reversed. It differs from cell to cell, so that edges parallel to an axis give 256 different levels instead of 16. */
 static double sample_at(int i, int j) {
     static const double reversed[SIDE] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
     return (i + (reversed[j] + 0.5) / SIDE) / SIDE;
 }
 
-/* How far a half-plane's edge lies from the middle of a pixel, in units of `reach`: below -1 the pixel lies inside,
- * above 1 outside. */
+/* Returns the distance of a half-plane's edge from the middle of a pixel, in units of `reach`: below -1 the pixel is
+ * inside, above 1 outside. */
 static double plane_at(const double *plane, double x, double y) {
     const double reach = 0.5 * (fabs(plane[0]) + fabs(plane[1]));
     return (plane[0] * x + plane[1] * y - plane[2]) / reach;
 }
 
-/* The same of a disc. */
+/* The same for a disc. */
 static double disc_at(const shape *s, double x, double y) {
     return s->radius > 0 ? (hypot(x - s->x, y - s->y) - s->radius) / 0.7072 : -INFINITY;
 }
 
-/* -1: the pixel about x, y lies outside, +1: inside, 0: perhaps neither. Saves the samples of most pixels. */
+/* Returns -1 if the pixel around x, y is outside, +1 if it is inside, 0 if it may be neither. Saves testing the samples
+ * of most pixels. */
 static int pixel_side(const shape *s, double x, double y) {
     double most = disc_at(s, x, y);
     for (int i = 0; i < s->plane_count; i++)
@@ -76,7 +77,7 @@ static int pixel_side(const shape *s, double x, double y) {
     return most > 1 ? -1 : most <= -1 ? 1 : 0;
 }
 
-/* The places of a pixel's samples. */
+/* The positions of a pixel's samples. */
 typedef struct sample_places {
     double x[SAMPLES], y[SAMPLES];
 } sample_places;
@@ -85,10 +86,10 @@ static double larger(double a, double b) {
     return a > b ? a : b;
 }
 
-/* Adds the samples of the pixel at x, y that lie in a shape. One test at a time over all of them, which compilers make
- * vectors of, and none that the whole pixel passes. */
+/* Adds the samples of the pixel at x, y that are inside a shape. It runs one test for all samples before the next test,
+ * which compilers can vectorise, and skips tests that the whole pixel passes. */
 static void cover_pixel(camber_oracle_sample_set *set, const sample_places *at, const shape *s, double x, double y) {
-    double outside[SAMPLES]; /* where above 0 */
+    double outside[SAMPLES]; /* above 0: outside */
     for (int k = 0; k < SAMPLES; k++)
         outside[k] = -1;
     for (int i = 0; i < s->plane_count; i++) {
@@ -106,7 +107,7 @@ static void cover_pixel(camber_oracle_sample_set *set, const sample_places *at, 
         set->bits[k / 64] |= (uint64_t)(outside[k] <= 0) << k % 64;
 }
 
-/* In a dense network most pixels are, long before the last line. */
+/* In a dense network, most pixels are full long before the last line. */
 static bool is_full(const camber_oracle_sample_set *set) {
     return (set->bits[0] & set->bits[1] & set->bits[2] & set->bits[3]) == UINT64_MAX;
 }
@@ -133,7 +134,7 @@ static void cover(camber_oracle_window *w, const shape *s) {
         }
 }
 
-/* A convex polygon, in either order. */
+/* Covers a convex polygon, with its corners in either direction. */
 static void cover_polygon(camber_oracle_window *w, const vec *corners, int count) {
     shape s = {.plane_count = count, .left = INFINITY, .top = INFINITY, .right = -INFINITY, .bottom = -INFINITY};
     double area = 0;
@@ -154,7 +155,7 @@ static void cover_polygon(camber_oracle_window *w, const vec *corners, int count
         cover(w, &s);
 }
 
-/* The part of a disc where (p - centre) . a <= 0 and (p - centre) . b <= 0. */
+/* Covers the part of a disc for which (p - centre) . a <= 0 and (p - centre) . b <= 0. */
 static void cover_sector(camber_oracle_window *w, vec centre, double radius, vec a, vec b) {
     const shape s = {
         .planes = {{a.x, a.y, a.x * centre.x + a.y * centre.y}, {b.x, b.y, b.x * centre.x + b.y * centre.y}},
@@ -178,7 +179,7 @@ static vec direction_of(vec p, vec q) {
     return (vec){(q.x - p.x) / length, (q.y - p.y) / length};
 }
 
-/* Past the end of a segment that comes in direction u. */
+/* Covers the cap beyond the end of a segment with direction u. */
 static void cover_cap(camber_oracle_window *w, vec end, vec u, const camber_oracle_style *style) {
     const double h = style->width_px / 2;
     const vec normal = {-u.y, u.x}, back = {-u.x, -u.y};
@@ -192,7 +193,7 @@ static void cover_cap(camber_oracle_window *w, vec end, vec u, const camber_orac
 
 static void cover_join(camber_oracle_window *w, vec point, vec u, vec v, const camber_oracle_style *style) {
     const double h = style->width_px / 2, turn = atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y);
-    /* y points down: a positive turn is to the right, and its outer side the left, -normal. */
+    /* y points down, so a positive turn is to the right, and its outer side is the left, -normal */
     const double outer = turn > 0 ? -h : h;
     const vec in = step(point, (vec){-u.y, u.x}, outer), out = step(point, (vec){-v.y, v.x}, outer);
     if (turn == 0)
@@ -243,26 +244,26 @@ bool camber_oracle_stroke(camber_oracle_window *window, const float *points, siz
 /* ---- Areas ---- */
 
 typedef struct crossing {
-    int sample; /* of the row, the first that lies to the right */
+    int sample; /* of the row: the first sample to the right of the crossing */
     int winding;
 } crossing;
 
-/* Edges by the row of pixels that they begin in, as indices of their first points. */
+/* Edges, sorted by the row of pixels in which they begin, as indices of their first points. */
 typedef struct edge_rows {
-    size_t *first; /* height + 1 */
+    size_t *first; /* height + 1 of them */
     size_t *edges;
-    size_t *active; /* edges that reach into the row at hand */
+    size_t *active; /* edges that reach into the current row */
     size_t active_count;
     crossing *crossings;
 } edge_rows;
 
-/* The first row of pixels that an edge touches; height: none. */
+/* Returns the first row of pixels that an edge touches; height if there is none. */
 static int first_row_of(const float *p, int height) {
     const double top = fmin((double)p[1], (double)p[3]), bottom = fmax((double)p[1], (double)p[3]);
     return bottom <= 0 || top >= height || top == bottom ? height : top < 0 ? 0 : (int)top;
 }
 
-/* Counts edges by row, or puts them where the counts say. */
+/* Counts edges by row, or puts them at the positions that the counts determine. */
 static void sort_edges(const camber_lines *rings, int height, edge_rows *rows, bool put) {
     for (size_t k = 0; k < rings->polyline_count; k++)
         for (size_t i = rings->offsets[k]; i + 1 < rings->offsets[k + 1]; i++) {
@@ -302,7 +303,7 @@ static int compare_crossings(const void *a, const void *b) {
     return ((const crossing *)a)->sample - ((const crossing *)b)->sample;
 }
 
-/* Where the edges at hand cross a row of samples, whose first lies at x = start, from left to right. */
+/* Finds where the current edges cross a row of samples, whose first sample is at x = start, from left to right. */
 static size_t cross_row(const camber_lines *rings, edge_rows *rows, double y, double start, int samples) {
     size_t count = 0;
     for (size_t i = 0; i < rows->active_count; i++) {
@@ -318,7 +319,7 @@ static size_t cross_row(const camber_lines *rings, edge_rows *rows, double y, do
     return count;
 }
 
-/* Adds samples [first, end) of a row to the shares of its pixels, each so many times. */
+/* Adds samples [first, end) of a row to the shares of their pixels, `times` times. */
 static void add_samples(float *shares, int first, int end, int times) {
     const float one = (float)times / SAMPLES;
     while (first < end) {
@@ -340,7 +341,7 @@ static void fill_row(const camber_lines *rings, edge_rows *rows, camber_oracle_r
         rows->active[kept++] = rows->edges[i];
     rows->active_count = kept;
     for (int k = 0; k < SIDE; k++) {
-        /* A row's samples lie at their own place of their columns, so that upright edges are met by 256 levels. */
+        /* in each row, the samples have another position in their columns, so that vertical edges give 256 levels */
         const size_t count = cross_row(rings, rows, row + (k + 0.5) / SIDE, sample_at(0, k), width * SIDE);
         int winding = 0;
         for (size_t i = 0; i < count; i++) {

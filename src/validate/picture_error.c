@@ -7,16 +7,16 @@
 
 enum { SHARE_ROWS = 32 };
 
-/* Shares are taken one after the other, whoever comes first: what is in them differs a lot. */
+/* Threads take the next share when they are free, because shares differ a lot in cost. */
 typedef struct crew {
     const camber_picture_error_desc *desc;
     int shares;
     atomic_int next, done;
     atomic_bool failed;
-    camber_difference differences[CAMBER_MOST_THREADS][CAMBER_PICTURES_MAX]; /* of each thread */
+    camber_difference differences[CAMBER_MOST_THREADS][CAMBER_PICTURES_MAX]; /* one row per thread */
 } crew;
 
-/* The first pixel of the picture that differs most, whichever thread has met it. */
+/* Adds a difference, and keeps the first pixel of the picture with the largest error, whichever thread has found it. */
 static void add(camber_difference *sum, const camber_difference *more) {
     const bool first = more->max > sum->max || (more->max == sum->max && more->max_at < sum->max_at);
     sum->max_at = first ? more->max_at : sum->max_at;
@@ -47,7 +47,7 @@ static void work(void *user, size_t number) {
         if (!measure_share(c->desc, share, coverage, c->differences[number]))
             atomic_store(&c->failed, true);
         const int done = atomic_fetch_add(&c->done, 1) + 1;
-        if (number == 0 && c->desc->progress) /* on the calling thread */
+        if (number == 0 && c->desc->progress) /* only the calling thread reports progress */
             c->desc->progress(c->desc->user, (double)done / c->shares);
     }
     free(coverage);

@@ -1,16 +1,16 @@
-/* The bounds that the pixels of plain strokes are held to, in 255ths and in shares of the pixels that an edge crosses;
- * those of features along lines stand in the rows of check_along.c. Measured with Mesa's llvmpipe, with a quarter on
- * top. The known faults of a scene are in its row: ends of lines whose last segments are shorter than a pixel, and
- * lines that lie over themselves, each part anti-aliased. */
+/* The bounds for the pixels of plain strokes, in 255ths and in shares of the pixels that an edge crosses. Bounds for
+ * features along lines are in the rows of check_along.c. They were measured with Mesa's llvmpipe, plus a quarter. The
+ * bounds of a scene include its known faults: ends of lines whose last segments are shorter than a pixel, and lines
+ * that overlap themselves, whose parts are anti-aliased separately. */
 #include "validate/checks.h"
 
 #include <math.h>
 #include <string.h>
 
 static const struct {
-    const char *name; /* NULL: what users bring */
+    const char *name; /* NULL: the user's input */
     camber_pixel_bounds bounds;
-    camber_pixel_bounds tight; /* more, times the share of joins that are tight or split */
+    camber_pixel_bounds tight; /* added, multiplied by the share of joins that are tight or split */
 } table[] = {
     {"random walks", {3.5, 0.050, 0.0040}, {0, 0, 0}},  {"roads", {3.1, 0.040, 0.0010}, {0, 0, 0}},
     {"short segments", {35, 0.57, 0.22}, {0, 0, 0}},    {"turns", {2.7, 0.030, 0.0025}, {0, 0, 0}},
@@ -21,29 +21,29 @@ static const struct {
     {"areas", {1.2, 0.0010, 0.0002}, {0, 0, 0}},        {NULL, {2.0, 0.030, 0.0020}, {14, 0.40, 0.060}},
 };
 
-/* A ramp instead of the area is off by more on every edge. */
+/* With a ramp instead of the exact area, every edge has a larger error. */
 static const camber_pixel_bounds linear = {3.5, 0.020, 0.0010};
 
-/* Back ends may round differently and give the few pixels on a seam to the other segment; Mesa's two draw the same
- * bytes. */
+/* Back ends may round differently, and may draw the few pixels on a seam as part of the other segment. Mesa's two back
+ * ends draw the same bytes. */
 static const camber_pixel_bounds backends = {0.25, 0.0020, 0.0005};
 
-/* Kernels round once where GL rounds at every line (pixels that hundreds of lines cross), and of right angles whose
- * bisector runs through the pixels' centres they are the nearer to the truth. */
+/* Kernels round once, while GL rounds for every line, which matters for pixels that hundreds of lines cross. At right
+ * angles whose bisector runs through the pixels' centres, kernels are closer to the truth. */
 static const camber_pixel_bounds kernels = {0.85, 0.0150, 0.0005};
 
-/* How much more the union of all lines may be off: it has their crossings too, and a city in 256 px is crossings all
- * over. */
+/* How much larger the error of the union of all lines may be: it includes their crossings, and a city in 256 px
+ * consists mostly of crossings. */
 static const double UNITED_MORE = 0.25, UNITED_MORE_OF_INPUT = 1.0;
 
-/* And lines that lost points, whose corners are sharper. */
+/* The same for lines that lost points, whose corners are sharper. */
 static const double SIMPLIFIED_MORE = 0.5;
 
-/* The oracle's own error of a pixel that an edge crosses, 255ths: of its 256 samples 16 may lie on a line beside the
- * edge, and half of them be wrong. tests/unit/test_pixel_bounds.c measures 7.7 at most over all directions, on
- * diagonals. At a join or an end three edges may cross one pixel. On many lines the errors cancel; on a few pixels, or
- * on a few lines in one direction, however long, all of them are the same one, and no bound on a mean tells it from a
- * fault: for that a pixel has to be farther off. */
+/* The oracle's own error for a pixel that an edge crosses, in 255ths: 16 of its 256 samples may be on a line next to
+ * the edge, and half of them wrong. tests/unit/test_pixel_bounds.c measures at most 7.7 over all directions, on
+ * diagonals. At a join or an end, three edges may cross one pixel. With many lines the errors cancel. But on a few
+ * pixels, or on a few lines in one direction, however long, all errors are the same, and a bound on the mean cannot
+ * distinguish them from a fault. So one pixel must also have a larger error. */
 static const double ORACLE_MOST = 8.0, ORACLE_EDGES = 3.0;
 
 static void add(camber_pixel_bounds *sum, const camber_pixel_bounds *more, double times) {

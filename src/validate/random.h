@@ -6,10 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* 53 bits. seed: not 0; changed by every call. */
+/* Returns 53 random bits. seed: not 0; each call changes it. */
 uint64_t camber_random_bits(uint64_t *seed);
 double camber_random_between(uint64_t *seed, double least, double most);
-/* 0 to bound - 1. */
+/* Returns a number from 0 to bound - 1. */
 size_t camber_random_below(uint64_t *seed, size_t bound);
 
 #endif

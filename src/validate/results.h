@@ -1,5 +1,5 @@
-/* Results of checks: a list that grows as checks end, in named groups. Whoever prints them is told of each check and of
- * each group by a callback. */
+/* Results of checks: a list in named groups, which grows as checks end. Callbacks report each check and each group to
+ * the code that prints them. */
 #ifndef CAMBER_VALIDATE_RESULTS_H
 #define CAMBER_VALIDATE_RESULTS_H
 
@@ -18,25 +18,25 @@ typedef enum camber_result {
     CAMBER_RESULT_SKIPPED,
 } camber_result;
 
-/* Where a check failed first. */
+/* The first failure of a check. */
 typedef struct camber_finding {
     const char *stage;      /* classify, scan, emit, ... */
     bool has_point;         /* polyline and point are known */
     size_t polyline, point; /* as in camber_point_stages */
     double x, y;            /* px */
-    const char *field;      /* of what was compared */
-    double got, expected;   /* its values */
-    char what[256];         /* all of it in one line */
-    char *picture;          /* the file that shows it; the results free it. NULL: none */
+    const char *field;      /* name of the value that was compared */
+    double got, expected;   /* both values */
+    char what[256];         /* a description in one line */
+    char *picture;          /* path of an image that shows it; freed by the results. NULL: none */
 } camber_finding;
 
-/* Bounds that pixels are held to, over those that an edge crosses. */
+/* Bounds for the errors of pixels, over the pixels that an edge crosses. */
 typedef struct camber_pixel_bounds {
     double mean;             /* in 255ths */
-    double past_16, past_64; /* share of pixels that may differ by more */
+    double past_16, past_64; /* share of pixels that may differ by more than 16, by more than 64 */
 } camber_pixel_bounds;
 
-/* How far pixels are from the truth. */
+/* Measured errors of pixels. */
 typedef struct camber_pixel_error {
     camber_pixel_bounds of;
     size_t windows, pixels;
@@ -45,11 +45,11 @@ typedef struct camber_pixel_error {
 
 typedef struct camber_check {
     char name[512];
-    const char *device, *backend; /* live as long as the results. backend NULL: none took part */
+    const char *device, *backend; /* must live as long as the results. backend NULL: none was involved */
     camber_result result;
-    char reason[512]; /* of a skip */
+    char reason[512]; /* why it was skipped */
     double start_ms, ms;
-    bool has_error; /* pixels were measured, and held against most */
+    bool has_error; /* pixels were measured and compared with most */
     camber_pixel_error error;
     camber_pixel_bounds most;
     camber_finding finding;
@@ -57,43 +57,43 @@ typedef struct camber_check {
 
 typedef struct camber_results camber_results;
 
-/* Whom the results tell. Valid when zeroed: nobody. */
+/* Receives results. Valid when zeroed. */
 typedef struct camber_results_listener {
-    /* A check has ended; number counts from 1. */
+    /* Called when a check has ended; number counts from 1. */
     void (*check)(void *user, const camber_check *check, size_t number);
-    /* A group has ended that has checks: those from group_first on. */
+    /* Called when a group with checks has ended; they begin at group_first. */
     void (*group)(void *user, const camber_results *results);
     void *user;
 } camber_results_listener;
 
 struct camber_results {
     camber_results_listener listener;
-    const char *only;   /* part of the names of the groups that are wanted. NULL: all are */
-    size_t wanted;      /* groups so far */
-    char group[256];    /* name of the group under way; "": none is open */
-    size_t group_first; /* its first check */
-    camber_check *list; /* count */
+    const char *only;   /* only groups whose name contains this text are run; NULL: all */
+    size_t wanted;      /* number of groups so far that are run */
+    char group[256];    /* name of the current group; "": none is open */
+    size_t group_first; /* index of its first check */
+    camber_check *list; /* count of them */
     size_t count, capacity, failed, skipped;
-    bool full; /* memory ran out: the list is not whole */
+    bool full; /* memory is exhausted, so the list is incomplete */
 };
 
-/* A value as people read it: whole numbers to the last digit, floats so that they can be told apart. */
+/* A value as text: whole numbers exactly, floats with enough digits to distinguish them. */
 typedef struct camber_value_text {
     char text[32];
 } camber_value_text;
 
 camber_value_text camber_value_print(double value);
 
-/* Ends the group before it: what is added from now on belongs to this one. Whether it is wanted. */
+/* Ends the current group and starts a new one, to which the next checks belong. Returns whether it is to be run. */
 bool camber_results_group(camber_results *results, const char *format, ...) CAMBER_RESULTS_FORMAT(2, 3);
 /* Ends the last group. */
 void camber_results_end(camber_results *results);
-/* Starts a check on a device and a back end, NULL where there is none: its clock and its name. */
+/* Starts a check's clock and sets its name. device and backend: NULL if none is involved. */
 camber_check camber_check_start(const char *device, const char *backend, const char *format, ...)
     CAMBER_RESULTS_FORMAT(3, 4);
-/* Adds what came of a check. Takes over the finding's picture. */
+/* Adds the result of a check. Takes ownership of the finding's picture. */
 void camber_results_add(camber_results *results, const camber_check *check);
-/* Adds a check that cannot be made here. */
+/* Adds a check that cannot be run here. */
 void camber_results_skip(camber_results *results, camber_check check, const char *reason);
 void camber_results_close(camber_results *results);
 

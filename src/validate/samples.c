@@ -1,5 +1,5 @@
-/* Windows of SIDE_PX are spread over the lines, and their truth is made once; each picture of the subject is then held
- * against it, window by window. */
+/* Chooses windows of SIDE_PX that are spread over the lines, and computes their truth once. Each picture of the subject
+ * is then compared with it, window by window. */
 #include "validate/samples.h"
 
 #include <math.h>
@@ -10,14 +10,16 @@ enum { SIDE_PX = 48 };
 
 /* ---- Choosing ---- */
 
-/* Points in an order that is spread over all of them from the first few on: multiples of the golden ratio. */
+/* Returns the i-th index in an order in which any first few are spread over all of them: multiples of the golden
+ * ratio. */
 static size_t spread(size_t i, size_t count) {
     const double turns = (double)i * 0.6180339887498949;
     const size_t at = (size_t)((turns - (double)(size_t)turns) * (double)count);
     return at < count ? at : count - 1;
 }
 
-/* The cell of a grid of SIDE_PX that a point lies in, moved into the picture. false: the point lies outside. */
+/* Finds the cell of a grid of SIDE_PX that contains a point, shifted into the picture. Returns false if the point is
+ * outside the picture. */
 static bool window_about(const float *point, const camber_subject *s, camber_window *window) {
     if (!(point[0] >= 0 && point[1] >= 0 && point[0] < (float)s->width && point[1] < (float)s->height))
         return false;
@@ -99,7 +101,7 @@ void camber_samples_free(camber_samples *samples) {
 
 /* ---- Comparing ---- */
 
-/* Without the pixels that both cover whole, so that a wide stroke's inside does not count as agreement. */
+/* Leaves out pixels that are fully covered in both, so that the inside of a wide stroke does not count as agreement. */
 static camber_difference compare_edges(float *truth, uint8_t *drawn, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {

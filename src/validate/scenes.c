@@ -1,5 +1,5 @@
-/* Building first, then the scenes of each user. Points are floats in the order in which they were made, from seeds that
- * stand here: a change of either changes golden pictures, bounds and figures. */
+/* Functions for building scenes come first, then the scenes of each user. Points are floats in the order in which they
+ * are made, from seeds in this file. Changing either changes golden pictures, bounds and published figures. */
 #define _XOPEN_SOURCE 700 /* M_PI */
 
 #include "validate/scenes.h"
@@ -97,15 +97,15 @@ static void short_segments(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
-/* The middle of a cell of a grid of columns x columns over the picture. */
+/* Finds the middle of a cell in a grid of columns x columns over the picture. */
 static void cell(size_t number, size_t columns, double *x, double *y) {
     const double step = (double)CAMBER_SCENE_SIDE_PX / (double)columns;
     *x = ((double)(number % columns) + 0.5) * step;
     *y = ((double)(number / columns % columns) + 0.5) * step;
 }
 
-/* Hairpins: every turn from 0 to 180 degrees by a quarter of one, to the left and to the right, with arms of 1 to
- * 60 px. */
+/* Hairpins: every turn from 0 to 180 degrees in quarter degrees, to the left and to the right, with arms of 1 to 60
+ * px. */
 static void turns(camber_made_scene *scene, uint64_t *seed) {
     (void)seed;
     for (int i = -720; i <= 720; i++) {
@@ -127,7 +127,7 @@ static void reversals(camber_made_scene *scene, uint64_t *seed) {
             camber_made_scene_point(scene, x + (k % 2 ? dx : 0), y + (k % 2 ? dy : 0));
         camber_made_scene_point(scene, x + dx / 2, y + dy / 2);
         end_line(scene);
-        for (size_t k = 0; k < 8; k++) /* U-turns, a step to the side at each end */
+        for (size_t k = 0; k < 8; k++) /* U-turns, with a step to the side at each end */
             camber_made_scene_point(scene, k % 4 == 1 || k % 4 == 2 ? 80 : 0,
                                     y + (double)(k / 2) * 0.01 * (double)(i + 1));
         end_line(scene);
@@ -180,9 +180,9 @@ static void invalid_points(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
-/* Random numbers are drawn one a statement: compilers do not agree on the order in which arguments are evaluated. */
+/* Each statement draws only one random number, because compilers evaluate arguments in different orders. */
 
-/* Steps of coordinates far from 0 and close to it, where floats are coarse and where products underflow. */
+/* Steps between coordinates far from 0, where floats are coarse, and close to 0, where products underflow. */
 static void extreme_coordinates(camber_made_scene *scene, uint64_t *seed) {
     const double scales[] = {1e-30, 1e-19, 1e-10, 1e-3, 1e4, 1e6, 1e8, 9.9e8};
     for (size_t i = 0; i < 160; i++) {
@@ -202,7 +202,7 @@ static void grid(camber_made_scene *scene, uint64_t *seed) {
         cell(i, 7, &x, &y);
         x = floor(x);
         y = floor(y);
-        for (size_t k = 0; k < 30; k++) /* stairs: right angles, and straight on at every third */
+        for (size_t k = 0; k < 30; k++) /* stairs: right angles, with every third point straight on */
             camber_made_scene_point(scene, x + (double)((k + 1) / 2 * 8) - 60,
                                     y + (double)(k / 2 * 8 + (k % 3 ? 0 : i)) - 60);
         end_line(scene);
@@ -212,7 +212,8 @@ static void grid(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
-/* Pairs of lines of one width, edge to edge or one on the other, at every angle: what united layers are for. */
+/* Pairs of lines with the same width, edge to edge or one on the other, at every angle. United layers are made for
+ * these. */
 static void side_by_side(camber_made_scene *scene, uint64_t *seed) {
     for (size_t i = 0; i < 49; i++) {
         const double angle = camber_random_between(seed, 0, M_PI), dx = 50 * cos(angle), dy = 50 * sin(angle);
@@ -230,7 +231,7 @@ static void side_by_side(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
-/* Rings whose joins all have room, and the seam with them: no pixel is drawn twice. */
+/* Rings whose joins, including the seam, all have room: no pixel is drawn twice. */
 static void smooth_rings(camber_made_scene *scene, uint64_t *seed) {
     for (size_t i = 0; i < 121; i++) {
         const size_t sides = 12 + i % 24;
@@ -251,7 +252,7 @@ static void smooth_rings(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
-/* Longer than a work-group's and a scan's block, so that their borders lie within one line. */
+/* Longer than a block of a work-group and of scan, so that the borders of blocks are inside one line. */
 static void one_long_line(camber_made_scene *scene, uint64_t *seed) {
     camber_made_scene_walk(scene, seed, 20011, (const double[]){0.2, 9}, 1.2);
     end_line(scene);
@@ -336,7 +337,7 @@ void camber_scene_add_turns(camber_made_scene *s, uint64_t *seed) {
         for (int i = 0; i < 100; i++)
             camber_made_scene_point(s, 0.5 * i, i % 2 ? 0.7 : 0);
         camber_made_scene_end(s, row);
-        for (int i = 0; i < 50; i++) /* straight */
+        for (int i = 0; i < 50; i++) /* straight lines */
             camber_made_scene_point(s, 3 * i, 3 * i);
         camber_made_scene_end(s, row);
     }
@@ -358,7 +359,7 @@ void camber_scene_add_degenerate(camber_made_scene *s, uint64_t *seed) {
 }
 
 void camber_scene_add_sizes(camber_made_scene *s, uint64_t *seed) {
-    for (int exponent = -45; exponent <= 9; exponent++) { /* floats from the least to the farthest that is kept */
+    for (int exponent = -45; exponent <= 9; exponent++) { /* floats from the smallest to the largest that is kept */
         const double size = pow(10, exponent);
         for (int repeat = 0; repeat < 4; repeat++) {
             for (int k = 0; k < 12; k++) {
@@ -382,7 +383,7 @@ bool camber_kernel_scene_make(size_t number, camber_made_scene *scene) {
 
 /* ---- A small scene ---- */
 
-/* Lines that end before, on and behind the borders of blocks of 64, 128 and 256 points, with cut, tight and split joins
+/* Lines that end before, at and after the borders of blocks of 64, 128 and 256 points, with cut, tight and split joins
  * there, and dots on both sides. */
 static void add_small_blocks(camber_made_scene *s) {
     static const int counts[] = {63, 1, 1, 63, 64, 65, 62, 1, 192, 257, 255, 2, 126, 129};
@@ -393,7 +394,7 @@ static void add_small_blocks(camber_made_scene *s) {
     }
 }
 
-/* Rings, stars whose turns are tight or past 127 degrees, dots, reversals, repeated points. */
+/* Rings, stars with turns that are tight or exceed 127 degrees, dots, reversals, repeated points. */
 static void add_small_shapes(camber_made_scene *s) {
     for (int ring = 0; ring < 12; ring++) {
         const int corners = 3 + ring % 7;
@@ -425,7 +426,7 @@ bool camber_small_scene_make(camber_made_scene *scene) {
 
 enum { ROAD_POINTS_MAX = 40 };
 
-/* xorshift64 (Marsaglia 2003): 0 to 1. Published figures are of these walks, which another generator would change. */
+/* xorshift64 (Marsaglia 2003), from 0 to 1. Published figures use these walks, which another generator would change. */
 static double uniform(uint64_t *state) {
     *state ^= *state << 13;
     *state ^= *state >> 7;

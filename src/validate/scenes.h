@@ -1,73 +1,73 @@
 /* Made-up scenes: polylines for tests, for the checks of validate and for the benchmark. They are the same on every
- * machine, so that pictures, figures and bounds can be told about them. */
+ * machine, so that pictures, figures and bounds can be compared. */
 #ifndef CAMBER_VALIDATE_SCENES_H
 #define CAMBER_VALIDATE_SCENES_H
 
 #include "camber_files.h"
 
-/* Valid when zeroed; freed with camber_made_scene_free. */
+/* Valid when zeroed. Free it with camber_made_scene_free. */
 typedef struct camber_made_scene {
-    const char *name; /* of a checked scene */
+    const char *name; /* if it is a checked scene */
     float *points;    /* pairs */
     size_t point_count, point_capacity;
-    uint32_t *offsets; /* polyline_count + 1 */
+    uint32_t *offsets; /* polyline_count + 1 of them */
     uint32_t *rows;
     size_t polyline_count, polyline_capacity;
-    bool failed; /* memory ran out: what is added since is lost */
+    bool failed; /* memory is exhausted, and points have been lost */
 } camber_made_scene;
 
 /* ---- Building ---- */
 
 void camber_made_scene_point(camber_made_scene *scene, double x, double y);
-/* The points since the last polyline's end become one. */
+/* Makes a polyline of the points since the end of the last one. */
 void camber_made_scene_end(camber_made_scene *scene, size_t row);
-/* Adds count points in steps of least to most px from anywhere in a square of 1000 px, each turning by up to turn
- * radians. */
+/* Adds count points, starting anywhere in a square of 1000 px. Each step has a random length from step[0] to step[1]
+ * px, and turns by at most turn radians. */
 void camber_made_scene_walk(camber_made_scene *scene, uint64_t *seed, size_t count, const double step[2], double turn);
-/* Describes all of it; rings are closed. */
+/* Describes the whole scene as polylines; rings are closed. */
 camber_polylines_desc camber_made_scene_polylines(const camber_made_scene *scene);
 void camber_made_scene_free(camber_made_scene *scene);
 
 /* ---- Checked scenes: what `camber validate` draws without an input ---- */
 
 #define CAMBER_SCENE_ROWS 5
-#define CAMBER_SCENE_WIDTH_ROW 2 /* that is drawn CAMBER_SCENE_WIDTH_PX wide */
+#define CAMBER_SCENE_WIDTH_ROW 2 /* the row that is drawn CAMBER_SCENE_WIDTH_PX wide */
 #define CAMBER_SCENE_WIDTH_PX 8
-#define CAMBER_SCENE_DRAWN_ONCE "smooth rings" /* of which no line draws a pixel twice */
-#define CAMBER_SCENE_SIDE_PX 1024              /* of the picture that most scenes are laid out for */
+#define CAMBER_SCENE_DRAWN_ONCE "smooth rings" /* the scene in which no line draws a pixel twice */
+#define CAMBER_SCENE_SIDE_PX 1024              /* size of the picture for which most scenes are made */
 
 size_t camber_checked_scene_count(void);
-/* Makes scene number below camber_checked_scene_count. false: out of memory. */
+/* Makes scene number `number`, less than camber_checked_scene_count. Returns false if memory is exhausted. */
 bool camber_checked_scene_make(size_t number, camber_made_scene *scene);
 
-/* ---- Kernel scenes: what tests hold against the CPU twin ---- */
+/* ---- Kernel scenes, which tests compare with the CPU twin ---- */
 
 #define CAMBER_KERNEL_SCENES 6
 #define CAMBER_KERNEL_ROWS 9
 
-/* Makes scene number below CAMBER_KERNEL_SCENES. false: out of memory. */
+/* Makes scene number `number`, less than CAMBER_KERNEL_SCENES. Returns false if memory is exhausted. */
 bool camber_kernel_scene_make(size_t number, camber_made_scene *scene);
 
-/* The same one by one, added to what is there. */
+/* Builders of single scenes, which are added to the existing points. */
 typedef void camber_scene_builder(camber_made_scene *scene, uint64_t *seed);
 camber_scene_builder camber_scene_add_walks;
-/* Ends of polylines on, before and behind the borders of blocks, and one line over many blocks. */
+/* Polylines that end at, before and after the borders of blocks, and one line over many blocks. */
 camber_scene_builder camber_scene_add_blocks;
 camber_scene_builder camber_scene_add_rings;
 /* Turns of every whole degree, with long and short neighbours; reversals; zigzags shorter than their width. */
 camber_scene_builder camber_scene_add_turns;
 /* Dots, empty polylines, repeated and invalid points, rings of two segments. */
 camber_scene_builder camber_scene_add_degenerate;
-/* Coordinates from the least float to the farthest that is kept. */
+/* Coordinates from the smallest float to the largest that is kept. */
 camber_scene_builder camber_scene_add_sizes;
 
-/* A scene of some 2,000 points for a simulator: polylines that end before, on and behind the borders of blocks of 64,
- * 128 and 256 points, rings, stars, dots, reversals. false: out of memory. */
+/* Makes a scene of about 2,000 points for a simulator: polylines that end before, at and after the borders of blocks of
+ * 64, 128 and 256 points, rings, stars, dots, reversals. Returns false if memory is exhausted. */
 bool camber_small_scene_make(camber_made_scene *scene);
 
 /* ---- Benchmark ---- */
 
-/* Random walks that turn like roads, in a square of side_px. false: out of memory. */
+/* Makes random walks that turn like roads, in a square of side_px. Returns false if memory is exhausted. */
 bool camber_road_walks_make(size_t polyline_count, double side_px, double step_px, camber_made_scene *scene);
 
 #endif

@@ -4,11 +4,12 @@
 
 #include <stddef.h>
 
-/* Ascending, in place. */
+/* Sorts in ascending order, in place. */
 void camber_statistics_sort(double *values, size_t count);
-/* Quantile of sorted values: share 0 is the least, 1 the largest; linear between two values. count: 1 or more. */
+/* Returns a quantile of sorted values: share 0 is the smallest, 1 the largest; interpolated linearly. count: 1 or
+ * more. */
 double camber_statistics_quantile(const double *sorted, size_t count, double share);
-/* Sorts values and gives their median: of an even number the mean of the middle two. count: 1 or more. */
+/* Sorts values and returns their median; the mean of the middle two if count is even. count: 1 or more. */
 double camber_statistics_median(double *values, size_t count);
 
 #endif

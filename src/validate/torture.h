@@ -1,5 +1,5 @@
-/* The torture set: polylines whose strokes run over themselves in every way that joins can go wrong by. Each figure is
- * one polyline in a cell of its own on one picture. */
+/* The torture set: polylines whose strokes overlap themselves in every way in which joins can fail. Each figure is one
+ * polyline in its own cell of a picture. */
 #ifndef CAMBER_VALIDATE_TORTURE_H
 #define CAMBER_VALIDATE_TORTURE_H
 
@@ -9,22 +9,22 @@
 typedef struct camber_torture_figure {
     char name[48];
     double width_px;
-    camber_window cell; /* the stroke's part of the picture, with every join and cap */
+    camber_window cell; /* the part of the picture that contains the stroke with every join and cap */
 } camber_torture_figure;
 
 typedef struct camber_torture_set {
-    camber_made_scene lines; /* polyline i is figure i, and i its row; failed: memory ran out */
+    camber_made_scene lines; /* polyline i is figure i with row i; failed: memory is exhausted */
     camber_torture_figure *figures;
     size_t count;
-    int width, height; /* of the picture, px */
-    float *truths[9];  /* the coverage of the whole picture by join and cap, made when first asked for */
+    int width, height; /* size of the picture, px */
+    float *truths[9];  /* [join and cap]: the coverage of the whole picture, computed when first requested */
 } camber_torture_set;
 
 camber_torture_set camber_torture_make(void);
 void camber_torture_free(camber_torture_set *set);
 
-/* An empty set, and one more figure for it: the points of lines since the last figure. Cells fill the picture in rows.
- */
+/* Create an empty set, and end a figure, which consists of the points of lines since the last one. Cells fill the
+ * picture in rows. */
 camber_torture_set camber_torture_begin(int width);
 void camber_torture_end_figure(camber_torture_set *set, const char *name, double width_px);
 

@@ -4,12 +4,12 @@
 
 #include <math.h>
 
-/* A line's points one after the other. */
+/* Visits a line's points one after the other. */
 typedef struct walk {
     float x, y;                /* the last point */
-    double dx, dy;             /* the step that led there; doubles hold the difference of two floats */
+    double dx, dy;             /* the step to the last point; doubles hold the exact difference of two floats */
     double first_dx, first_dy; /* the first step */
-    size_t points;             /* kept, since the last that is no number */
+    size_t points;             /* valid points since the last invalid one */
     size_t counts[CAMBER_TURN_CLASSES];
 } walk;
 
@@ -19,7 +19,7 @@ static void put_join(walk *w, double dx, double dy) {
     w->counts[class < CAMBER_TURN_CLASSES ? class : CAMBER_TURN_CLASSES - 1]++;
 }
 
-/* Floats, as in camber_polylines_create: what is repeated there is repeated here. */
+/* Compares floats, so that the same points are repeated as in camber_polylines_create. */
 static bool is_repeated(const walk *w, const float *point) {
     const float dx = point[0] - w->x, dy = point[1] - w->y;
     return w->points > 0 && dx * dx + dy * dy <= 1e-18f;

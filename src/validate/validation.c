@@ -1,9 +1,11 @@
+/* Runs the checks: input is a desc and, optionally, a user's lines; output is the results, in groups. The made-up
+ * scenes and the input are subjects, which the functions of check_*.c check one after the other. */
 #include "validate/validation.h"
 
 #include "validate/checks.h"
 #include "validate/scenes.h"
 
-#define NETWORKS "%s: networks under five cameras" /* a group's name */
+#define NETWORKS "%s: networks under five cameras" /* name of a group */
 
 static camber_status check_lines(camber_validation *v, const camber_subject *s) {
     camber_results *results = &v->results;
@@ -17,13 +19,14 @@ static camber_status check_lines(camber_validation *v, const camber_subject *s) 
     return status;
 }
 
-/* All widths at which a kernel or a shader does something else; pictures leave out what would cover all of them. */
+/* All widths for which a kernel or a shader has a special case. Pictures use others for widths that would cover
+ * everything. */
 static const camber_stroke scene_strokes[CAMBER_SCENE_ROWS] = {{.width_px = 0.3f, .miter_limit = 1},
                                                                {.width_px = 2, .miter_limit = 0},
                                                                {.width_px = 9, .miter_limit = 10},
                                                                {.width_px = 64, .miter_limit = 4, .round_limit = 1.3f},
                                                                {.width_px = 1, .miter_limit = 2}};
-/* The third is CAMBER_SCENE_WIDTH_ROW. */
+/* The third row is CAMBER_SCENE_WIDTH_ROW. */
 static const camber_stroke scene_drawn_strokes[CAMBER_SCENE_ROWS] = {
     {.width_px = 0.4f, .miter_limit = 1},
     {.width_px = 3, .miter_limit = 0},
@@ -80,13 +83,13 @@ camber_status camber_validation_run(camber_validation *v, const camber_validatio
     *v = (camber_validation){.desc = desc, .results = {.listener = desc->listener, .only = desc->only}};
     camber_results_group(&v->results, "devices and back ends");
     camber_status status = camber_checked_devices_open(v);
-    v->results.wanted = 0; /* devices are opened in any case */
+    v->results.wanted = 0; /* this group does not count, because devices are opened in any case */
     for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
         if (desc->host.progress)
             desc->host.progress(desc->host.user, (double)i / (double)count);
         status = input ? check_input(v, input) : check_scene(v, i);
     }
-    if (status == CAMBER_OK && !input && camber_results_group(&v->results, "lines beside others"))
+    if (status == CAMBER_OK && !input && camber_results_group(&v->results, "offset lines"))
         status = camber_check_offsets(v);
     if (status == CAMBER_OK && !input)
         status = camber_check_along(v);

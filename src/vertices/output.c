@@ -90,10 +90,10 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
 }
 
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status) {
-    camber_soft_log kept;
+    camber_saved_log kept;
     if (status == CAMBER_OK)
         return mesh->ops->finish(mesh->ops_user, part->buffers, camber_buffer_count(mesh), written);
-    camber_log_soften(mesh->device->context, &kept);
+    camber_log_demote_errors(mesh->device->context, &kept);
     (void)mesh->ops->finish(mesh->ops_user, part->buffers, camber_buffer_count(mesh), written);
     camber_log_restore(mesh->device->context, &kept);
     return status;

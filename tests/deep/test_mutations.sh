@@ -232,7 +232,7 @@ mutant strip kernels/offset_clip.cl "what is left of a neighbour" 'camber_offset
 
 # ---- Offsets, which kernels and twin share: where points lie tells ----
 
-group='lines beside'
+group='offset lines'
 mutant strip kernels/offset.h "to the other side" 'segment->ux * along - segment->uy * offset' 'segment->ux * along + segment->uy * offset'
 mutant strip kernels/offset.h "bends that hide nothing" 'return room;' 'return 0.0f;'
 mutant strip kernels/offset_clip.h "lines that hide nothing" 'if (lo >= segment->length || hi <= 0.0f)' 'if (lo < segment->length)'

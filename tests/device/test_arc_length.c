@@ -2,7 +2,7 @@
  * twin to the last bit, over borders of chunks and parts. */
 #include "test_fixture.h"
 
-#include "residency/mesh.h"
+#include "residency/memory.h"
 
 static const camber_method METHODS[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
 

@@ -3,6 +3,7 @@
 #include "pictures.h"
 
 #include "gpu/opencl/opencl.h"
+#include "residency/memory.h"
 #include "residency/parts.h"
 
 /* ---- Held by OpenCL ---- */

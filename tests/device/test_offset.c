@@ -2,6 +2,8 @@
  * against the twin to the last bit, over borders of chunks and parts, and cameras against each other. */
 #include "test_fixture.h"
 
+#include "residency/memory.h"
+
 #include <float.h>
 
 enum { POINTS_MAX = 600, SAMPLES_MAX = 1 << 18 };

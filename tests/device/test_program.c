@@ -20,7 +20,7 @@ static int open_without_platform(void) {
     const camber_device_info *info = (const camber_device_info *)(const void *)&h;
     if (camber_context_create(&desc, &context) != CAMBER_OK)
         return CHILD_STATUS;
-    if (camber_device_list(context, 0, &info) != CAMBER_OK || info)
+    if (camber_device_list(context, NULL, 0, &info) != CAMBER_OK || info)
         return CHILD_LISTED;
     camber_device *const untouched = (camber_device *)(void *)&h;
     camber_device *device = untouched;
@@ -62,7 +62,7 @@ static void test_device_list(void **state) {
     const size_t count = list_devices(context, infos, 64);
     assert_true(count >= 1);
     const camber_device_info *past = infos;
-    assert_int_equal(camber_device_list(context, count, &past), CAMBER_OK);
+    assert_int_equal(camber_device_list(context, NULL, count, &past), CAMBER_OK);
     assert_null(past);
     for (size_t i = 0; i < count; i++) {
         assert_true(infos[i].name[0] && infos[i].platform[0] && infos[i].driver[0]);
@@ -131,9 +131,13 @@ static void test_device_number(void **state) {
         assert_string_equal(info.name, infos[i].name);
         assert_string_equal(info.platform, infos[i].platform);
         camber_device_destroy(device);
-        assert_true(camber_device_info_matches(&infos[i], infos[i].name));
-        assert_true(camber_device_info_matches(&infos[i], NULL));
-        assert_false(camber_device_info_matches(&infos[i], "no such device"));
+        const camber_device_info *found = NULL;
+        assert_int_equal(camber_device_list(context, infos[i].name, 0, &found), CAMBER_OK);
+        assert_string_equal(found->name, infos[i].name);
+        assert_int_equal(camber_device_list(context, infos[i].name, count, &found), CAMBER_OK);
+        assert_null(found);
+        assert_int_equal(camber_device_list(context, "no such device", 0, &found), CAMBER_OK);
+        assert_null(found);
         assert_int_equal(camber_device_create(context, &named, &device), CAMBER_OK);
         assert_string_equal(camber_device_get_info(device).name, infos[i].name);
         camber_device_destroy(device);

@@ -80,8 +80,7 @@ static uint8_t *compare_stages(subject a, const subject *compared, const camber_
     camber_raster_scene there = *drawn;
     memcpy(inputs, drawn->inputs, drawn->input_count * sizeof *inputs);
     for (size_t i = 0; i < drawn->input_count; i++)
-        if (inputs[i].mesh)
-            inputs[i].mesh = compared->mesh;
+        inputs[i].mesh = compared->mesh;
     there.inputs = inputs;
     camber_raster_stages ours = raster_draw(a.on, drawn, area), theirs = raster_draw(compared->on, &there, area);
     raster_compare(&ours, &theirs);
@@ -97,31 +96,36 @@ static void compare_scene(const drawing *d, subject a, const subject *compared, 
     const bool linear = which % 2;
     const camber_raster_area area = {32 * (uint32_t)method, 64, 500, 333};
     camber_mesh *mesh = a.mesh;
-    static const camber_brush_ext nothing[2 * CAMBER_KERNEL_ROWS + 1];
-    const uint32_t fill = 2 * CAMBER_KERNEL_ROWS;
-    float rows[2 * CAMBER_KERNEL_ROWS + 1][CAMBER_RASTER_ROW_WORDS] = {{0}};
-    camber_brush brushes[2 * CAMBER_KERNEL_ROWS + 1] = {{0}};
+    enum { FILL = CAMBER_KERNEL_ROWS + 1, BRUSHES = 2 * CAMBER_KERNEL_ROWS + 2 }; /* brush 0 draws nothing */
+    static const camber_brush_ext nothing[BRUSHES];
+    float rows[2 * CAMBER_KERNEL_ROWS][CAMBER_RASTER_ROW_WORDS] = {{0}};
+    camber_brush brushes[BRUSHES] = {{.fill = FILL}};
     for (uint32_t i = 0; i < 2 * CAMBER_KERNEL_ROWS; i++) {
         const bool over = i >= CAMBER_KERNEL_ROWS;
         const float width = d->strokes[i % CAMBER_KERNEL_ROWS].width_px;
         rows[i][0] = width > 0.0f ? (over ? 0.3f : 0.5f) * width : -1.0f;
         rows[i][1] = over ? 1.5f : 0.0f;
-        memcpy(rows[i] + 3, &i, sizeof i);
+        const uint32_t number = over ? i + 2 : i + 1;
+        memcpy(rows[i] + 3, &number, sizeof number);
         const camber_color c = color_of(i, over ? 1.0f : 0.5f);
-        brushes[i] =
-            (camber_brush){.r = c.r, .g = c.g, .b = c.b, .a = c.a, .layer_opacity = 0.7f, .group_opacity = 0.6f};
-        brushes[i].mode = i % 3 == 0 && !over ? CAMBER_BRUSH_UNION : CAMBER_BRUSH_OVER;
-        brushes[i].group = over ? 1 : 0;
-        brushes[i].layer = i % 4 == 1 ? i : 0;
+        camber_brush *brush = brushes + number;
+        *brush = (camber_brush){.r = c.r, .g = c.g, .b = c.b, .a = c.a, .layer_opacity = 0.7f, .group_opacity = 0.6f};
+        brush->mode = i % 3 == 0 && !over ? CAMBER_BRUSH_UNION : CAMBER_BRUSH_OVER;
+        brush->group = over ? 1 : 0;
+        brush->layer = i % 4 == 1 ? i : 0;
+        brush->fill = over ? FILL : 0;
     }
-    rows[fill][0] = CAMBER_FILL_PX;
-    memcpy(rows[fill] + 3, &fill, sizeof fill);
-    brushes[fill] =
-        (camber_brush){.r = 0.1f, .g = 0.9f, .b = 0.4f, .a = linear ? 1 : 0.3f, .group = 1, .group_opacity = 0.6f};
+    brushes[FILL] = (camber_brush){.r = 0.1f,
+                                   .g = 0.9f,
+                                   .b = 0.4f,
+                                   .a = linear ? 1 : 0.3f,
+                                   .mode = CAMBER_BRUSH_AREA,
+                                   .group = 1,
+                                   .group_opacity = 0.6f};
     const size_t count = mesh->polyline_count;
-    const camber_raster_input runs[] = {
-        {mesh, 0, count, 0}, {NULL, 0, 0, fill}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
-    camber_raster_scene drawn = {rows[0], fill + 1, brushes, fill + 1, runs, 3, {0.2f, 0.3f, 0.4f, 1}, linear};
+    const camber_raster_input runs[] = {{mesh, 0, count, 0}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
+    camber_raster_scene drawn = {rows[0], 2 * CAMBER_KERNEL_ROWS, brushes, BRUSHES, runs,
+                                 2,       {0.2f, 0.3f, 0.4f, 1},  linear};
     uint8_t *plain = compare_stages(a, compared, &drawn, area);
     drawn.brush_ext = nothing;
     camber_raster_stages stages = raster_draw(a.on, &drawn, area);

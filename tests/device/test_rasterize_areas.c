@@ -123,9 +123,10 @@ static void close_other(fixture *other) {
 
 /* ---- Device and twin ---- */
 
-/* Areas by both rules, lines over some of them, and areas again; all rows of a mesh, in a group and straight. */
+/* Areas by both rules, lines over some of them, a fill of the picture, and areas again; all rows of a mesh, in a group
+ * and straight. */
 static void compare_with_twin(const fixture *f) {
-    static const camber_brush_ext nothing[4];
+    static const camber_brush_ext nothing[5];
     static const double pitches[] = {0, 1, 30, 60, 85};
     for (uint64_t seed = 1; seed <= 5; seed++) {
         rings r = made_rings(seed, seed >= 4 ? 3000 : 300, seed >= 4 ? 60 : 900, 2);
@@ -134,18 +135,19 @@ static void compare_with_twin(const fixture *f) {
         camber_mesh *mesh = mesh_of(f, drawer(f), &r, 2);
         float rows[6][CAMBER_RASTER_ROW_WORDS] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, 0, 0, 0},
                                                   {1, 2, 3, 0}, {0, 4, 5, 0},  {0, 0.5f, 0, 0}};
-        const uint32_t of_rows[6] = {1, 0, 0, 2, 3, 3};
-        const camber_brush brushes[4] = {
-            {.a = 0},
+        const uint32_t of_rows[6] = {1, 0, 0, 2, 4, 4};
+        const camber_brush brushes[5] = {
+            {.fill = 3},
             {.r = 1, .a = 0.5f, .mode = CAMBER_BRUSH_AREA_EVENODD},
             {.g = 1, .a = 1, .mode = CAMBER_BRUSH_OVER},
-            {.b = 1, .r = 0.5f, .a = 0.8f, .mode = CAMBER_BRUSH_AREA, .group = 1, .group_opacity = 0.7f}};
+            {.g = 0.5f, .a = 0.2f, .mode = CAMBER_BRUSH_AREA},
+            {.b = 1, .r = 0.5f, .a = 0.8f, .mode = CAMBER_BRUSH_AREA, .group = 1, .fill = 3, .group_opacity = 0.7f}};
         for (int i = 0; i < 6; i++)
             memcpy(rows[i] + 3, of_rows + i, sizeof *of_rows);
         const size_t end = mesh->polyline_count;
         const camber_raster_input inputs[] = {
             {mesh, 0, end, 0, true}, {mesh, 0, end / 2, 2, false}, {mesh, end / 3, end, 4, true}};
-        camber_raster_scene drawn = {rows[0], 6, brushes, 4, inputs, 3, {0.2f, 0.3f, 0.4f, 1}, false};
+        camber_raster_scene drawn = {rows[0], 6, brushes, 5, inputs, 3, {0.2f, 0.3f, 0.4f, 1}, false};
         const camber_raster_area area = {32 * (uint32_t)seed, 64, 300, 333};
         uint8_t *plain = raster_draw_twice(f, &drawn, area);
         drawn.brush_ext = nothing;
@@ -337,13 +339,41 @@ static void test_seams(void **state) {
 
 /* ---- The same bytes ---- */
 
-static void test_cut_pictures(void **state) {
-    const fixture *f = *state;
+static picture draw_black(const fixture *f, const rings *r, uint32_t side) {
+    return draw_rings(f, r, &BLACK, side);
+}
+
+/* Areas, lines, and areas again, with translucent fills of the picture between and above them. */
+static picture draw_veiled(const fixture *f, const rings *r, uint32_t side) {
+    const camber_fill red = {.color = {1, 0, 0, 0.6f}}, blue = {.color = {0, 0, 1, 0.4f}};
+    const camber_paint below[4] = {{.fill = &red}, {.fill = &red}, {.fill = &red}, {.fill = &red}};
+    const camber_paint above[4] = {{.fill = &blue}, {.fill = NULL}, {.fill = &blue}, {.fill = NULL}};
+    const camber_paint lines[4] = {{.width_px = 0}, {.width_px = 2, .color = {0, 0, 0, 1}}};
+    camber_mesh *mesh = mesh_of(f, drawer(f), r, 4);
+    const camber_pass passes[] = {{.mesh = mesh, .paints = below, .paint_count = 4},
+                                  {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.2f}}},
+                                  {.kind = CAMBER_PASS_FILL, .fill = {.color = {1, 1, 0, 0.3f}}},
+                                  {.mesh = mesh, .paints = lines, .paint_count = 4},
+                                  {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 1, 0.25f}}},
+                                  {.mesh = mesh, .paints = above, .paint_count = 4},
+                                  {.kind = CAMBER_PASS_FILL, .fill = {.color = {1, 0, 1, 0.15f}}}};
+    const camber_frame frame = {.width = SIDE_PX,
+                                .height = SIDE_PX,
+                                .background = {1, 1, 1, 1},
+                                .passes = passes,
+                                .pass_count = sizeof passes / sizeof *passes,
+                                .largest_area_px = side};
+    picture p = picture_draw(drawer(f), &frame);
+    camber_mesh_destroy(mesh);
+    return p;
+}
+
+static void cut_pictures(const fixture *f, picture (*draw)(const fixture *, const rings *, uint32_t)) {
     static const uint32_t sides[] = {33, 64, 320, 499};
     rings r = made_rings(9, 4000, 40, 2);
-    picture whole = draw_rings(f, &r, &BLACK, 0);
+    picture whole = draw(f, &r, 0);
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
-        picture p = draw_rings(f, &r, &BLACK, sides[i]);
+        picture p = draw(f, &r, sides[i]);
         picture_assert_same(&whole, &p);
         picture_free(&p);
     }
@@ -355,7 +385,7 @@ static void test_cut_pictures(void **state) {
     uint32_t most = 0;
     for (size_t i = 0; i < sizeof small_ones / sizeof *small_ones; i++) {
         fixture small = open_other(f, small_ones + i);
-        picture p = draw_rings(&small, &r, &BLACK, 0);
+        picture p = draw(&small, &r, 0);
         const uint32_t slices = camber_raster_slice_count(drawer(&small)->raster);
         most = slices > most ? slices : most;
         picture_assert_same(&whole, &p);
@@ -366,6 +396,11 @@ static void test_cut_pictures(void **state) {
     assert_true(most > 3);
     picture_free(&whole);
     rings_free(&r);
+}
+
+static void test_cut_pictures(void **state) {
+    cut_pictures(*state, draw_black);
+    cut_pictures(*state, draw_veiled);
 }
 
 /* ---- Many fills ---- */

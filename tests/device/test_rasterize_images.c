@@ -118,48 +118,55 @@ static picture draw_with(const fixture *e, camber_renderer *renderer, drawing *d
 
 /* A scene of the stages alone: each row an image of its own, some of them in layers and groups, and two fills. */
 static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *mesh, size_t first_way, bool linear) {
-    enum { ROWS = 2 * CAMBER_KERNEL_ROWS, ALL = ROWS + 2 };
-    float rows[ALL][CAMBER_RASTER_ROW_WORDS] = {{0}};
-    camber_brush brushes[ALL] = {{0}};
+    enum { ROWS = 2 * CAMBER_KERNEL_ROWS, PASS = CAMBER_KERNEL_ROWS + 1, FIRST = 1, ALL = FIRST + 2 * PASS };
+    float rows[ROWS][CAMBER_RASTER_ROW_WORDS] = {{0}};
+    /* brush 0 draws nothing; then those of each pass begin with that of its fill */
+    camber_brush brushes[ALL] = {{.fill = FIRST + PASS}};
     camber_brush_ext brush_ext[ALL] = {{0}};
     camber_side_table *table = &e->on.renderer[CAMBER_FIXTURE_OPENCL]->list.side_table;
     camber_cl_images images = {.table = table, .nearest = 1};
     camber_side_table_clear(table);
-    for (uint32_t i = 0; i < ALL; i++) {
+    for (uint32_t i = 0; i < ROWS; i++) {
+        const uint32_t pass = i / CAMBER_KERNEL_ROWS, fill = FIRST + PASS * pass,
+                       number = fill + 1 + i % CAMBER_KERNEL_ROWS;
         const float width = d->strokes[i % CAMBER_KERNEL_ROWS].width_px;
         const size_t image = (first_way + i) % IMAGES;
         const camber_image_use use =
             camber_image_use_on_line(d->images + image, image, width > 0 ? (double)width : 1, 0);
-        rows[i][0] = i >= ROWS ? CAMBER_FILL_PX : width > 0.0f ? 0.5f * width : -1.0f;
-        memcpy(rows[i] + 3, &i, sizeof i);
-        brushes[i] = (camber_brush){.r = 1, .g = 1, .b = 1, .a = i % 2 ? 1 : 0.6f, .layer_opacity = 0.8f};
-        brushes[i].layer = i % 3 == 1 ? i : 0;
-        brushes[i].group = i >= CAMBER_KERNEL_ROWS && i < ROWS;
-        brushes[i].group_opacity = 0.7f;
-        brush_ext[i].features = i % 5 == 4 ? 0 : CAMBER_FEATURE_IMAGE;
-        assert_int_equal(camber_cl_images_add_line(&images, &use, &brush_ext[i].image), CAMBER_OK);
+        rows[i][0] = width > 0.0f ? 0.5f * width : -1.0f;
+        memcpy(rows[i] + 3, &number, sizeof number);
+        brushes[number] =
+            (camber_brush){.r = 1, .g = 1, .b = 1, .a = i % 2 ? 1 : 0.6f, .fill = fill, .layer_opacity = 0.8f};
+        brushes[number].layer = i % 3 == 1 ? i : 0;
+        brushes[number].group = pass;
+        brushes[number].group_opacity = 0.7f;
+        brush_ext[number].features = i % 5 == 4 ? 0 : CAMBER_FEATURE_IMAGE;
+        assert_int_equal(camber_cl_images_add_line(&images, &use, &brush_ext[number].image), CAMBER_OK);
     }
-    for (uint32_t i = ROWS; i < ALL; i++) {
+    for (uint32_t pass = 0; pass < 2; pass++) {
         bool is_opaque;
-        const camber_fill *fill = &d->passes[2 * (i - ROWS)].fill;
+        const uint32_t number = FIRST + PASS * pass;
+        const camber_fill *fill = &d->passes[2 * pass].fill;
         camber_image_use uses[] = {
             camber_image_use_in_fill(fill->image, 0, (double)fill->width_px, (double)fill->height_px),
             camber_image_use_as_mean(fill->image, 0)};
         const camber_draw_list list = {.image_uses = uses};
         const camber_fill_paint paint = {fill->color, true, 0, 1, fill->x_px, fill->y_px, fill->bearing_deg};
-        brush_ext[i].features = CAMBER_FEATURE_IMAGE;
-        assert_int_equal(camber_cl_images_add_fill(&images, &list, &paint, &brush_ext[i].image, &is_opaque), CAMBER_OK);
+        brushes[number] = (camber_brush){.r = 1, .g = 1, .b = 1, .a = pass ? 1 : 0.6f, .mode = CAMBER_BRUSH_AREA};
+        brushes[number].fill = pass ? FIRST : 0;
+        brush_ext[number].features = CAMBER_FEATURE_IMAGE;
+        assert_int_equal(camber_cl_images_add_fill(&images, &list, &paint, &brush_ext[number].image, &is_opaque),
+                         CAMBER_OK);
         assert_int_equal(is_opaque, (fill->image - d->images) % 2 == 0);
     }
     const size_t count = mesh->polyline_count;
-    const camber_raster_input runs[] = {
-        {NULL, 0, 0, ROWS}, {mesh, 0, count, 0}, {NULL, 0, 0, ROWS + 1}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
+    const camber_raster_input runs[] = {{mesh, 0, count, 0}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
     camber_raster_scene drawn = {.rows = rows[0],
-                                 .row_count = ALL,
+                                 .row_count = ROWS,
                                  .brushes = brushes,
                                  .brush_count = ALL,
                                  .inputs = runs,
-                                 .input_count = 4,
+                                 .input_count = 2,
                                  .background = {0.2f, 0.3f, 0.4f, 1},
                                  .linear = linear,
                                  .brush_ext = brush_ext,

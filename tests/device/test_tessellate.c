@@ -156,7 +156,7 @@ static void test_other_strokes_upload_nothing(void **state) {
     camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
     camber_mesh_data data = on_device(b, polylines, &desc);
     camber_mesh_data_destroy(&data);
-    if (b->mesh->parts[0].lent)
+    if (b->mesh->parts[0].borrowed)
         assert_ptr_equal(b->mesh->polylines, polylines);
     else
         memset(polylines->x, 0, polylines->slot_count * sizeof *polylines->x);

@@ -2,6 +2,7 @@
  * lines are merged with others outside, their dashes begin outside, and nodes outside keep points. */
 #include "map_picture.h"
 
+#include "features/features.h"
 #include "indexed_files.h"
 
 static const char *const styles[] = {

@@ -477,7 +477,7 @@ def test_renew():
     with open("list", "w") as file:
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
-    expect(re.search(r"^1 tile removed", said, re.M) and "1 tile of the list lies outside" in said, said)
+    expect(re.search(r"^1 tile removed", said, re.M) and "1 tile of the list is outside" in said, said)
     made = archive("map.mbtiles")
     wanted = {**old, **{key: new.get(key) for key in listed}}
     expect(made == {key: data for key, data in wanted.items() if data}, "renewed tiles, and no others, are new")
@@ -492,17 +492,17 @@ def test_renew():
     with open("outside", "w") as file:
         file.write(f"{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2000}/{ROW}\n2/1/1\n")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside").stderr
-    expect("2 tiles of the list lie outside" in said and archive("map.mbtiles") == new, said)
+    expect("2 tiles of the list are outside" in said and archive("map.mbtiles") == new, said)
     camber("tiles", "verify", "map.mbtiles")
     with open("outside", "w") as file:
         file.write("2/1/1\n")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside").stderr
-    expect("1 tile of the list lies outside" in said and "nothing to renew" in said, said)
+    expect("1 tile of the list is outside" in said and "nothing to renew" in said, said)
     # Zooms that are named, or a box: they say what the archive is to have.
     with open("outside", "w") as file:
         file.write(f"2/2/1\n{ZOOM}/{COLUMN + 2}/{ROW + 1}\n{ZOOM}/{COLUMN + 2}/{ROW + 1}\n")
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "outside", *RANGE).stderr
-    expect("1 tile of the list lies outside" in said and archive("map.mbtiles") == new, said)
+    expect("1 tile of the list is outside" in said and archive("map.mbtiles") == new, said)
     tiles(*options, "-o", "wider.mbtiles", *RANGE)
     said = camber("tiles", *options, "-o", "wider.mbtiles", "--renew", "outside", "--min-zoom", 0, "--max-zoom", 20).stderr
     expect("outside" not in said and (2, 2, 1) in archive("wider.mbtiles"), said)

@@ -23,13 +23,13 @@ typedef struct stand {
 } stand;
 
 typedef struct asker {
-    camber_ask ask;
+    camber_tile_request ask;
     stand *stand;
     bool left, told;
 } asker;
 
 /* A tile is of one colour: its column and row. */
-static camber_status paint(void *user, const camber_route_request *request, camber_drawn *drawn) {
+static camber_status paint(void *user, const camber_route_request *request, camber_rendered_picture *drawn) {
     stand *e = user;
     pthread_mutex_lock(&e->mutex);
     e->drawing_now = true;
@@ -47,7 +47,7 @@ static camber_status paint(void *user, const camber_route_request *request, camb
     drawn->tile_px = 16;
     drawn->width = drawn->height = 16 * drawn->side;
     drawn->opaque = true;
-    if (!camber_drawn_resize(drawn))
+    if (!camber_rendered_picture_resize(drawn))
         return CAMBER_ERROR_MEMORY;
     for (uint32_t y = 0; y < drawn->height; y++)
         for (uint32_t x = 0; x < drawn->width; x++) {
@@ -68,7 +68,7 @@ static bool prepare(void *user) {
     return false;
 }
 
-static void take(camber_ask *ask) {
+static void take(camber_tile_request *ask) {
     asker *a = ask->user;
     pthread_mutex_lock(&a->stand->mutex);
     a->told = true;
@@ -77,7 +77,7 @@ static void take(camber_ask *ask) {
     pthread_mutex_unlock(&a->stand->mutex);
 }
 
-static bool has_left(const camber_ask *ask) {
+static bool has_left(const camber_tile_request *ask) {
     return ((const asker *)ask->user)->left;
 }
 
@@ -139,12 +139,12 @@ static bool ask(stand *e, asker *a, int zoom, uint32_t column, uint32_t row) {
                         .done = take,
                         .is_gone = has_left,
                         .user = a}};
-    return camber_draw_queue_ask(e->drawing, &a->ask);
+    return camber_draw_queue_add(e->drawing, &a->ask);
 }
 
 /* The PNG of a tile has its colour in it, so tiles of two colours differ, and equal ones have equal tags. */
 static void check_body(asker *a, const char *tag, bool equal) {
-    assert_int_equal(a->ask.result, CAMBER_ASK_DONE);
+    assert_int_equal(a->ask.result, CAMBER_TILE_REQUEST_DONE);
     assert_memory_equal(a->ask.body->bytes, "\x89PNG", 4);
     if (tag)
         assert_int_equal(strcmp(a->ask.body->etag, tag) == 0, equal);
@@ -232,9 +232,9 @@ static void does_not_draw_for_those_who_left(void **state) {
     hold(e, false);
     wait_done(e, 4);
     assert_int_equal(e->drawn, 2);
-    assert_int_equal(gone.ask.result, CAMBER_ASK_DROPPED);
-    assert_int_equal(mixed[0].ask.result, CAMBER_ASK_DROPPED);
-    assert_int_equal(mixed[1].ask.result, CAMBER_ASK_DONE);
+    assert_int_equal(gone.ask.result, CAMBER_TILE_REQUEST_DROPPED);
+    assert_int_equal(mixed[0].ask.result, CAMBER_TILE_REQUEST_DROPPED);
+    assert_int_equal(mixed[1].ask.result, CAMBER_TILE_REQUEST_DONE);
     assert_int_equal(e->metrics.dropped, 1);
     camber_body_release(first.ask.body);
     camber_body_release(mixed[1].ask.body);
@@ -246,7 +246,7 @@ static void tells_what_fails(void **state) {
     e->fails = true;
     assert_true(ask(e, &bad, 5, 1, 1));
     wait_done(e, 1);
-    assert_int_equal(bad.ask.result, CAMBER_ASK_FAILED);
+    assert_int_equal(bad.ask.result, CAMBER_TILE_REQUEST_FAILED);
     assert_null(bad.ask.body);
     pthread_mutex_lock(&e->mutex);
     e->fails = false;
@@ -265,7 +265,7 @@ static void does_not_keep_static_pictures(void **state) {
                             .ask = {.request = {.route = CAMBER_ROUTE_STATIC, .width = 16, .height = 16, .ratio = 1},
                                     .done = take,
                                     .user = &askers[i]}};
-        assert_true(camber_draw_queue_ask(e->drawing, &askers[i].ask));
+        assert_true(camber_draw_queue_add(e->drawing, &askers[i].ask));
         wait_done(e, i + 1);
         check_body(&askers[i], NULL, true);
         camber_body_release(askers[i].ask.body);
@@ -296,7 +296,7 @@ static void ends_with_all_told(void **state) {
     pthread_join(thread, NULL);
     assert_int_equal(e->done, 3 + taken);
     assert_int_equal(e->drawn, 1);
-    assert_int_equal(askers[2].ask.result, CAMBER_ASK_DROPPED);
+    assert_int_equal(askers[2].ask.result, CAMBER_TILE_REQUEST_DROPPED);
     assert_false(ask(e, &askers[2], 6, 8, 0));
     camber_body_release(askers[0].ask.body);
     for (int i = 0; i < taken; i++)

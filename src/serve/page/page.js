@@ -1,17 +1,17 @@
-// The page of camber serve: a map that fills the window, shown by Leaflet from the server's own tiles.
+// The page of camber serve: Leaflet shows the server's own tiles in a map that fills the window.
 //
-// In: tiles.json, which says what the tiles are; the URL's hash, #zoom/latitude/longitude; with --edit the stream of
-// events, which tells when the style's file was saved. Out: the hash, and the choice of light or dark.
+// Input: tiles.json, which describes the tiles; the URL's hash, #zoom/latitude/longitude; with --edit the stream of
+// events, which says when the style's file was saved. Output: the hash, and the choice of light or dark.
 //
-// All paths are relative, so that the server may stand below a folder of another. Zooms that people see are those of
-// `camber render --zoom`, where the world is 512 px wide at zoom 0; Leaflet counts from 256. Whatever comes from the
-// server becomes text and never HTML.
+// All paths are relative, so that the server can be below a folder of another server. The page shows zooms as in
+// `camber render --zoom`, where the world is 512 px wide at zoom 0; for Leaflet it is 256 px wide. All data from the
+// server is inserted as text, never as HTML.
 'use strict';
 
-const DARK_FOLDER = 'dark/'; // where the built-in style's dark tiles are
-const MOST_LATITUDE = 85.05; // where the square world ends
-const SCALE_PX = 72;         // the scale's bar is as long at most
-const MOST_TRIES = 5;        // for a tile that does not come
+const DARK_FOLDER = 'dark/'; // path of the built-in style's dark tiles
+const MOST_LATITUDE = 85.05; // limit of Web Mercator
+const SCALE_PX = 72;         // longest bar of the scale
+const MOST_TRIES = 5;        // for a tile that cannot be loaded
 const RETRY_MS = 1500;       // for a server that does not answer
 const LOST = 'The server does not answer. The map goes on when it does.';
 const PICTURES = ['png', 'webp', 'jpg', 'jpeg', 'avif'];
@@ -24,7 +24,7 @@ const isStill = matchMedia('(prefers-reduced-motion: reduce)');
 // ---- Light and dark ----
 
 const getSystemTheme = () => systemIsDark.matches ? 'dark' : 'light';
-// The browser may forbid to remember anything; then a choice holds until the page is left.
+// The browser may not allow the page to store anything; then the choice is lost when the page is closed.
 let unsaved = null;
 function readTheme() {
     try {
@@ -36,7 +36,7 @@ function readTheme() {
 function writeTheme(theme) {
     try {
         if (theme === getSystemTheme())
-            localStorage.removeItem(CHOICE); // whoever wants what the system has follows it again
+            localStorage.removeItem(CHOICE); // a choice that equals the system's setting follows the system again
         else
             localStorage.setItem(CHOICE, theme);
     } catch {
@@ -49,25 +49,25 @@ function paint(theme) {
 }
 const getPainted = () => document.documentElement.dataset.theme;
 
-// ---- What is said ----
+// ---- Messages ----
 
-// For screen readers alone.
+// Only for screen readers.
 function say(text) {
     element('said').textContent = text;
 }
-// A quiet bar that stays until it is taken back by an empty text. `place` is where in which file.
+// Shows a bar that stays until it is removed with an empty text. `place` is a position in a file.
 function showNotice(text, place = '') {
     element('notice').hidden = !text;
     element('notice-text').textContent = text;
     element('notice-place').textContent = place;
 }
 
-// By custom an attribution has links and a few entities. Links that lead to the web stay; of other elements there is
-// their text alone.
+// Attributions usually contain links and a few entities. Links to web pages are kept; all other elements are reduced to
+// their text.
 const ATTRIBUTION_PART = /<a\s[^>]*?href\s*=\s*(?:"([^"]*)"|'([^']*)')[^>]*>|(<\/a\s*>)|<\/?[a-z!][^>]*>|([^<]+|<)/gi;
 const ENTITIES = {amp: '&', copy: '©', gt: '>', lt: '<', nbsp: '\u00a0', quot: '"', '#39': "'", '#169': '©'};
 
-// Where OpenStreetMap's attribution leads by its licence. An attribution that has its own link keeps that one.
+// The link that OpenStreetMap's licence requires. An attribution with a link of its own keeps it.
 const OSM_NAME = /(OpenStreetMap(?: contributors)?)/, OSM_COPYRIGHT = 'https://www.openstreetmap.org/copyright';
 
 function makeLink(target, text = '') {
@@ -98,9 +98,9 @@ function showAttribution(text) {
     line.hidden = !line.textContent.trim();
 }
 
-// ---- The place ----
+// ---- The view ----
 
-// As many decimals of a degree as tell half a pixel.
+// Returns how many decimals of a degree are needed for half a pixel.
 const decimalsAt = zoom => Math.max(0, Math.ceil((zoom * Math.LN2 + Math.log(512 / 360 / 0.5)) / Math.LN10));
 
 function readHash() {
@@ -114,7 +114,7 @@ function writeHash(map) {
     history.replaceState(null, '', `#${+zoom.toFixed(2)}/${center.lat.toFixed(decimals)}/${center.lng.toFixed(decimals)}`);
 }
 
-// Leaflet rounds zooms; one that was typed stays as it is.
+// Leaflet rounds zooms; a typed zoom is kept as it is.
 function goTo(map, place) {
     const snap = map.options.zoomSnap;
     map.options.zoomSnap = 0;
@@ -123,7 +123,7 @@ function goTo(map, place) {
 }
 
 function describePlace(place, zoom) {
-    const decimals = Math.min(decimalsAt(zoom), 5), {lat, lng} = place.wrap(); // a metre
+    const decimals = Math.min(decimalsAt(zoom), 5), {lat, lng} = place.wrap(); // about a metre
     return `${Math.abs(lat).toFixed(decimals)}° ${lat < 0 ? 'S' : 'N'}, ` +
         `${Math.abs(lng).toFixed(decimals)}° ${lng < 0 ? 'W' : 'E'}`;
 }
@@ -132,7 +132,7 @@ function showPlace(map, place) {
     element('place').textContent = describePlace(place, zoom);
     element('zoom').textContent = `zoom ${+zoom.toFixed(2)}`;
 }
-// The bar is as long as the largest round number of metres that fits, in the middle of the map.
+// The bar's length is the largest round number of metres that fits, measured in the middle of the map.
 function showScale(map) {
     const y = map.getSize().y / 2;
     const most = map.distance(map.containerPointToLatLng([0, y]), map.containerPointToLatLng([SCALE_PX, y]));
@@ -141,9 +141,9 @@ function showScale(map) {
     element('length').textContent = round >= 1000 ? `${round / 1000} km` : `${round} m`;
 }
 
-// Keeps hash, readings and buttons with the map, and the map with a hash that is typed or gone back to.
+// Updates hash, readings and buttons when the map moves, and moves the map when the hash changes.
 function followPlace(map) {
-    let pointer = null, silence; // without a mouse on the map its middle is told
+    let pointer = null, silence; // if the mouse is not on the map, the readings are for its middle
     map.on('mousemove', event => {
         pointer = event.containerPoint;
         showPlace(map, event.latlng);
@@ -180,36 +180,36 @@ function makeMap() {
         attributionControl: false,
         zoomControl: false,
         bounceAtZoomLimits: false,
-        fadeAnimation: false, // a tile that is there is seen
+        fadeAnimation: false, // loaded tiles are shown at once
         inertia: !isStill.matches,
         zoomAnimation: !isStill.matches,
         tap: false,
-        wheelPxPerZoomLevel: 120, // a notch is a zoom
+        wheelPxPerZoomLevel: 120, // one notch of the wheel is one zoom
     });
-    // Keys move the map while nothing else has the focus, too.
+    // Keys also move the map while nothing has the focus.
     map.fire('focus');
     document.addEventListener('focusin', event => map.fire(event.target === map.getContainer() ? 'focus' : 'blur'));
     document.addEventListener('focusout', event => event.relatedTarget || map.fire('focus'));
     return map;
 }
 
-// The part of the world that has tiles; null: all of it, any number of times around.
+// Returns the part of the world that has tiles; null: the whole world, repeated.
 function getBounds(tiles) {
     const [west, south, east, north] = tiles.bounds ?? [-180, -90, 180, 90];
-    const far = east < west ? east + 360 : east; // across the antimeridian
+    const far = east < west ? east + 360 : east; // it crosses the antimeridian
     return far - west >= 360 ? null : L.latLngBounds([south, west], [north, far]);
 }
-// CSS px; MapLibre reads the same member.
+// Returns the size of a tile in CSS px. MapLibre reads the same member.
 const getSide = tiles => tiles.tileSize ?? 256;
-// WebP where there is a choice.
+// Chooses WebP if it is available.
 const getEnding = tiles => /\.(\w+)$/.exec(tiles.tiles.find(url => url.endsWith('.webp')) ?? tiles.tiles[0])[1];
-// A number that was not asked for before keeps tiles from being taken out of the browser's memory.
+// A new number in the URL keeps the browser from using cached tiles.
 function makeLayer(folder, tiles, version) {
     const side = getSide(tiles), shift = Math.log2(side / 256);
     const ratio = Math.min(Math.ceil(devicePixelRatio), tiles.camber?.ratio_max ?? 1);
     const fineness = ratio > 1 ? `@${ratio}x` : '', query = version ? `?${version}` : '';
     return L.tileLayer(`${folder}{z}/{x}/{y}${fineness}.${getEnding(tiles)}${query}`, {
-        bounds: !tiles.camber?.drawn && getBounds(tiles) || undefined, // what is drawn has a ground everywhere
+        bounds: !tiles.camber?.drawn && getBounds(tiles) || undefined, // drawn tiles have a background everywhere
         keepBuffer: 4,
         maxZoom: tiles.maxzoom + shift,
         minZoom: tiles.minzoom + shift,
@@ -220,15 +220,15 @@ function makeLayer(folder, tiles, version) {
     });
 }
 
-// A tile is asked for again where the server is busy, or is being started. An image does not tell why there is none, so
-// its headers are asked for. A tile that is not in an archive stays away.
+// Requests a tile again if the server is busy or starting. An image does not say why loading failed, so the page
+// requests the headers. A tile that is missing in an archive is not requested again.
 function askAgain({tile}) {
     const source = tile.src, tries = Number(tile.dataset.tries ?? 0) + 1;
     tile.dataset.tries = tries;
     if (tries > MOST_TRIES)
         return;
     setTimeout(async () => {
-        if (!tile.isConnected) // the map went on
+        if (!tile.isConnected) // the map has moved on
             return;
         const status = await fetch(source, {method: 'HEAD'}).then(answer => answer.status, () => 503);
         if (status === 200)
@@ -238,7 +238,7 @@ function askAgain({tile}) {
     }, tries * 1000);
 }
 
-// The layer that is seen, and the one that replaces it once all its tiles are there.
+// The visible layer, and the one that replaces it when all its tiles have been loaded.
 function makeLayers(map) {
     let shown = null, coming = null;
     return layer => {
@@ -253,7 +253,7 @@ function makeLayers(map) {
         layer.on('tileerror', askAgain);
         layer.setZIndex(shown ? shown.options.zIndex - 1 : 1);
         layer.addTo(map);
-        if (!layer.isLoading()) { // no tile of it is in the window
+        if (!layer.isLoading()) { // none of its tiles is in the window
             layer.off('load', settle);
             settle();
         }
@@ -266,7 +266,7 @@ async function describe(folder) {
         throw new Error(answer.status);
     return {folder, tiles: await answer.json()};
 }
-// What is to be shown under the theme of the page. Tiles that are dark by themselves make the page dark.
+// Returns the tiles for the page's theme. Tiles that exist only in dark make the page dark.
 async function describeForTheme() {
     const found = await describe(''), theme = found.tiles.camber?.theme ?? null;
     element('theme').hidden = theme === 'dark';
@@ -288,7 +288,7 @@ async function copyField(button) {
     field.select();
     try {
         await navigator.clipboard.writeText(field.value);
-    } catch { // which needs https or this machine
+    } catch { // this needs https or localhost
         copied = document.execCommand('copy');
     }
     button.textContent = copied ? 'Copied' : 'Ctrl+C';
@@ -312,9 +312,9 @@ function makePanel() {
     });
 }
 
-// ---- All of it ----
+// ---- Start and updates ----
 
-// Follows the file of a style that is edited. The stream comes back by itself when the server does.
+// Listens for changes of the edited style's file. The stream reconnects automatically when the server is back.
 function followEdits(page) {
     const stream = new EventSource('events');
     stream.addEventListener('style', event => {
@@ -341,7 +341,7 @@ function followEdits(page) {
     });
 }
 
-// One zoom closer than what shows everything, where a sixth of that is lost at most.
+// Zooms in one level from the view that shows everything, if this cuts off at most a sixth.
 function findFirstZoom(map, bounds) {
     const zoom = map.getBoundsZoom(bounds), size = map.getSize();
     const {x, y} = map.project(bounds.getSouthEast(), zoom + 1).subtract(map.project(bounds.getNorthWest(), zoom + 1));
@@ -356,7 +356,7 @@ function showFirst(map, tiles) {
     else
         map.setView([tiles.center?.[1] ?? 0, tiles.center?.[0] ?? 0], tiles.center?.[2] ?? tiles.minzoom);
 }
-// Asks the server what its tiles are, and shows them in place of those that are seen.
+// Requests the description of the server's tiles, and shows these tiles instead of the current ones.
 async function refresh(page) {
     const turn = ++page.turn;
     let found;
@@ -368,7 +368,7 @@ async function refresh(page) {
         setTimeout(() => turn === page.turn && page.refresh(), RETRY_MS);
         return;
     }
-    if (turn !== page.turn) // something newer is on its way
+    if (turn !== page.turn) // a newer request has been made
         return;
     if (page.isLost)
         showNotice('');
@@ -394,7 +394,7 @@ async function refresh(page) {
     }
 }
 
-// A window that goes to a finer screen wants finer tiles.
+// When the window moves to a screen with a higher resolution, it needs finer tiles.
 function watchRatio(page) {
     matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', () => {
         page.refresh();
@@ -420,7 +420,7 @@ function start() {
     page.refresh();
 }
 
-// The build had no Leaflet: one picture of all.
+// If the server was built without Leaflet: shows one picture of everything.
 async function showPicture() {
     const note = document.createElement('p'), picture = document.createElement('img');
     note.className = 'card plain';
@@ -429,7 +429,7 @@ async function showPicture() {
     document.body.replaceChildren(note);
     const [longitude, latitude, zoom] = (await describe('')).tiles.center ?? [0, 0, 1];
     picture.alt = 'The map';
-    picture.onload = () => note.append(picture); // of an archive there is none
+    picture.onload = () => note.append(picture); // an archive has none
     picture.src = `static/${longitude},${latitude},${zoom - 1}/800x500.png`;
 }
 

@@ -74,49 +74,49 @@ static bool is_in(const camber_box *box, const double point[2]) {
 }
 
 /* Anchors at an even spacing from an offset on. wanted NULL: finds out whether there is any. */
-typedef struct row_of_anchors {
+typedef struct anchor_series {
     const camber_label_path *path;
     const camber_anchor_rule *rule;
     double offset, spacing;
     camber_path_anchors *wanted;
     bool any;
-} row_of_anchors;
+} anchor_series;
 
-static camber_status search_segment(row_of_anchors *row, size_t i) {
-    const camber_label_path *path = row->path;
+static camber_status search_segment(anchor_series *series, size_t i) {
+    const camber_label_path *path = series->path;
     const double *a = path->points + 2 * i, from = path->along[i], to = path->along[i + 1];
-    const camber_box *seen = &row->rule->seen;
+    const camber_box *seen = &series->rule->seen;
     double share[2] = {0.0, 1.0};
-    if (row->wanted) {
+    if (series->wanted) {
         cut(a[0], a[2], seen->x0, seen->x1, share);
         cut(a[1], a[3], seen->y0, seen->y1, share);
         if (!(share[0] <= share[1]))
             return CAMBER_OK;
     }
-    const double low = fmax(from + share[0] * (to - from), 0.5 * row->rule->label_length);
-    const double high = fmin(from + share[1] * (to - from), length_of(path) - 0.5 * row->rule->label_length);
-    for (double k = fmax(floor((low - row->offset) / row->spacing) - 1.0, 0.0);; k += 1.0) {
-        const camber_path_anchor anchor = {row->offset + k * row->spacing, i};
-        if (!(anchor.along < to) || anchor.along > high + row->spacing)
+    const double low = fmax(from + share[0] * (to - from), 0.5 * series->rule->label_length);
+    const double high = fmin(from + share[1] * (to - from), length_of(path) - 0.5 * series->rule->label_length);
+    for (double k = fmax(floor((low - series->offset) / series->spacing) - 1.0, 0.0);; k += 1.0) {
+        const camber_path_anchor anchor = {series->offset + k * series->spacing, i};
+        if (!(anchor.along < to) || anchor.along > high + series->spacing)
             return CAMBER_OK;
         if (anchor.along < from)
             continue;
         double point[2];
         camber_path_point(path, &anchor, point);
-        if ((row->wanted && !is_in(seen, point)) || !camber_path_takes(path, &anchor, row->rule))
+        if ((series->wanted && !is_in(seen, point)) || !camber_path_takes(path, &anchor, series->rule))
             continue;
-        row->any = true;
-        if (!row->wanted)
+        series->any = true;
+        if (!series->wanted)
             return CAMBER_OK;
-        if (add(row->wanted, anchor) != CAMBER_OK)
+        if (add(series->wanted, anchor) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
     }
 }
 
-static camber_status search(row_of_anchors *row) {
+static camber_status search(anchor_series *series) {
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i + 1 < row->path->count && status == CAMBER_OK && (row->wanted || !row->any); i++)
-        status = search_segment(row, i);
+    for (size_t i = 0; i + 1 < series->path->count && status == CAMBER_OK && (series->wanted || !series->any); i++)
+        status = search_segment(series, i);
     return status;
 }
 
@@ -127,15 +127,15 @@ camber_status camber_path_repeat(const camber_label_path *path, const camber_anc
     const double least = rule->spacing / 4.0;
     const double spacing = rule->spacing - rule->label_length < least ? rule->label_length + least : rule->spacing;
     const size_t before = anchors->count;
-    row_of_anchors row = {.path = path,
-                          .rule = rule,
-                          .offset = fmod(0.5 * rule->label_length + 2.0 * rule->em, spacing),
-                          .spacing = spacing,
-                          .wanted = anchors};
-    camber_status status = search(&row);
-    if (status != CAMBER_OK || row.any)
+    anchor_series series = {.path = path,
+                            .rule = rule,
+                            .offset = fmod(0.5 * rule->label_length + 2.0 * rule->em, spacing),
+                            .spacing = spacing,
+                            .wanted = anchors};
+    camber_status status = search(&series);
+    if (status != CAMBER_OK || series.any)
         return status;
-    row_of_anchors middle = row, others = row;
+    anchor_series middle = series, others = series;
     middle.offset = 0.5 * length_of(path);
     status = search(&middle);
     if (status != CAMBER_OK || !middle.any)

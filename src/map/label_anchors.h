@@ -27,7 +27,7 @@ typedef struct camber_anchor_rule {
     double spacing;      /* between anchors */
     double label_length; /* of the line that a label takes */
     double em;           /* the size of the text */
-    double window;       /* no stretch of this length turns by more than max_angle. 0: any turn is fine */
+    double window;       /* no part of this length turns by more than max_angle. 0: any turn is fine */
     double max_angle;    /* radians */
     camber_box seen;     /* anchors outside of it are not wanted */
 } camber_anchor_rule;

@@ -150,7 +150,7 @@ bool camber_label_bounds(const camber_label_layout *layout, const camber_label_f
 
 /* ---- Texts along lines (label_along.c) ---- */
 
-/* A stretch of a line, as far as a text takes it, in the order of the text; px of the plane or the picture. */
+/* The part of a line that a text takes, in the order of the text; px of the plane or the picture. */
 typedef struct camber_label_track {
     camber_context *context;
     double *points; /* threes: x, y and the distance from the anchor, negative before it */

@@ -167,7 +167,7 @@ static double sum_ranges(float (*ranges)[2], size_t count, double low, double hi
     return sum;
 }
 
-/* One axis of an image that is fitted to a text: the whole image, if its content takes the stretch from low to high. */
+/* One axis of an image that is fitted to a text: the whole image, if its content goes from low to high. */
 typedef struct fit_axis {
     float (*ranges)[2];
     size_t count;

@@ -62,7 +62,7 @@ static int compare(const void *a, const void *b) {
     return c < d ? -1 : c > d;
 }
 
-static double row_of(const camber_label_layout *layout, const camber_label_candidate *c) {
+static double seen_y(const camber_label_layout *layout, const camber_label_candidate *c) {
     const double plane[2] = {c->x, c->y};
     double seen[2];
     return camber_lens_see(&layout->lens, plane, seen) > 0.0 ? seen[1] : 0.0;
@@ -75,7 +75,7 @@ static ordered *sort_layer(const camber_label_layout *layout, const camber_layou
         const camber_symbol *s = &camber_label_rule_of(layout, c)->symbol;
         double order = 0.0;
         if (s->order == CAMBER_SYMBOL_ORDER_VIEWPORT_Y)
-            order = -row_of(layout, c);
+            order = -seen_y(layout, c);
         else if (s->order == CAMBER_SYMBOL_ORDER_SOURCE)
             order = c->feature;
         const bool by_key = s->has_sort_key && s->order != CAMBER_SYMBOL_ORDER_VIEWPORT_Y;

@@ -162,9 +162,8 @@ int camber_input_read_style(camber_session *session, const char *path, camber_th
 }
 
 static int translate(camber_session *session, camber_style_input *document, char **translated) {
-    const camber_status status =
-        camber_style_translate(session->context, document->text, document->size_bytes, document->name,
-                               session->options->language, translated);
+    const camber_status status = camber_style_translate(session->context, document->text, document->size_bytes,
+                                                        document->name, session->options->language, translated);
     if (status == CAMBER_OK) {
         document->text = *translated;
         document->size_bytes = strlen(*translated);

@@ -23,7 +23,7 @@ static uint32_t find_number(void *user, const char *name) {
 
 static void note_missing(void *user, const char *name) {
     if (user)
-        (void)camber_sprites_miss(user, name);
+        (void)camber_sprites_warn_missing(user, name);
 }
 
 /* ---- Looks ---- */

@@ -1,7 +1,7 @@
 /* Makes shapes of placed labels.
  *
- * Input: items, which say where glyphs and icons are. Output: rings and passes. Main idea: a glyph's outline is an area,
- * and its halo is a stroke of the same rings with round joins, so that labels are drawn as lines and areas are. A
+ * Input: items, which say where glyphs and icons are. Output: rings and passes. Main idea: a glyph's outline is an
+ * area, and its halo is a stroke of the same rings with round joins, so that labels are drawn as lines and areas are. A
  * layer's icons come first, then the halos of all its texts, then the texts. */
 #include "map/label_shapes.h"
 
@@ -126,8 +126,8 @@ static void make_look(const camber_label_look *look, camber_label_shapes *s, siz
     const float blur = BLUR_SCALE * look->halo_blur_px;
     const float half = look->halo_width_px > 0.0f && look->halo_color.a > 0.0f ? look->halo_width_px + blur : 0.0f;
     s->strokes[i] = (camber_stroke){.width_px = 2.0f * half, .join = CAMBER_JOIN_ROUND, .cap = CAMBER_CAP_ROUND};
-    s->halos[i] = (camber_paint){.width_px = 2.0f * half, .color = look->halo_color, .blur_px = 2.0f * blur,
-                                 .smooth_blur = blur > 0.0f};
+    s->halos[i] = (camber_paint){
+        .width_px = 2.0f * half, .color = look->halo_color, .blur_px = 2.0f * blur, .smooth_blur = blur > 0.0f};
     s->fills[i] = (camber_fill){.color = look->color};
     s->paints[i] = (camber_paint){.fill = s->fills + i};
 }
@@ -135,8 +135,8 @@ static void make_look(const camber_label_look *look, camber_label_shapes *s, siz
 static bool allocate(const camber_labels *labels, camber_label_shapes *s) {
     camber_context *context = s->context = s->forms.context = labels->context;
     size_t icons = 0;
-    for (size_t i = 0; i < labels->layer_count; i++)
-        icons += labels->layers[i].icon_count;
+    for (size_t i = 0; i < labels->item_count; i++)
+        icons += labels->items[i].glyph == CAMBER_NO_GLYPH;
     s->look_count = labels->look_count;
     const size_t all = s->look_count + icons;
     return (s->strokes = camber_alloc_zero(context, s->look_count + 1, sizeof *s->strokes)) &&
@@ -189,6 +189,10 @@ static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) 
         status = add_icon(m, m->labels->items + layer->first_icon + i, range);
     for (size_t i = 0; i < layer->glyph_count && status == CAMBER_OK; i++) {
         const camber_label_item *item = m->labels->items + layer->first_glyph + i;
+        if (item->glyph == CAMBER_NO_GLYPH) { /* an image in a text */
+            status = add_icon(m, item, range);
+            continue;
+        }
         range->has_halo |= s->halos[item->look].width_px > 0.0f;
         status = add_glyph(&m->texts, m->fonts, item, tilt_for(m, item));
     }
@@ -274,8 +278,7 @@ camber_status camber_label_shapes_tessellate(const camber_label_shapes *s, cambe
         return CAMBER_OK;
     status = camber_mesh_get_companion(mesh, &texts);
     if (status == CAMBER_OK && s->texts) {
-        const camber_tessellation_desc desc = {
-            .strokes = s->strokes, .stroke_count = s->look_count, .method = method};
+        const camber_tessellation_desc desc = {.strokes = s->strokes, .stroke_count = s->look_count, .method = method};
         status = camber_mesh_tessellate(texts, s->texts, &desc);
     }
     if (status != CAMBER_OK || !s->icons)

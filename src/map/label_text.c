@@ -144,7 +144,7 @@ static camber_status shape(camber_label_layout *layout, const camber_text_desc *
 const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name) {
     const camber_sprite_image *image = layout->sprites ? camber_sprites_find(layout->sprites, name) : NULL;
     if (!image && layout->sprites)
-        (void)camber_sprites_miss(layout->sprites, name);
+        (void)camber_sprites_warn_missing(layout->sprites, name);
     return image && image->width && image->height ? image : NULL;
 }
 

@@ -82,7 +82,8 @@ static size_t find_runs(const camber_mesh_rows *rows, layer_run *runs, size_t *l
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
         const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
         opaque = opaque && opacity >= 1.0f;
-        const size_t first = rows->first_polylines[plan->layers[i].set], end = rows->first_polylines[plan->layers[i].set + 1];
+        const size_t first = rows->first_polylines[plan->layers[i].set],
+                     end = rows->first_polylines[plan->layers[i].set + 1];
         const camber_overlap overlap = plan->layers[i].look.layer->overlap;
         layer_run *last = count ? runs + count - 1 : NULL;
         const bool same_group = opacity < 1.0f && plan->layers[i].part == CAMBER_PLAN_OUTLINE && last &&
@@ -162,7 +163,8 @@ camber_status camber_passes_make(camber_context *context, const camber_mesh_rows
                                  camber_pass_list *list) {
     const size_t ranges = rows->labels ? rows->labels->range_count : 0;
     camber_status status = CAMBER_ERROR_MEMORY;
-    layer_run *runs = camber_alloc(context, rows->plan->layer_count + rows->plan->patterns.fill_count + ranges, sizeof *runs);
+    layer_run *runs =
+        camber_alloc(context, rows->plan->layer_count + rows->plan->patterns.fill_count + ranges, sizeof *runs);
     if (!runs)
         return CAMBER_ERROR_MEMORY;
     const size_t count = find_runs(rows, runs, layer_count);

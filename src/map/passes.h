@@ -17,9 +17,9 @@ typedef struct camber_pass_list {
 /* How a mesh numbers what the sets draw. */
 typedef struct camber_mesh_rows {
     const camber_plan *plan;
-    bool by_pair;                  /* else by row */
-    const size_t *first_polylines; /* set_count + 1 */
-    const bool *used;              /* by pair or row: a polyline has it */
+    bool by_pair;                      /* else by row */
+    const size_t *first_polylines;     /* set_count + 1 */
+    const bool *used;                  /* by pair or row: a polyline has it */
     const camber_label_shapes *labels; /* drawn where their layers are. NULL: none */
     const camber_style_layer *style_layers;
 } camber_mesh_rows;

@@ -13,9 +13,9 @@
 
 typedef struct glyph_files {
     camber_context *context;
-    char *folder;  /* ends with / */
-    char *name;    /* within the folder, with {fontstack} and {range} */
-    char *bytes;   /* of the last range */
+    char *folder; /* ends with / */
+    char *name;   /* within the folder, with {fontstack} and {range} */
+    char *bytes;  /* of the last range */
 } glyph_files;
 
 static void free_files(glyph_files *files) {

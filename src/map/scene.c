@@ -47,11 +47,11 @@ static camber_status make_pair_passes(camber_scene *scene) {
     for (size_t i = 0; i < count; i++)
         used[scene->geometry.entries[i].row] = true;
     const camber_mesh_rows rows = {.plan = plan,
-                                .by_pair = true,
-                                .first_polylines = scene->geometry.first_entries,
-                                .used = used,
-                                .labels = &scene->labels,
-                                .style_layers = scene->zoom->features->style->layers};
+                                   .by_pair = true,
+                                   .first_polylines = scene->geometry.first_entries,
+                                   .used = used,
+                                   .labels = &scene->labels,
+                                   .style_layers = scene->zoom->features->style->layers};
     const camber_status status = camber_passes_make(scene->context, &rows, &layer_count, &scene->pair_passes);
     camber_free(scene->context, used);
     return status;
@@ -158,8 +158,7 @@ static camber_status make_labels(camber_scene *scene) {
     camber_labels labels = {0};
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
-    camber_status status =
-        camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
+    camber_status status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
         status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
     camber_labels_free(&labels);

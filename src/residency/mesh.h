@@ -90,7 +90,7 @@ struct camber_held_network {
 struct camber_mesh {
     camber_device *device;
     camber_mesh *companion; /* camber_mesh_get_companion. NULL: none yet */
-    const void *owner; /* the renderer that may draw it, only compared and never read here; NULL: none */
+    const void *owner;      /* the renderer that may draw it, only compared and never read here; NULL: none */
     const camber_shared_buffer_ops *ops;
     void *ops_user;
     unsigned buffer_copies;                  /* how many times each output buffer is in memory: 2 if GL gets a copy */

@@ -78,8 +78,10 @@ set(label_layout_suburb "\"text-transform\": \"uppercase\", \"text-letter-spacin
 set(label_layout_lake "\"text-max-width\": 7, \"text-letter-spacing\": 0.04, ")
 set(label_layout_green "\"text-max-width\": 7, ")
 set(label_layout_peak "\"text-max-width\": 8, ")
-set(label_layout_town "\"text-max-width\": 8, \"text-padding\": 6, ")
-set(label_layout_city "\"text-max-width\": 8, \"text-padding\": 8, ")
+set(label_by_population "\"symbol-sort-key\": [\"-\", 0, [\"to-number\", [\"get\", \"population\"], 0]],\n                ")
+set(label_layout_village "${label_by_population}")
+set(label_layout_town "${label_by_population}\"text-max-width\": 8, \"text-padding\": 6, ")
+set(label_layout_city "${label_by_population}\"text-max-width\": 8, \"text-padding\": 8, ")
 
 set(label_light_place "#33302b")
 set(label_light_suburb "#7a7164")
@@ -98,7 +100,7 @@ set(label_dark_green "#7fa585")
 set(label_dark_shield "#f0c58c")
 set(label_dark_halo "rgba(14, 18, 26, 0.9)")
 
-# What a kind says, where it is not the name.
+# The texts of kinds that show more or something other than the name.
 set(label_name "[\"coalesce\", [\"get\", \"name\"], [\"get\", \"FULLNAME\"]]")
 set(label_text_house "[\"coalesce\", [\"get\", \"addr:housenumber\"], [\"get\", \"housenumber\"], [\"get\", \"addr_housenumber\"]]")
 set(label_text_peak "[\"case\", [\"has\", \"ele\"], [\"concat\", ${label_name}, \"\\n\", [\"to-string\", [\"get\", \"ele\"]], \" m\"], ${label_name}]")

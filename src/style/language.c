@@ -50,11 +50,10 @@ static json_t *translate(const char *language, json_t *json) {
     if (op && key && strcmp(op, "get") == 0 && json_array_size(json) == 2 && is_name(key))
         return prefer(language, json_incref(json));
     json_t *made = json_array();
-    json_array_foreach(json, i, item)
-        if (!made || json_array_append_new(made, translate(language, item)) != 0) {
-            json_decref(made);
-            return NULL;
-        }
+    json_array_foreach(json, i, item) if (!made || json_array_append_new(made, translate(language, item)) != 0) {
+        json_decref(made);
+        return NULL;
+    }
     return made;
 }
 
@@ -75,14 +74,13 @@ camber_status camber_style_translate(camber_context *context, const char *json, 
         if (!isalnum((unsigned char)language[i]) && language[i] != '-' && language[i] != '_')
             i = 64;
     if (i < 1 || i > 32)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "language \"%.40s\": write a code such as de, pt or zh-Hant", language);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "language \"%.40s\": write a code such as de, pt or zh-Hant",
+                           language);
     camber_status status = camber_json_read(context, json, size_bytes, name, &root);
     if (status != CAMBER_OK)
         return status;
-    json_array_foreach(json_object_get(root, "layers"), i, layer)
-        if (!translate_layer(language, layer))
-            status = CAMBER_ERROR_MEMORY;
+    json_array_foreach(json_object_get(root, "layers"), i, layer) if (!translate_layer(language, layer)) status =
+        CAMBER_ERROR_MEMORY;
     char *text = status == CAMBER_OK ? json_dumps(root, JSON_COMPACT) : NULL;
     const size_t size = text ? strlen(text) + 1 : 0;
     json_decref(root);

@@ -45,8 +45,8 @@ static void describe(camber_font_entry *entry, hb_face_t *face) {
 
 static camber_status add_file(camber_font_index *index, const char *path) {
     camber_status status;
-    camber_soft_log kept;
-    camber_log_soften(index->context, &kept);
+    camber_saved_log kept;
+    camber_log_demote_errors(index->context, &kept);
     hb_blob_t *blob = camber_face_map_file(index->context, path, &status);
     camber_log_restore(index->context, &kept);
     if (status == CAMBER_ERROR_MEMORY)

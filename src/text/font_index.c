@@ -77,8 +77,8 @@ size_t camber_font_index_find(const camber_font_index *index, const char *name) 
 camber_status camber_font_index_open(camber_font_index *index, size_t number, camber_face **face) {
     camber_font_entry *entry = &index->entries[number];
     if (!entry->face && !entry->is_broken) {
-        camber_soft_log kept;
-        camber_log_soften(index->context, &kept);
+        camber_saved_log kept;
+        camber_log_demote_errors(index->context, &kept);
         const camber_status status =
             entry->bytes
                 ? camber_face_open_bytes(index->context, entry->path, entry->bytes, entry->size_bytes, &entry->face)

@@ -100,8 +100,8 @@ static bool is_news(camber_fonts *fonts, uint64_t key) {
     for (size_t i = 0; i < fonts->told_count; i++)
         if (fonts->told[i] == key)
             return false;
-    camber_soft_log kept;
-    camber_log_soften(fonts->context, &kept);
+    camber_saved_log kept;
+    camber_log_demote_errors(fonts->context, &kept);
     const bool has_room =
         camber_grow(fonts->context, &fonts->told, &fonts->told_capacity, fonts->told_count + 1, sizeof *fonts->told);
     camber_log_restore(fonts->context, &kept);

@@ -120,8 +120,8 @@ static camber_status unpack(camber_context *context, const uint8_t *bytes, size_
                             Camber__Glyphs__Range **range) {
     message_memory memory = {.context = context};
     ProtobufCAllocator allocator = {allocate, release, &memory};
-    camber_soft_log kept;
-    camber_log_soften(context, &kept);
+    camber_saved_log kept;
+    camber_log_demote_errors(context, &kept);
     *range = camber__glyphs__range__unpack(&allocator, size_bytes, bytes);
     camber_log_restore(context, &kept);
     return *range || !memory.is_exhausted

@@ -15,7 +15,7 @@ set(label_zoom_street 14)
 set(label_zoom_street_main 12.5)
 set(label_zoom_green 14.5)
 set(label_zoom_airport 11)
-set(label_zoom_station 14)
+set(label_zoom_station 15)
 set(label_zoom_peak 12)
 set(label_zoom_lake 13.5)
 set(label_zoom_shield 9)
@@ -24,6 +24,10 @@ set(label_zoom_suburb 12)
 set(label_zoom_village 11)
 set(label_zoom_town 8)
 set(label_zoom_city 4)
+# From which zoom on a place is larger than the picture.
+set(label_end_suburb 16.5)
+set(label_end_town 15)
+set(label_end_city 13.5)
 
 set(label_size_house 9 11)
 set(label_size_stream 10 13)
@@ -123,7 +127,7 @@ city_match(label_osm_green_leisure "[\"get\", \"leisure\"]" park garden nature_r
 city_match(label_osm_green_landuse "[\"get\", \"landuse\"]" cemetery forest recreation_ground)
 set(label_osm_green "[\"any\", ${label_osm_green_leisure}, ${label_osm_green_landuse}]")
 city_match(label_osm_hamlet "[\"get\", \"place\"]" hamlet isolated_dwelling neighbourhood)
-city_match(label_osm_suburb "[\"get\", \"place\"]" suburb quarter borough city_block)
+city_match(label_osm_suburb "[\"get\", \"place\"]" suburb quarter borough)
 city_match(label_osm_village "[\"get\", \"place\"]" village)
 city_match(label_osm_town "[\"get\", \"place\"]" town)
 city_match(label_osm_city "[\"get\", \"place\"]" city)
@@ -181,7 +185,7 @@ set(label_class_places [=[["coalesce", ["get", "kind_detail"], ["get", "pmap:kin
 
 set(label_template [=[
     {"id": "@ID@", "type": "symbol",@HEAD@
-     "minzoom": @ZOOM@,
+     "minzoom": @ZOOM@,@END@
      "layout": {@LAYOUT@"text-field": @TEXT@, "text-font": ["@FONT@"],
                 "text-size": ["interpolate", ["linear"], ["zoom"], @ZOOM@, @SMALL@, @LATER@, @LARGE@]},
      "paint": {"text-color": "@COLOR@", "text-halo-color": "@HALO@", "text-halo-width": 1.2}}]=])
@@ -195,6 +199,10 @@ macro(label_layer out theme kind id head)
   list(GET label_size_${kind} 0 SMALL)
   list(GET label_size_${kind} 1 LARGE)
   set(LAYOUT "${label_layout_${kind}}")
+  set(END "")
+  if(DEFINED label_end_${kind})
+    set(END " \"maxzoom\": ${label_end_${kind}},")
+  endif()
   set(TEXT "${label_name}")
   if(DEFINED label_text_${kind})
     set(TEXT "${label_text_${kind}}")

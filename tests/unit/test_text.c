@@ -243,6 +243,7 @@ static void test_breaks(void **state) {
     check_lines(&m, "Avenue of the Americas", 0.0f, "Avenue of the Americas");
     check_lines(&m, "Avenue\nof the Americas", 0.0f, "Avenue|of the Americas");
     check_lines(&m, "a\n\nb", 0.0f, "a||b");
+    check_lines(&m, "a\n\xcc\x81", 0.0f, "a|\xcc");
     check_lines(&m, "  a  \n  b ", 10.0f, "a|b");
     check_lines(&m, "Frankfurt-Hoechst/Sued", 5.0f, "Frankfurt-|Hoechst/|Sued");
     check_lines(&m, "Praha (Prag) (Prague)", 6.0f, "Praha (Prag)|(Prague)");

@@ -1,4 +1,4 @@
-/* Marching squares. Corners are the centres of pixels, and one row and column more on each side, which are outside. A
+/* Marching squares. Corners are the values, and one row and column more on each side, which are outside. A
  * ring crosses the sides of squares at which one end is inside and the other is not. In each square, it goes from the
  * side that it enters by to the side that it leaves by, with the inside to its right:
  *
@@ -25,7 +25,7 @@ typedef struct grid {
 static float get_value(const grid *g, uint32_t x, uint32_t y) {
     if (x == 0 || y == 0 || x > g->source->width || y > g->source->height)
         return 0.0f;
-    return (float)g->source->values[(size_t)(y - 1) * g->source->width + (x - 1)];
+    return g->source->values[(size_t)(y - 1) * g->source->width + (x - 1)];
 }
 
 /* The number of a square's side: its top (0), right (1), bottom (2), left (3). Sides are numbered by the corner at
@@ -75,8 +75,8 @@ static void add_crossing(const grid *g, uint32_t side, camber_outline_maker *mak
     const float a = get_value(g, x, y);
     const float b = is_vertical ? get_value(g, x, y + 1) : get_value(g, x + 1, y);
     const float share = (EDGE - a) / (b - a);
-    const float px = (float)x - 0.5f + (is_vertical ? 0.0f : share);
-    const float py = (float)y - 0.5f + (is_vertical ? share : 0.0f);
+    const float px = (float)x - 1.0f + (is_vertical ? 0.0f : share);
+    const float py = (float)y - 1.0f + (is_vertical ? share : 0.0f);
     camber_outline_add_point(maker, g->source->left + px * g->source->scale, g->source->top + py * g->source->scale);
 }
 

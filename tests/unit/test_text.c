@@ -3,6 +3,8 @@
 #include "core.h"
 
 #include "base/embedded.h"
+#include "text/contours.h"
+#include "text/distances.h"
 #include "text/fonts.h"
 
 #include <math.h>
@@ -243,6 +245,7 @@ static void test_breaks(void **state) {
     check_lines(&m, "Avenue of the Americas", 0.0f, "Avenue of the Americas");
     check_lines(&m, "Avenue\nof the Americas", 0.0f, "Avenue|of the Americas");
     check_lines(&m, "a\n\nb", 0.0f, "a||b");
+    check_lines(&m, "a\n\xcc\x81", 0.0f, "a|\xcc");
     check_lines(&m, "  a  \n  b ", 10.0f, "a|b");
     check_lines(&m, "Frankfurt-Hoechst/Sued", 5.0f, "Frankfurt-|Hoechst/|Sued");
     check_lines(&m, "Praha (Prag) (Prague)", 6.0f, "Praha (Prag)|(Prague)");
@@ -499,6 +502,43 @@ static void test_ranges(void **state) {
     assert_true(m.fonts->sources[m.fonts->glyphs[text->glyphs[1].glyph].source].face != NULL);
     camber_text_destroy(text);
     unmake(&m);
+}
+
+/* A stroke of 0.6 px that no pixel's centre is in has its outline all the same. */
+static void test_thin_strokes(void **state) {
+    (void)state;
+    enum { WIDTH = 24, HEIGHT = 12 };
+    uint8_t values[WIDTH * HEIGHT];
+    host h;
+    camber_context *context = host_context(&h);
+    for (int turn = 0; turn < 2; turn++)
+        for (int place = 0; place < 8; place++) {
+            const float middle = 5.0f + (float)place / 8.0f;
+            const size_t wide = turn ? HEIGHT : WIDTH, high = turn ? WIDTH : HEIGHT;
+            for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+                const float along = (float)(turn ? i / wide : i % wide), across = (float)(turn ? i % wide : i / wide);
+                const float out_along = fabsf(along - 11.5f) - 7.5f, out_across = fabsf(across - middle) - 0.3f;
+                const float out = out_along > 0.0f && out_across > 0.0f ? hypotf(out_along, out_across)
+                                                                        : fmaxf(out_along, out_across);
+                values[i] = (uint8_t)fmaxf(255.0f - floorf(64.0f + 32.0f * out), 0.0f);
+            }
+            float *refined = camber_distances_refine(context, values, wide, high);
+            camber_outline_maker made = {.context = context};
+            camber_outline outline;
+            void *block = NULL;
+            assert_non_null(refined);
+            camber_contours_trace(&(camber_contour_source){.values = refined,
+                                                           .width = CAMBER_DISTANCE_STEPS * ((uint32_t)wide - 1) + 1,
+                                                           .height = CAMBER_DISTANCE_STEPS * ((uint32_t)high - 1) + 1,
+                                                           .scale = 1.0f / CAMBER_DISTANCE_STEPS},
+                                  &made);
+            assert_int_equal(camber_outline_finish(&made, &outline, &block), CAMBER_OK);
+            assert_int_equal(outline.ring_count, 1);
+            assert_true(fabs(area_of(&outline) - 15.0 * 0.6) < 1.0);
+            camber_free(context, block);
+            camber_free(context, refined);
+        }
+    host_done(&h, context);
 }
 
 /* Arabic letters are drawn in the forms in which they join, and with ligatures, if there are glyphs for these. */
@@ -820,27 +860,17 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_beside_hb_shape),
-        cmocka_unit_test(test_bidi_beside_unicode),
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_both_directions),
-        cmocka_unit_test(test_breaks),
-        cmocka_unit_test(test_breaks_plainly),
-        cmocka_unit_test(test_anchors),
-        cmocka_unit_test(test_spacing_and_scale),
-        cmocka_unit_test(test_outlines),
-        cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_arabic_ranges),
-        cmocka_unit_test(test_vertical),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_missing_font),
-        cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_pictograph),
-        cmocka_unit_test(test_marks),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_long),
-        cmocka_unit_test(test_invalid),
-        cmocka_unit_test(test_broken_files),
+        cmocka_unit_test(test_beside_hb_shape), cmocka_unit_test(test_bidi_beside_unicode),
+        cmocka_unit_test(test_order),           cmocka_unit_test(test_both_directions),
+        cmocka_unit_test(test_breaks),          cmocka_unit_test(test_breaks_plainly),
+        cmocka_unit_test(test_anchors),         cmocka_unit_test(test_spacing_and_scale),
+        cmocka_unit_test(test_outlines),        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_thin_strokes),    cmocka_unit_test(test_arabic_ranges),
+        cmocka_unit_test(test_vertical),        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_missing_font),    cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_pictograph),      cmocka_unit_test(test_marks),
+        cmocka_unit_test(test_threads),         cmocka_unit_test(test_long),
+        cmocka_unit_test(test_invalid),         cmocka_unit_test(test_broken_files),
         cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -215,7 +215,7 @@ static camber_status warn_if_nothing_is_drawn(const camber_scene *scene) {
         return CAMBER_OK;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: no layer draws %zu of the %zu features", undrawn, all);
-    if (!undrawn || undrawn < all)
+    if (!undrawn || undrawn < all || scene->labels.range_count)
         return CAMBER_OK;
     const camber_status status = camber_plan_explain_nothing(features, zoom, zoom, why, sizeof why, &draws);
     if (status == CAMBER_OK)

@@ -331,6 +331,7 @@ typedef struct camber_scene_info {
     size_t features;
     size_t polylines, points; /* to tessellate */
     size_t points_in;         /* points of these features' polylines, before simplification and clipping */
+    size_t labels;            /* labels that are shown */
 } camber_scene_info;
 
 typedef struct camber_scene camber_scene;

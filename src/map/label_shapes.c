@@ -14,6 +14,8 @@
 static const double TOLERANCE_PX = 1.0 / 32.0;
 /* A halo's edge fades over so many times its blur, as the distances of glyphs in MapLibre do. */
 static const float BLUR_SCALE = 1.19f;
+/* As wide as strokes may be. */
+static const float WIDEST_PX = 16384.0f;
 
 /* Rings while they are gathered. */
 typedef struct rings {
@@ -134,10 +136,11 @@ static void place_image(const camber_icon_form *form, const camber_label_item *i
 
 static void make_look(const camber_label_look *look, camber_label_shapes *s, size_t i) {
     const float blur = BLUR_SCALE * look->halo_blur_px;
-    const float half = look->halo_width_px > 0.0f && look->halo_color.a > 0.0f ? look->halo_width_px + blur : 0.0f;
-    s->strokes[i] = (camber_stroke){.width_px = 2.0f * half, .join = CAMBER_JOIN_ROUND, .cap = CAMBER_CAP_ROUND};
+    const bool has_halo = look->halo_width_px > 0.0f && look->halo_color.a > 0.0f;
+    const float width = has_halo ? fminf(2.0f * (look->halo_width_px + blur), WIDEST_PX) : 0.0f;
+    s->strokes[i] = (camber_stroke){.width_px = width, .join = CAMBER_JOIN_ROUND, .cap = CAMBER_CAP_ROUND};
     s->halos[i] = (camber_paint){
-        .width_px = 2.0f * half, .color = look->halo_color, .blur_px = 2.0f * blur, .smooth_blur = blur > 0.0f};
+        .width_px = width, .color = look->halo_color, .blur_px = 2.0f * blur, .smooth_blur = blur > 0.0f};
     s->fills[i] = (camber_fill){.color = look->color};
     s->paints[i] = (camber_paint){.fill = s->fills + i};
 }

@@ -12,8 +12,8 @@ enum { CAMBER_FONT_KEYS = 8 };
 
 typedef enum camber_font_origin {
     CAMBER_FONT_FROM_FOLDER = 0,
+    CAMBER_FONT_SHIPPED, /* before the system's, so that it draws its names' texts alike everywhere */
     CAMBER_FONT_FROM_SYSTEM,
-    CAMBER_FONT_SHIPPED,
 } camber_font_origin;
 
 typedef struct camber_font_entry {

@@ -1,9 +1,9 @@
 /* Saves a set of features to a file, and loads it again.
  *
- * Input: a set whose lines are merged and weighed. Output: a file, from which the same set can be loaded, or the part
- * of it that touches a region. Loading takes a tenth of the time that reading the original files takes. The file serves
- * the machines that draw the parts of one run, and is not needed after the run. Numbers are in the machine's byte
- * order; a file with another byte order is refused.
+ * Input: a set whose lines are merged and whose points have their importance. Output: a file, from which the same set
+ * can be loaded, or the part of it that touches a region. Loading takes a tenth of the time that reading the original
+ * files takes. The machines that draw the parts of one run read the file; after the run it is not needed. Numbers are
+ * in the machine's byte order; a file with another byte order is refused.
  *
  *     header | JSON: layers, classes | numbers by feature | numbers by polyline | blocks of points | checksum
  *

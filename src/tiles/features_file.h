@@ -1,4 +1,5 @@
-/* Saves a set of features in a file after the input has been read, merged and weighed, for the parts of one run. */
+/* Saves a set of features in a file for the parts of one run, after the input has been read, its lines have been
+ * merged, and the importance of their points has been computed. */
 #ifndef CAMBER_TILES_FEATURES_FILE_H
 #define CAMBER_TILES_FEATURES_FILE_H
 

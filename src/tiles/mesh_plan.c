@@ -91,9 +91,9 @@ float camber_mesh_plan_offset(const camber_mesh_plan *plan, size_t layer, uint32
     return offset_of(plan, layer, plan->row_pairs[row], sample);
 }
 
-/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and returns its reach; negative if it is
- * not drawn. The reach beyond the stroke itself comes from an offset or a translation, by which the camera extends its
- * window. */
+/* Sets the width of a pair's stroke to its largest width at any sample, in px of zoom z, and returns its reach;
+ * negative if it is not drawn. An offset or a translation makes the reach larger than the stroke's own; the camera
+ * extends its window by the difference. */
 static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t pair) {
     camber_stroke *stroke = plan->zoom->strokes + pair;
     float reach = -1.0f;

@@ -89,7 +89,7 @@ static camber_status write_job(pyramid *p, const camber_encode_job *job) {
     return status;
 }
 
-/* Writes all encoded pictures. With waits, it waits for at least one picture, if any is in progress. */
+/* Writes all encoded pictures. If waits is true, it first waits for at least one picture, if any is in progress. */
 static camber_status write_ready(pyramid *p, bool waits) {
     camber_encode_job *job;
     camber_status status = CAMBER_OK;

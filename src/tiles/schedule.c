@@ -10,7 +10,7 @@
  *
  * Wide tasks are packed, the largest first, each into the first part that has room for it. The deep tasks are one
  * sequence, which is cut: at each deep zoom, a part has one stretch of the archive. The cost of the most expensive part
- * is minimised; given that, so is the cost of the most expensive part of the other kind. */
+ * is minimised first, and then the cost of the most expensive part of the other kind. */
 #include "tiles/schedule.h"
 
 #include "archive/pmtiles.h"

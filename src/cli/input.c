@@ -361,7 +361,7 @@ static camber_status project_once(camber_input *input, const camber_scene_desc *
     return status;
 }
 
-/* With --verbose: says what the scene has in memory for its view and others. */
+/* With --verbose: says how many points the scene keeps in memory for its own view and others. */
 static void say_network(const camber_input *input) {
     camber_camera camera;
     camber_tessellation_desc desc;

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* A tenth of a pixel is not visible, and drops a fifth to a third of a city's points. */
+/* Moving lines by a tenth of a pixel is not visible, and drops a fifth to a third of a city's points. */
 #define DRAWN_SIMPLIFY_PX 0.1
 
 enum { NAME_LETTERS = 32 }; /* longest option name that a mistyped one is compared with */

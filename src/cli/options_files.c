@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* An existing file is identified by its device and inode, and a file that does not exist by those of its folder, and
- * its name. */
+/* An existing file is identified by its device and inode, and a file that does not exist by its folder's device and
+ * inode and its own name. */
 typedef struct file {
     const char *path, *role;
     dev_t device;

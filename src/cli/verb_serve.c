@@ -33,7 +33,7 @@ int camber_verb_serve(camber_session *session) {
 #include <string.h>
 #include <sys/stat.h>
 
-/* If the device fails to draw LOST_PICTURES pictures in a row, it counts as lost. */
+/* If the device fails to draw LOST_PICTURES pictures in a row, it is considered lost. */
 enum { DEEPEST_ZOOM = 22, LOOK_MS = 200, BEAT_MS = 10000, LOST_PICTURES = 3 };
 /* A reading that is given up ends when it next needs memory. If its library never does, the thread is abandoned. */
 enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
@@ -41,7 +41,7 @@ enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
 typedef struct reading reading;
 typedef struct rereading rereading;
 
-/* Requests of signals, and of changes to the style that is edited. */
+/* Requests that arrive as signals or as changes to the style that is edited. */
 typedef struct wishes {
     pthread_mutex_t mutex;
     pthread_cond_t changed;

@@ -20,8 +20,8 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* The time that belongs to no stage: libraries, the device and its kernels. Together with the stages it is the whole.
- */
+/* The time that belongs to no stage: loading libraries, and opening the device and its kernels. Together with the times
+ * of the stages it adds up to the total. */
 static double start_ms(const job *j) {
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
 }

@@ -99,8 +99,8 @@ static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_
     return false;
 }
 
-/* Compares words, of which each segment has `words`. Those of segments that are not drawn are undefined, so they are
- * skipped. */
+/* Compares the words of segments; each segment has `words` of them. The words of segments that are not drawn are
+ * undefined, so they are skipped. */
 static bool words_differ(const char *field, const float *got, const float *expected, size_t words,
                          const camber_drawing_stages *of, camber_finding *finding) {
     char where[96];

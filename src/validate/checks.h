@@ -13,8 +13,8 @@ camber_status camber_subject_tessellate(const camber_subject *subject, camber_me
 /* Whether the subject is checked with a method. */
 bool camber_subject_takes(const camber_subject *subject, const camber_validation_desc *desc, camber_method method);
 
-/* Whether pictures of a method are checked: those of all methods if all checks are requested, otherwise those of the
- * method that was selected, or of strips, which are the default. */
+/* Whether pictures of a method are checked. If all checks are requested, the pictures of all methods are checked;
+ * otherwise only those of the method that was selected, or of strips, which are the default. */
 bool camber_draws_method(const camber_validation_desc *desc, camber_method method);
 
 /* Moves the camera so that a pixel of its picture becomes the centre. */

@@ -1,7 +1,7 @@
 /* The bounds for the pixels of plain strokes, in 255ths and in shares of the pixels that an edge crosses. Bounds for
- * features along lines are in the rows of check_along.c. They were measured with Mesa's llvmpipe, plus a quarter. The
- * bounds of a scene include its known faults: ends of lines whose last segments are shorter than a pixel, and lines
- * that overlap themselves, whose parts are anti-aliased separately. */
+ * features along lines are in the rows of check_along.c. The bounds in this file are values measured with Mesa's
+ * llvmpipe, plus a quarter. The bounds of a scene include its known faults: ends of lines whose last segments are
+ * shorter than a pixel, and lines that overlap themselves, whose parts are anti-aliased separately. */
 #include "validate/checks.h"
 
 #include <math.h>

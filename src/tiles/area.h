@@ -28,7 +28,7 @@ size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoo
 /* Whether bounds, in degrees, overlap the data's box. */
 bool camber_tiles_bounds_meet(const double bounds[4], camber_box data);
 void camber_tiles_area_free(camber_tiles_area *area);
-/* Returns the tiles of a metatile that are wanted, as bits like those of camber_metatile. */
+/* Returns which tiles of a metatile are wanted, as bits in the order of camber_metatile.tiles. */
 uint64_t camber_tiles_area_pick(const camber_tiles_area *area, int zoom, uint32_t side, uint32_t column, uint32_t row);
 /* Returns the tiles of a metatile that are kept even if they are empty: wanted ones within the bounds. */
 uint64_t camber_tiles_area_pick_bounds(const camber_tiles_area *area, int zoom, uint32_t side, uint32_t column,

@@ -80,7 +80,7 @@ camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
     return !fills || camber_triangulator_is_available() ? CAMBER_OK : camber_triangulator_fail_missing(plan->context);
 }
 
-/* Appends the new triangles to those of the tile. */
+/* Appends the new triangles to the tile's triangles. */
 static camber_status take_triangles(camber_mesh_tile *tile, const camber_triangles *made, uint16_t row) {
     const uint32_t first = (uint32_t)tile->corner_count;
     if (!camber_grow(tile->context, &tile->corners, &tile->corner_capacity, tile->corner_count + made->corner_count,

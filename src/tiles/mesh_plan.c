@@ -15,7 +15,7 @@ static const camber_plan *plan_at(const camber_mesh_plan *plan, size_t sample) {
 
 /* Returns the row in another sample's set for the class and dot of a pair of the zoom's plan; CAMBER_NO_ROW if that set
  * does not draw them. A style has the same number of dots at all zooms, unless a layer appears between two samples: the
- * last dot is the fill's. */
+ * last dot belongs to the fill. */
 static uint32_t row_of(const camber_mesh_plan *mesh, const camber_plan *plan, size_t set, uint32_t pair) {
     const uint32_t class = mesh->pair_classes[pair];
     const size_t above = mesh->zoom->plan.dot_count - mesh->zoom->plan.pair_dots[pair];

@@ -2,8 +2,8 @@
  *
  * Input: the points of a mesh, as the device tessellated them for a picture of tiles. Output: for each tile, the points
  * of the segments within reach of it, in whole units of the tile. Main idea: a segment that touches the tile, extended
- * by the reach of its row, is kept as it is; all others are dropped. So a tile clipped to its square shows the same as
- * the picture does there. A segment is cut only where it leaves the range of 16 bits.
+ * by the reach of its row, is kept as it is; all others are dropped. So a tile that is clipped to its square looks like
+ * this part of the picture. A segment is cut only where it leaves the range of 16 bits.
  *
  *     +-----------------------------+  range of 16 bits: half a tile beyond each side
  *     |      .-----------------.    |

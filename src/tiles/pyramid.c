@@ -345,7 +345,8 @@ static int find_center_zoom(const camber_tiles_area *area) {
     return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
-/* If a box crosses the antimeridian, the archive's bounds are the whole world's, and their middle is not the box's. */
+/* If a box crosses the antimeridian, the archive's bounds are the whole world, and their middle is not the middle of
+ * the box. */
 static double find_center_longitude(const camber_tiles_area *area, const double bounds[4]) {
     double longitude, latitude;
     if (area->bounds.x1 <= 1.0)

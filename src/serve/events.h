@@ -19,7 +19,7 @@ void camber_events_destroy(camber_events *events);
 void camber_events_tell(camber_events *events, const char *error);
 /* Sends an empty line to each listener, to detect disconnected ones. */
 void camber_events_beat(camber_events *events);
-/* Ends all streams, and every new one at once. */
+/* Ends all streams. A stream that is opened later ends at once. */
 void camber_events_end(camber_events *events);
 /* Returns the endless response for a connection; NULL if there is no memory, or there are too many listeners. */
 struct MHD_Response *camber_events_listen(camber_events *events, struct MHD_Connection *connection);

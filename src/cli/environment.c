@@ -61,7 +61,7 @@ const char *camber_environment_temporary(void) {
 bool camber_environment_set(const camber_options *options) {
     bool set = !options->threads || set_threads(options->threads);
     set = forget_relative("XDG_CACHE_HOME") && forget_relative("HOME") && set;
-    /* Without it GDAL puts temporary files into the working folder. */
+    /* Without this variable, GDAL puts temporary files into the working folder. */
     set = setenv("CPL_TMPDIR", camber_environment_temporary(), 0) == 0 && set;
     /* Otherwise Mesa prints warnings about missing GPUs among the errors. */
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
@@ -75,7 +75,8 @@ bool camber_environment_set(const camber_options *options) {
     return setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0) == 0 && set;
 }
 
-/* Called before a driver starts, because a driver that cannot open its files reports no device, or nothing at all. */
+/* Called before a driver starts, because a driver that cannot open its files says that there is no device, or says
+ * nothing. */
 bool camber_environment_has_descriptors(void) {
     int copies[LEAST_DESCRIPTORS], count = 0;
     while (count < LEAST_DESCRIPTORS && (copies[count] = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0)

@@ -30,7 +30,7 @@ static bool take_info(file *it, const struct stat *info) {
     return true;
 }
 
-/* Only regular files count: a device or a pipe may well be read and written. */
+/* Only regular files count: a device or a pipe may be both read and written. */
 static bool find_stream(file *it, int descriptor, const char *name) {
     struct stat info;
     it->path = name;

@@ -148,7 +148,7 @@ struct camber_opener {
     camber_session *session;
     camber_context *context;
     camber_report report;
-    camber_report *told; /* report while the thread runs, afterwards the session's */
+    camber_report *told; /* `report` while the thread runs, and the session's report afterwards */
     camber_status status;
     camber_outlook outlook;
     double pitch_deg;

@@ -67,7 +67,7 @@ void camber_session_close(camber_session *session);
 /* Returns the method that the options select, or the default. */
 camber_method camber_session_method(const camber_session *session);
 
-/* Adds "device", "gl_renderer", "draw", "draw_reason" and "sharing" of what is open. */
+/* Adds "device", "gl_renderer", "draw", "draw_reason" and "sharing", as far as these parts are open. */
 void camber_session_describe(const camber_session *session, json_t *object);
 
 #endif

@@ -71,7 +71,7 @@ struct reading {
     wishes *wishes;
 };
 
-/* A reading on its own thread. The mutex of the wishes guards what both threads use. */
+/* A reading on its own thread. The mutex of the wishes guards the members that both threads use. */
 struct rereading {
     reading *it;
     pthread_t thread;
@@ -297,7 +297,7 @@ static int read_input(reading *it) {
 
 /* ---- Reading again ---- */
 
-/* glibc keeps small freed blocks in the process otherwise, where they count as its memory. */
+/* Returns freed memory to the system. Otherwise glibc keeps small freed blocks, which count as the process's memory. */
 static void give_memory_back(void) {
 #ifdef __GLIBC__
     malloc_trim(0);
@@ -313,7 +313,7 @@ static void give_up(void *user) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-/* Shares the verb's memory with the content that is served meanwhile. */
+/* Prepares another reading. It shares the verb's memory with the content that is served meanwhile. */
 static void begin_again(reading *it, const camber_session *verb) {
     const reading *current = it->wishes->current;
     it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose, .keeps = true};

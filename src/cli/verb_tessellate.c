@@ -26,7 +26,7 @@ static double start_ms(const job *j) {
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
 }
 
-/* A row gets the paint of the topmost pass that draws it: the fill's if there is a casing. */
+/* A row gets the paint of the topmost pass that draws it. If there is a casing, this is the fill's paint. */
 static bool gather_paints(job *j, size_t count) {
     j->paints = calloc(count ? count : 1, sizeof *j->paints);
     if (!j->paints)

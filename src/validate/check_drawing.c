@@ -1,5 +1,5 @@
-/* Compares the kernels that draw with their CPU twin, stage by stage and byte for byte; and drawing in slices with
- * drawing at once. */
+/* Compares the kernels that draw with their CPU twin, stage by stage and byte for byte. Also compares drawing in slices
+ * with drawing at once. */
 #include "validate/checks.h"
 
 #include <stdio.h>
@@ -260,7 +260,7 @@ static void close_path(camber_drawing_path *path) {
 }
 
 /* Checks with the vector width of the n-th of the device's other work-groups. Areas are checked, too, because vectors
- * of another width take other rows and columns of cells. */
+ * of another width process other rows and columns of cells. */
 static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
                                  const char *name, size_t n) {
     camber_device *device = checked->groups[n].device;

@@ -63,7 +63,7 @@ static double plane_at(const double *plane, double x, double y) {
     return (plane[0] * x + plane[1] * y - plane[2]) / reach;
 }
 
-/* The same for a disc. */
+/* Returns the same for the edge of a disc. */
 static double disc_at(const shape *s, double x, double y) {
     return s->radius > 0 ? (hypot(x - s->x, y - s->y) - s->radius) / 0.7072 : -INFINITY;
 }

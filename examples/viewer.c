@@ -504,7 +504,7 @@ static bool draw(viewer *v, bool at_rest) {
         show(v);
     else if (v->surface && camber_surface_is_lost(v->surface))
         fprintf(stderr, "viewer: the GL context is lost\n");
-    /* interactive frames wait for the screen here; those of the benchmark do not */
+    /* interactive frames wait for the screen here; the benchmark's frames do not */
     const double ms = (v->options.benchmark ? now_ms() : drawn_ms) - begin_ms;
     v->recent[v->frame_count % GRAPH_WIDTH] = ms;
     if (v->frame_count < v->options.frames)

@@ -55,8 +55,8 @@ static void weigh_range(const double *points, range whole, float *importance) {
 }
 
 /* A ring begins and ends at the same point, so that the segment between its ends has no length. It is split at the
- * point farthest from the seam. The point farthest from the line between these two is always kept as well, so that an
- * area remains an area, however small it is. */
+ * point farthest from the seam. The point farthest from the line between these two points is always kept as well, so
+ * that an area remains an area, however small it is. */
 static void weigh_ring(const double *points, size_t first, size_t last, float *importance) {
     double largest, before, after;
     const size_t far = camber_farthest(points, first, last, &largest);

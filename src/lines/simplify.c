@@ -44,8 +44,8 @@ static void mark(const double *points, range whole, double tolerance_squared, un
 }
 
 /* A ring begins and ends at the same point, so that the segment between its ends has no length. It is split first at
- * the point farthest from the seam. If no other point is kept, the point farthest from the line between these two is,
- * so that an area remains an area, however small it is. */
+ * the point farthest from the seam. If no other point is kept, the point farthest from the line between these two
+ * points is kept as well, so that an area remains an area, however small it is. */
 static void mark_ring(const double *points, size_t count, double tolerance_squared, unsigned char *keep) {
     double largest;
     const size_t far = camber_farthest(points, 0, count - 1, &largest);

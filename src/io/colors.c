@@ -2,7 +2,7 @@
  * only once per run of equal pixels. */
 #include "io/colors.h"
 
-enum { BITS_FIRST = 12 }; /* this many slots fit into the first-level cache; smaller tables have fewer */
+enum { BITS_FIRST = 12 }; /* log2 of a slot count that fits into the first-level cache; small tables have fewer */
 
 /* ---- Keys ---- */
 

@@ -1,4 +1,4 @@
-/* Fills the list of fonts from where there are some. */
+/* Fills the list of fonts from all of its origins. */
 #include "text/font_index.h"
 
 #include "base/embedded.h"
@@ -47,7 +47,7 @@ camber_status camber_font_index_fill(camber_font_index *index, const char *const
         status = camber_font_index_add_folder(index, folders[i]);
     if (!status && has_system)
         status = camber_font_index_add_system(index);
-    /* Which of equal fonts is taken must not depend on the order of files in folders. */
+    /* Which one of several equal fonts is used must not depend on the order of files in folders. */
     if (!status && index->count)
         qsort(index->entries, index->count, sizeof *index->entries, compare);
     return status ? status : add_shipped(index);

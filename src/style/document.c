@@ -120,7 +120,7 @@ static bool read_version(camber_document *d) {
            camber_document_continues(d, depth);
 }
 
-/* The same limit as that of the map's view. */
+/* The same limit as the map's view has. */
 static const double PITCH_MAX_DEG = 85.0;
 
 static bool read_camera(camber_document *d) {

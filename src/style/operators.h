@@ -6,8 +6,8 @@
  *     operators_sequences.c  strings and arrays
  *     operators_curves.c     step, interpolate
  *     operators_maths.c      arithmetic and functions of a number
- *     operators_formats.c    formatted texts, images in them, and what symbol layers have of types
- *     operators_numbers.c    numbers as texts for people
+ *     operators_formats.c    formatted texts, images in them, and the types that only symbol layers have
+ *     operators_numbers.c    numbers as texts for readers
  *
  * To add an operator, add its row there, and the functions that the row names. Only files of src/style that compile
  * expressions include this. */

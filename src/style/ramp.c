@@ -24,7 +24,7 @@ enum { ROOM = 64 };
 typedef struct sampler {
     const camber_expression *expression;
     camber_layer_ramp *ramp;
-    size_t capacity;   /* of ramp->stops */
+    size_t capacity;   /* room in ramp->stops */
     bool failed;       /* out of memory */
     double cost, work; /* cost of one evaluation, and the work that may still be done */
     size_t spans;      /* spans still to be added; each needs two stops */

@@ -16,11 +16,11 @@ typedef struct camber_sprite_image {
     double pixel_ratio;           /* px of the sheet per CSS px */
     camber_image image;           /* these px, as a paint needs them */
     bool sdf;                     /* the alpha is a distance; patterns draw it unchanged */
-    /* Parts that may be stretched, as pairs of first and end px of the image, in ascending order. 0: all of it. */
+    /* Parts that may be stretched, as pairs of first and end px of the image, in ascending order. 0: the whole side. */
     float (*stretch_x)[2], (*stretch_y)[2];
     size_t stretch_x_count, stretch_y_count;
     bool has_content;
-    float content[4]; /* left, top, right, bottom, px of the image: where a text goes. All of it without has_content */
+    float content[4]; /* px: left, top, right, bottom of the space for text; without has_content, all of it */
 } camber_sprite_image;
 
 typedef struct camber_sprites {

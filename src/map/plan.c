@@ -223,7 +223,7 @@ typedef struct row_table {
 typedef struct plan_classes {
     uint32_t *rows;
     double *keys;
-    uint32_t *drawn; /* the classes that are none of labels, which have neither rows nor keys */
+    uint32_t *drawn; /* the classes, except those of labels, which have neither rows nor keys */
     size_t drawn_count;
 } plan_classes;
 
@@ -370,8 +370,8 @@ static const camber_dash *intern_dash(camber_plan *plan, const camber_layer_dash
     return &made->dash;
 }
 
-/* Returns the width at the whole zoom below, scaled with the map. Other engines draw dashes and patterns in that width
- * up to the next whole zoom. */
+/* Returns the width at the next lower integer zoom, scaled with the map. Other engines draw dashes and patterns in that
+ * width up to the next integer zoom. */
 static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
                            const camber_feature_view *feature) {
     const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
@@ -602,7 +602,7 @@ static camber_status match_dot(const camber_view *view, camber_plan *plan, cambe
     return rows->by_class.rows[at] == CAMBER_NO_ROW ? CAMBER_ERROR_MEMORY : CAMBER_OK;
 }
 
-/* Lists the classes that may be drawn. Those of labels may be many more. */
+/* Lists the classes that may be drawn. There may be many more classes of labels. */
 static camber_status list_drawn(const camber_features *features, plan_classes *classes) {
     if (!(classes->drawn = camber_alloc(features->context, features->class_count, sizeof *classes->drawn)))
         return CAMBER_ERROR_MEMORY;

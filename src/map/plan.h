@@ -32,7 +32,7 @@ typedef enum camber_plan_part {
 
 typedef struct camber_plan_layer {
     camber_layer_look look;
-    camber_layer_look below; /* at the whole zoom below, if the layer has dashes or a pattern */
+    camber_layer_look below; /* at the next lower integer zoom, if the layer has dashes or a pattern */
     float translate_px[2];
     size_t set;
     size_t slot; /* its position among the set's layers */
@@ -116,16 +116,17 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
 void camber_plan_entries_free(camber_plan_entries *list);
 /* Returns a class as the style's expressions see it. */
 camber_feature_view camber_plan_view_of(const camber_features *features, const camber_feature_class *class);
-/* Whether features of the class come to the layer's filter: those of its source and source layer do. */
+/* Whether the layer's filter is applied to features of the class: it is if they are from its source and source layer.
+ */
 bool camber_plan_comes_to(const camber_features *features, const camber_style_layer *layer,
                           const camber_feature_class *class);
-/* Whether a layer takes features of the class at a zoom, which it may yet draw without width or colour. */
+/* Whether a layer takes features of the class at a zoom. It may still draw them without width or colour. */
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class);
-/* Whether a symbol layer takes them. A plan does not contain labels. */
+/* Whether a symbol layer takes features of the class. A plan does not contain labels. */
 bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
                         const camber_feature_class *class);
-/* Whether features of the class are drawn at any of the zooms (drawn.c). Labels are not. */
+/* Whether features of the class are drawn at any of the zooms (drawn.c). Labels do not count. */
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom);
 /* Finds the box of everything that is drawn at any of the zooms, in world coordinates. It extends past x = 1 if the box

@@ -1,4 +1,4 @@
-/* Makes a network of the polylines that a plan draws, and projects on the host the lines that a camera sees.
+/* Makes a network from the polylines that a plan draws, and projects on the host the lines that a camera sees.
  *
  * Input: features, a view and its plan. Output: a network whose rows are the plan's pairs. Near the antimeridian, and
  * if the picture is wider than the world, a polyline has several entries, one for each copy of the world. The network

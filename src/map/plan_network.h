@@ -1,4 +1,4 @@
-/* The network of the polylines that a plan draws, and those of them that a camera sees, projected on the host. */
+/* The network of the polylines that a plan draws, and the lines of it that a camera sees, projected on the host. */
 #ifndef CAMBER_MAP_PLAN_NETWORK_H
 #define CAMBER_MAP_PLAN_NETWORK_H
 

@@ -23,7 +23,7 @@ typedef struct source {
     uint32_t index;
     char what[160];       /* source "name", for messages */
     char pointer[1024];   /* STYLE: /sources/name, for messages about the style */
-    camber_tile_set *set; /* only of a vector source */
+    camber_tile_set *set; /* only for a vector source */
     bool is_bounded;      /* the document has bounds: there are no tiles outside */
     double bounds[4];     /* world coordinates; x0 > x1: unknown */
 } source;

@@ -1,4 +1,4 @@
-/* Makes triangles of areas.
+/* Makes triangles from areas.
  *
  * Input: rings in px, and the window to clip them to. Output: corners and triangles. Main idea: each ring is clipped at
  * each side of the window, which keeps the winding numbers inside the window. Most rings are buildings and the like,

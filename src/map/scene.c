@@ -409,7 +409,7 @@ static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
 }
 
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
-    const bool of_network = mesh && camber_mesh_get_info(mesh).of_network;
+    const bool of_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
     assert(of_network || scene->is_projected);
     if (!scene->own && (scene->zoom->has_images || scene->zoom->has_area_images))
         move_fills(scene);

@@ -1,5 +1,5 @@
 /* The font files that text may be drawn with, and their names: first the fonts in the caller's folders, then the fonts
- * that fontconfig knows, then the fonts that camber ships. A file is opened when a text needs it. */
+ * that camber ships, then the fonts that fontconfig knows. A file is opened when a text needs it. */
 #ifndef CAMBER_TEXT_FONT_INDEX_H
 #define CAMBER_TEXT_FONT_INDEX_H
 
@@ -12,8 +12,8 @@ enum { CAMBER_FONT_KEYS = 8 };
 
 typedef enum camber_font_origin {
     CAMBER_FONT_FROM_FOLDER = 0,
+    CAMBER_FONT_SHIPPED, /* before the system's, so that texts in this font are alike on all machines */
     CAMBER_FONT_FROM_SYSTEM,
-    CAMBER_FONT_SHIPPED,
 } camber_font_origin;
 
 typedef struct camber_font_entry {

@@ -135,12 +135,12 @@ typedef struct camber_source_desc {
      * is no filter; and the lines of an OpenStreetMap PBF, whatever its name, with several threads. */
     const char *path;
     /* The layer to read. NULL: OSM's "lines"; in a vector tile set the layers that the style names, or, if the set has
-     * none of them, its road layer, or else all; in other files every layer of which the style draws something. */
+     * none of them, its road layer, or else all; in other files every layer from which the style draws something. */
     const char *layer;
     const char *where; /* an OGR attribute filter, not for PMTiles. NULL: none */
-    /* true: no lines are merged. false: lines that the style cannot tell apart are merged where exactly two of them
-     * meet end to end. Lines of opposite direction are merged too, unless the style uses line-dasharray, line-offset,
-     * line-gradient or line-pattern. */
+    /* true: no lines are merged. false: lines that the style cannot tell apart are merged at points where exactly two
+     * of them meet end to end. Lines of opposite direction are merged too, unless the style uses line-dasharray,
+     * line-offset, line-gradient or line-pattern. */
     bool keep_apart;
     uint32_t threads; /* that read an OpenStreetMap PBF; 0: one per core */
 } camber_source_desc;
@@ -227,7 +227,7 @@ CAMBER_API bool camber_features_get_drawn_bounds(const camber_features *features
  * Returns CAMBER_ERROR_ARGUMENT (the style reads other properties; read the files into another set). */
 CAMBER_API camber_status camber_features_restyle(camber_features *features, const camber_style *style);
 
-/* Returns whether camber_features_read needs GDAL for such a file. */
+/* Returns whether camber_features_read needs GDAL for the file of this source. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
 /* Loads GDAL; without this call, reading the first file loads it.
  * Returns CAMBER_ERROR_IO (GDAL or camber's module for it is missing).
@@ -261,18 +261,18 @@ typedef struct camber_view_desc {
 } camber_view_desc;
 
 /* Returns the view that the style's document asks for: centre, zoom, bearing and pitch, at most 85. Values that the
- * document does not give are those of a view at longitude and latitude 0, of the whole world, north up, from straight
- * above. Sizes and ratio are 0. */
+ * document does not give describe a view of the whole world: longitude, latitude and zoom are 0, north is up, and the
+ * camera looks straight down. Sizes and ratio are 0. */
 CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
-/* Reads the sources that the style's line, fill and circle layers name, and after camber_features_read_fonts those of
- * its symbol layers, instead of files that the caller names. From a source of type vector it reads the tiles that the
- * view sees, and those from which circles of up to 256 CSS px reach into it: the source's tiles or url is a template of
- * file names, TileJSON, MBTiles or PMTiles. The tiles are 512 CSS px wide and have the view's zoom, clamped to the
- * source's zooms. Sources of type geojson are read whole. A missing tile counts as empty; damage is counted, and a
- * warning is logged. Lines that the style cannot tell apart are merged where one continues the other almost straight,
+/* Reads the sources that the style's line, fill and circle layers name, and, after camber_features_read_fonts, the
+ * sources of its symbol layers, instead of files that the caller names. From a source of type vector it reads the tiles
+ * that the view sees, and those from which circles of up to 256 CSS px reach into it: the source's tiles or url is a
+ * template of file names, TileJSON, MBTiles or PMTiles. The tiles are 512 CSS px wide and have the view's zoom, clamped
+ * to the source's zooms. Sources of type geojson are read whole. A missing tile counts as empty; damage is counted, and
+ * a warning is logged. Lines that the style cannot tell apart are merged if one continues the other almost straight,
  * unless the style uses a property that depends on a line's direction. view selects the tiles; for another view, read
  * into another set. A view of kind CAMBER_VIEW_FIT shows the sources' bounds, or the whole world if none are known.
  * base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working folder.
@@ -362,7 +362,8 @@ CAMBER_API void camber_scene_destroy(camber_scene *scene);
  * on the device, if the filters still select the same features and the picture shows no other copy of the world. If the
  * call fails, the scene is unchanged.
  * Returns the errors of camber_scene_create.
- * Cost: the style is evaluated once per class of features. If another network is needed, one pass over the points. */
+ * Cost: the style is evaluated once per class of features. If another network is needed, there is also one pass over
+ * the points. */
 CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
 /* Tessellates the lines that the view sees. Returns the errors of camber_mesh_tessellate_network. */
 CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);
@@ -432,7 +433,7 @@ typedef struct camber_glb_desc {
 } camber_glb_desc;
 
 /* Writes a mesh as a binary glTF 2.0 file that any reader loads. It has triangles, or strips in which degenerate
- * triangles mark the restarts; x goes right, y up, z is 0, and a unit is a pixel.
+ * triangles mark the restarts; x points right, y up, z is 0, and a unit is a pixel.
  * POSITION is the true outline of the lines at the widths of the strokes. camber's shaders draw from _CENTER, _SEGMENT,
  * _EXTRUDE, _TURN, _FLAGS and _ROW, which glb.c describes.
  * Areas are triangles in a separate primitive, before the primitive of the lines, with POSITION and COLOR_0. The

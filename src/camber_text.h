@@ -129,7 +129,7 @@ typedef struct camber_text_glyph {
     uint32_t run;
     uint32_t byte; /* where in the run's text its character begins */
     float x, y;    /* its origin, relative to the text's anchor */
-    float advance; /* along the line, with the spacing */
+    float advance; /* along the line, including the spacing */
     float scale;   /* scale of its outline */
     bool turned;   /* its outline is turned by 90 degrees clockwise */
 } camber_text_glyph;
@@ -143,7 +143,7 @@ typedef struct camber_text {
     camber_context *context;
     camber_text_glyph *glyphs; /* glyph_count of them, line by line */
     size_t glyph_count;
-    camber_text_line *lines; /* line_count of them, from the top down; vertical ones from right to left */
+    camber_text_line *lines; /* line_count of them, from the top down; vertical lines from right to left */
     size_t line_count;
     float left, top, right, bottom; /* box around all lines, each line_height_em high, relative to the anchor */
     float line_height_em;

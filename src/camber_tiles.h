@@ -29,7 +29,7 @@ typedef struct camber_tiles_info {
     const char *compression; /* "gzip", "none" */
     int min_zoom, max_zoom;  /* as the archive says */
     uint64_t tiles;          /* number of tiles that can be requested */
-    uint64_t entries;        /* entries in the directories of PMTiles; for other formats the same as tiles */
+    uint64_t entries;        /* entries in the directories of PMTiles; for other formats, the same number as tiles */
     uint64_t contents;       /* number of distinct tiles, as they are stored */
     bool has_bounds, has_center;
     double bounds[4];        /* west, south, east, north, in degrees */
@@ -39,7 +39,7 @@ typedef struct camber_tiles_info {
     uint32_t shard, shards;  /* 0: it is not one shard of several */
     const camber_tiles_zoom *zooms;
     size_t zoom_count;
-    const char *schema; /* schema of vector tiles if the style "city" knows it, such as "OpenMapTiles"; else NULL */
+    const char *schema; /* of vector tiles, if the style "city" knows it, such as "OpenMapTiles"; otherwise NULL */
 } camber_tiles_info;
 
 /* Reads a description of an archive. Free *info with camber_tiles_info_destroy.
@@ -138,9 +138,9 @@ typedef struct camber_tiles_engine_desc {
 } camber_tiles_engine_desc;
 
 /* An engine draws tiles of features. One picture shows a metatile: up to 8 x 8 tiles. Metatiles are arranged in a grid
- * from the north-west. The tiles of a metatile are cut out of one picture. Lines continue across metatiles to within
- * one level of 255, whatever their width, offset, blur, dashes or pattern. The output of an engine depends only on its
- * desc and on the features.
+ * from the north-west. The tiles of a metatile are cut out of one picture. Lines continue across the edges of metatiles
+ * to within one level of 255, whatever their width, offset, blur, dashes or pattern. The output of an engine depends
+ * only on its desc and on the features.
  *
  * An engine, the renderer and the features serve one thread at a time. The caller owns a picture: other threads may cut
  * and encode it while the next one is drawn, each with a camber_encoder from a context of its own.

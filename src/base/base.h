@@ -28,7 +28,7 @@ static inline void camber_budget_allow(camber_budget *budget, uint64_t most_byte
     atomic_store(&budget->most_bytes, most_bytes);
 }
 
-/* The share of a budget that the current set of features has used. */
+/* The part of a budget that the current set of features has used. */
 typedef struct camber_spent {
     uint64_t tiles, steps, file_bytes, unfolded_bytes;
 } camber_spent;

@@ -1,7 +1,7 @@
 /* Limits what a file can make a run use: memory, tiles, steps of databases, and bytes unpacked from archives. All
  * limits are here, so that a hostile file ends in an error and not in a dead machine. The allocator counts memory; the
- * caller sets the limit, or else it is three quarters of what the machine, the control group and ulimit leave free. The
- * other counts start again with each set of features. */
+ * caller sets the limit, or else it is three quarters of the memory that the machine, the control group and ulimit
+ * leave free. The other counts start again with each set of features. */
 #define _GNU_SOURCE /* RLIMIT_AS */
 
 #include "base/base.h"

@@ -1,5 +1,5 @@
-/* The context: the caller's allocator, log and progress callbacks, and the budget. Every allocation of the library goes
- * through camber_resize_quietly, which counts its size in the budget. Logging turns a message into one line and hands
+/* The context: the caller's allocator, log and progress callbacks, and the budget. Every allocation of the library is
+ * made by camber_resize_quietly, which counts its size in the budget. Logging turns a message into one line and hands
  * it to the callback. */
 #include "base/base.h"
 

@@ -22,8 +22,8 @@ static inline double camber_perspective_depth(const camber_perspective *p, doubl
     return p->cosine / (p->cosine + p->fall * seen_y);
 }
 
-/* Makes the perspective for a height of the picture and a pitch above 0. The far plane is MapLibre's: at 85 % of the
- * way from the centre to the horizon, or at the picture's top if that is nearer, and 1 % farther. */
+/* Makes the perspective for a picture's height and a pitch above 0. The far plane is MapLibre's: at 85 % of the way
+ * from the centre to the horizon, or at the picture's top if that is nearer, and 1 % farther. */
 static inline camber_perspective camber_perspective_of(double pitch_deg, double height_px) {
     const double tan_half_view = 1.0 / 3.0; /* the field of view is 0.6435011087932844 rad */
     const double angle = pitch_deg * (3.14159265358979323846 / 180.0), half = 0.5 * height_px;

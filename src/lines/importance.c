@@ -27,8 +27,8 @@ static float round_up(double squared) {
 }
 
 static void weigh_range(const double *points, range whole, float *importance) {
-    /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
-     * ranges wait. */
+    /* This is a stack instead of a recursion. The larger half waits while the smaller half is split, so that at most
+     * log2(count) ranges wait. */
     range waiting[64];
     size_t count = 0;
     range now = whole;
@@ -86,8 +86,8 @@ static void weigh_polyline(const double *points, size_t first, size_t end, float
 
 /* ---- Shared nodes ---- */
 
-/* Nodes are looked up in several rounds, each for a share of all hashes, so that the table stays this small however
- * many points there are. Each share costs one more pass over the points. */
+/* Nodes are looked up in several rounds, each for a part of all hashes, so that the table stays this small however many
+ * points there are. Each share costs one more pass over the points. */
 static const size_t MOST_SLOTS = (size_t)1 << 24;
 enum { BATCH = 64 };
 

@@ -19,8 +19,8 @@ typedef struct range {
 
 /* Marks the points to keep strictly between the ends of a range. */
 static void mark(const double *points, range whole, double tolerance_squared, unsigned char *keep) {
-    /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
-     * ranges wait. */
+    /* This is a stack instead of a recursion. The larger half waits while the smaller half is split, so that at most
+     * log2(count) ranges wait. */
     range waiting[64];
     size_t count = 0;
     range now = whole;

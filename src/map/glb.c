@@ -399,7 +399,7 @@ static void describe_lines(json_t *root, json_t *primitives, const writer *w, bo
     append(materials, material(w->desc, false, ok), ok);
 }
 
-/* Adds the primitive of the areas. Their bytes come after those of the lines. */
+/* Adds the primitive of the areas. Their bytes follow the bytes of the lines. */
 static void describe_areas(json_t *root, json_t *primitives, const writer *w, bool *ok) {
     static const attribute position = {"POSITION", "VEC3", GLTF_FLOAT, 0, false},
                            color = {"COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 12, true};

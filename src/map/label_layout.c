@@ -376,7 +376,7 @@ static camber_status anchor_areas(layout_maker *m, const thing *t) {
     return status;
 }
 
-/* Anchors each point, or the first one of each line. */
+/* Anchors each point, or the first point of each line. */
 static camber_status anchor_points(layout_maker *m, const thing *t, bool each) {
     const camber_features *f = m->layout->features;
     camber_status status = CAMBER_OK;

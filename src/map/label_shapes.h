@@ -17,7 +17,7 @@ typedef struct camber_label_shapes {
     camber_polylines *texts, *icons; /* rings in px; rows are looks in texts, numbers of icons in icons. NULL: none */
     camber_stroke *strokes;          /* by look: the strokes of halos */
     camber_fill *fills;              /* by look, then by icon */
-    camber_paint *halos, *paints;    /* by look; paints of icons follow those of looks */
+    camber_paint *halos, *paints;    /* by look; paints of icons follow the paints of looks */
     size_t look_count, icon_count;
     camber_icon_forms forms;
     camber_label_range *ranges; /* range_count of them, in drawing order */

@@ -11,10 +11,10 @@ typedef struct camber_pass_list {
     camber_pass *passes;
     camber_label_mesh *meshes; /* by pass: what its mesh holds */
     size_t count;
-    camber_paint *paints; /* the paints of all passes, apart from those of labels */
+    camber_paint *paints; /* the paints of all passes, except passes of labels */
 } camber_pass_list;
 
-/* How a mesh numbers what the sets draw. */
+/* How a mesh numbers the polylines that the sets draw. */
 typedef struct camber_mesh_rows {
     const camber_plan *plan;
     bool by_pair;                      /* otherwise by row */

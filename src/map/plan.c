@@ -458,7 +458,7 @@ static bool same_row(const camber_plan *plan, const camber_plan_set *set, const 
                                                       set->layer_count * sizeof *table->areas) == 0);
 }
 
-/* Adds the tuple's fills to those of the plan, at the same index as its paints. */
+/* Adds the tuple's fills to the plan's fills, at the same index as its paints. */
 static bool add_areas(camber_plan *plan, const camber_plan_set *set, const row_table *table) {
     camber_plan_patterns *p = &plan->patterns;
     if (!camber_plan_is_area(plan, set))

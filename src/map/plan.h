@@ -24,9 +24,9 @@ typedef struct camber_plan_set {
 /* A part of a layer of the style. Lines and their borders share one geometry. */
 typedef enum camber_plan_part {
     CAMBER_PLAN_LINE = 0,
-    CAMBER_PLAN_BORDER,  /* of the line that is the next layer of the plan */
+    CAMBER_PLAN_BORDER,  /* border of the line that is the next layer of the plan */
     CAMBER_PLAN_AREA,    /* the inside of rings */
-    CAMBER_PLAN_OUTLINE, /* of the area that is the previous layer of the plan */
+    CAMBER_PLAN_OUTLINE, /* outline of the area that is the previous layer of the plan */
     CAMBER_PLAN_CIRCLES, /* dots at points, and at the corners of lines and outlines */
 } camber_plan_part;
 
@@ -91,8 +91,8 @@ typedef struct camber_plan {
     camber_ramp *ramps; /* ramp_count: they refer to the style's stops */
     size_t ramp_count;
     bool has_arc_length; /* a paint has dashes, a gradient, a pattern or a trim */
-    /* How many dots a circle has: 2 if the style has circle strokes, the stroke's dot below the fill's, else 1. Each
-     * dot is a pair of its class. Sets without circles use only the last dot. */
+    /* How many dots a circle has: 2 if the style has circle strokes, the stroke's dot below the fill's, otherwise 1.
+     * Each dot is a pair of its class. Sets without circles use only the last dot. */
     size_t dot_count;
     bool has_corners;    /* circles are drawn at the corners of lines, so all corners are needed */
     uint32_t *pair_rows; /* pair_count */

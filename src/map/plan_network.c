@@ -200,7 +200,7 @@ static void count_set(const camber_features *features, const camber_plan_network
             continue;
         before = polyline;
         seen->points_in += camber_features_whole_count(features, polyline);
-        /* If a feature's first line is not visible, a later one counts for it. */
+        /* If a feature's first line is not visible, a later line counts for the feature. */
         const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
         seen->feature_count += count || feature == counted ? count : 1;
         counted = feature;

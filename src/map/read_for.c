@@ -24,7 +24,8 @@ static double bound(const camber_style_layer *layer, camber_property_id property
 
 /* Returns the largest distance from its polylines that a layer reaches, in px. For a line this is half of its width,
  * its gap and both rails, at the tips of its joins, and its offset, which joins also lengthen. A fill has the defaults
- * of these properties, which are enough for its outline. A circle reaches as far as its radius and its stroke. */
+ * of these properties, which are enough for its outline. A circle's reach is the sum of its radius and its stroke's
+ * width. */
 static double reach_of(const camber_style_layer *layer, const camber_view *view) {
     const double zoom = camber_view_style_zoom(view), ratio = view->ratio;
     const double width = fmin(bound(layer, CAMBER_LINE_WIDTH, zoom) * ratio, WIDEST_PX);

@@ -219,7 +219,7 @@ static camber_status open_template(camber_sources *sources, source *one, const j
     return status;
 }
 
-/* about: the style's own object, whose members override those of the TileJSON file. */
+/* about: the style's own object, whose members override the members of the TileJSON file. */
 static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
     json_t *loaded = NULL;
     camber_status status = check_exists(sources, one, path);

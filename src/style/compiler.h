@@ -82,7 +82,7 @@ struct camber_compiler {
     void *report_user;
 };
 
-/* How an operand of unknown type gets the expected type. */
+/* What is done to an operand of unknown type so that it has the expected type. */
 typedef enum camber_annotation {
     CAMBER_ANNOTATE_ASSERT = 0,
     CAMBER_ANNOTATE_COERCE,

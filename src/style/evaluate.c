@@ -245,7 +245,7 @@ static json_t *to_json(const camber_style_images *images, const camber_value *va
     return json_null();
 }
 
-/* Fills in what the expression reads of the feature. values has room for all properties of the style. */
+/* Fills in the values that the expression reads from the feature. values has room for all properties of the style. */
 static bool read_feature(evaluator *e, const json_t *json, camber_value *values, camber_value *all,
                          camber_feature_view *feature) {
     static const camber_value empty = {.type = CAMBER_VALUE_OBJECT};

@@ -1,8 +1,8 @@
 /* Names in another language.
  *
  * Input: a style document and the code of a language. Output: the same document, whose symbol layers read a feature's
- * name in that language first: name:de as OpenStreetMap has it, name_de as some tiles do, and then what they read
- * before. */
+ * name in that language first: name:de, which OpenStreetMap uses; then name_de, which some tiles use; and then the
+ * property that they read before. */
 #include "style/json.h"
 
 #include "camber_map.h"

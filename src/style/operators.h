@@ -55,8 +55,8 @@ extern const camber_operator_table camber_input_operators, camber_type_operators
 /* Compiles operands of one type into a node with the row's result type. */
 camber_compile_fn camber_compile_uniform;
 
-/* The outcomes of a comparison. The variant of a comparison, and the index of its node, is the set of those for which
- * it is true. */
+/* The outcomes of a comparison. The variant of a comparison, and the index of its node, is the set of the outcomes for
+ * which it is true. */
 enum { CAMBER_OUTCOME_LESS = 1, CAMBER_OUTCOME_EQUAL = 2, CAMBER_OUTCOME_GREATER = 4 };
 
 /* The type of a decision's or a curve's outputs: the expected type, if there is one, otherwise the first output's. */

@@ -1,8 +1,8 @@
 /* Turns a line-gradient into a ramp of colour stops.
  *
- * Input: an expression of line-progress. Output: sorted stops. There are stops at the stops of the expression's own
- * curves. Between these, more are added where the colour bends, so that linear interpolation between stops is as good
- * as the expression. */
+ * Input: an expression of line-progress. Output: sorted stops. The stops of the expression's own curves are also stops
+ * of the ramp. Between these, more are added where the colour bends, so that linear interpolation between stops is as
+ * good as the expression. */
 #include "style/ramp.h"
 
 #include "style/evaluation.h"

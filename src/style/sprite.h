@@ -34,9 +34,10 @@ typedef struct camber_sprites {
 } camber_sprites;
 
 /* Loads the style's sprites. If the ratio is above 1, the high-resolution sheets (@2x) are used, if they exist. URLs
- * are resolved like those of sources. A sprite on the network causes a warning, and has no images. Returns
+ * are resolved like the URLs of sources. A sprite on the network causes a warning, and has no images. Returns
  * CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (not a PNG or not an index, an image outside its sheet, or an unknown
- * scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 16384 px a side or 2^24 px), CAMBER_ERROR_MEMORY. */
+ * scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet with a side above 16384 px, or with more than 2^24 px),
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_sprites_load(camber_context *context, const camber_style *style, const char *base_path,
                                   double ratio, camber_sprites **sprites);
 void camber_sprites_destroy(camber_sprites *sprites);

@@ -214,7 +214,7 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind);
  * changes. */
 void camber_style_describe_layers(camber_style *style);
 
-/* Whether the feature passes the source's filter. A filter that fails to evaluate is false. */
+/* Whether the feature passes the source's filter. A filter that cannot be evaluated counts as false. */
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);
 
 /* Whether the layer draws features of this class at this zoom: visibility, zoom range and filter. A filter that fails

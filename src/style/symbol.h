@@ -13,7 +13,7 @@ typedef enum camber_symbol_placement {
 } camber_symbol_placement;
 
 typedef enum camber_symbol_order {
-    CAMBER_SYMBOL_ORDER_AUTO = 0,   /* by sort key if there is one, else by the position on the screen */
+    CAMBER_SYMBOL_ORDER_AUTO = 0,   /* by sort key if there is one, otherwise by the position on the screen */
     CAMBER_SYMBOL_ORDER_VIEWPORT_Y, /* by the position on the screen if labels may overlap */
     CAMBER_SYMBOL_ORDER_SOURCE,
 } camber_symbol_order;

@@ -1,4 +1,4 @@
-/* Opens fonts: maps their files, and asks HarfBuzz what is in them. */
+/* Opens fonts: maps their files, and lets HarfBuzz read them. */
 #include "text/outline.h"
 
 #include <errno.h>

@@ -269,15 +269,16 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* Reads the sources that the style's line, fill and circle layers name, and, after camber_features_read_fonts, the
  * sources of its symbol layers, instead of files that the caller names. From a source of type vector it reads the tiles
- * that the view sees, and those from which circles of up to 256 CSS px reach into it: the source's tiles or url is a
- * template of file names, TileJSON, MBTiles or PMTiles. The tiles are 512 CSS px wide and have the view's zoom, clamped
- * to the source's zooms. Sources of type geojson are read whole. A missing tile counts as empty; damage is counted, and
- * a warning is logged. Lines that the style cannot tell apart are merged if one continues the other almost straight,
- * unless the style uses a property that depends on a line's direction. view selects the tiles; for another view, read
- * into another set. A view of kind CAMBER_VIEW_FIT shows the sources' bounds, or the whole world if none are known.
- * base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working folder.
- * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
- * that cannot be read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. */
+ * that the view sees, and tiles from which circles of up to 256 CSS px reach into the view: the source's tiles or url
+ * is a template of file names, TileJSON, MBTiles or PMTiles. The tiles are 512 CSS px wide and have the view's zoom,
+ * clamped to the source's zooms. Sources of type geojson are read whole. A missing tile counts as empty; damage is
+ * counted, and a warning is logged. Lines that the style cannot tell apart are merged if one continues the other almost
+ * straight, unless the style uses a property that depends on a line's direction. view selects the tiles; for another
+ * view, read into another set. A view of kind CAMBER_VIEW_FIT shows the sources' bounds, or the whole world if none are
+ * known. base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working
+ * folder. Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the
+ * network, a file that cannot be read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles),
+ * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
                                                       const char *base_path);
 

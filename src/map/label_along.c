@@ -35,7 +35,7 @@ double camber_label_cluster_middle(const camber_text *text, size_t first, double
     return 0.5 * (low + high);
 }
 
-/* The line in the space where the text is set: the plane, or the picture as a pitch shows it. */
+/* The line in the space in which the text is placed: the plane, or the picture as a pitch shows it. */
 typedef struct text_line {
     const camber_label_layout *layout;
     const float *points;

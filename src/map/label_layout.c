@@ -15,7 +15,7 @@ static const double REACH_PX = 320.0;
 /* The tolerance to which lines are simplified, as for drawing, device px. */
 static const double SIMPLIFY_PX = 0.25;
 
-/* Polylines that the view may see: all rings of an area, or one polyline, which is a line or has points. */
+/* Polylines that the view may see: all rings of an area, one line, or one polyline of points. */
 typedef struct thing {
     uint32_t class, feature;
     size_t first_polyline, end_polyline;

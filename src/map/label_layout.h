@@ -42,7 +42,7 @@ typedef struct camber_label_form {
     uint32_t rule;
     uint32_t first_run;    /* of the text */
     camber_text *text;     /* NULL: none */
-    camber_text *vertical; /* the same text, written downwards. NULL: it is not */
+    camber_text *vertical; /* the same text, written downwards. NULL: none */
     const camber_sprite_image *icon;
     double sort_key;
     double weight; /* of two labels with equal sort keys, the lighter is placed first */

@@ -1,8 +1,8 @@
 /* Finds the point of a polygon that is farthest from its edges: its pole of inaccessibility, for labels of areas.
  *
  * Input: rings. Output: the point, within a precision. Main idea (polylabel, by Vladimir Agafonkin): squares cover the
- * polygon. The one that may hold the farthest point is cut into four, until none may hold a point that is farther by
- * more than the precision. */
+ * polygon. The square that may contain the farthest point is cut into four, until no square can contain a point that is
+ * farther by more than the precision. */
 #include "map/label_anchors.h"
 
 #include <math.h>

@@ -210,7 +210,7 @@ static camber_status try_along(placer *p, const camber_label_candidate *c, tried
     return status;
 }
 
-/* Tries one anchor. An icon that fits the text must be free with it. */
+/* Tries one anchor. An icon that is fitted to the text must be free, too. */
 static camber_status try_anchor(placer *p, const camber_label_candidate *c, camber_symbol_overlap overlap,
                                 tried *text) {
     const camber_label_form *form = p->layout->forms + c->form;

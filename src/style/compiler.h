@@ -82,7 +82,7 @@ struct camber_compiler {
     void *report_user;
 };
 
-/* What is done to an operand of unknown type so that it has the expected type. */
+/* How an operand of unknown type is made to have the expected type. */
 typedef enum camber_annotation {
     CAMBER_ANNOTATE_ASSERT = 0,
     CAMBER_ANNOTATE_COERCE,

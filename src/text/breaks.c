@@ -80,7 +80,7 @@ static void choose_prior(const breaker *b, line_break *made, bool is_last) {
     for (size_t i = b->count; i > first; i--) {
         const line_break *prior = &b->breaks[i - 1];
         const double badness = prior->badness + get_badness(made->x - prior->x, b->average, is_last);
-        /* Of equally good breaks, the last one is used. */
+        /* The last of several equally good breaks is used. */
         if (is_found ? badness < best : badness <= best) {
             best = badness;
             made->prior = (uint32_t)i;

@@ -21,24 +21,35 @@ import numpy as np
 def read_png(path):
     """Pixels as a float array [height, width, 4], straight alpha."""
     data = path.read_bytes()
-    at, chunks, head = 8, b"", None
+    at, chunks, head, opacity = 8, b"", None, np.zeros(0, np.uint8)
     while at < len(data):
         size, kind = struct.unpack(">I4s", data[at : at + 8])
         body = data[at + 8 : at + 8 + size]
         if kind == b"IHDR":
             head = struct.unpack(">IIBBBBB", body)
+        elif kind == b"PLTE":
+            palette = np.frombuffer(body, np.uint8).reshape(-1, 3)
+        elif kind == b"tRNS":
+            opacity = np.frombuffer(body, np.uint8)
         elif kind == b"IDAT":
             chunks += body
         at += 12 + size
     width, height, depth, color = head[:4]
-    if depth != 8 or color not in (2, 6) or head[6]:
+    if color not in (2, 3, 6) or head[6] or (depth != 8 and color != 3):
         raise ValueError(f"{path}: PNG of depth {depth}, colour type {color}")
-    channels = 3 if color == 2 else 4
-    raw = np.frombuffer(zlib.decompress(chunks), np.uint8).reshape(height, 1 + width * channels)
-    rows = np.zeros((height, width * channels), np.uint8)
+    channels = {2: 3, 3: 1, 6: 4}[color]
+    row_bytes = (width * channels * depth + 7) // 8
+    raw = np.frombuffer(zlib.decompress(chunks), np.uint8).reshape(height, 1 + row_bytes)
+    rows = np.zeros((height, row_bytes), np.uint8)
     for y in range(height):
         rows[y] = unfilter(raw[y, 0], raw[y, 1:], rows[y - 1] if y else np.zeros_like(rows[0]), channels)
     picture = np.full((height, width, 4), 255.0)
+    if color == 3:
+        bits = np.unpackbits(rows, axis=1)[:, : width * depth].reshape(height, width, depth)
+        index = (bits * (1 << np.arange(depth)[::-1])).sum(axis=2)
+        picture[:, :, :3] = palette[index]
+        picture[:, :, 3] = np.concatenate([opacity, np.full(256 - len(opacity), 255, np.uint8)])[index]
+        return picture
     picture[:, :, :channels] = rows.reshape(height, width, channels)
     return picture
 
@@ -112,7 +123,7 @@ def draw(camber, style_path, folder, out):
     document, picture = out.with_suffix(".json"), out.with_suffix(".png")
     document.write_text(json.dumps(style))
     command = [camber, "render", "--style", str(document), "--size", size, "--ratio", str(test.get("pixelRatio", 1)),
-               "-f", "-q", "-o", str(picture)]
+               "-f", "-q", "--format", "png", "-o", str(picture)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     if done.returncode:
         print(f"{style_path.parent.name}: exit {done.returncode}: {done.stderr.strip()[:200]}")

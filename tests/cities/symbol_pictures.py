@@ -17,6 +17,12 @@ import zlib
 
 import numpy as np
 
+DARK = 0.5      # of a picture's strongest ink: pixels of marks
+MARK_PX = 16    # larger marks are cut
+MARGIN_PX = 3   # of the window around a mark that is compared
+REACH_PX = 3    # how far a mark may have moved, and still be looked for
+LIKE = 0.9      # marks that are at least so like each other are the same
+
 
 def read_png(path):
     """Pixels as a float array [height, width, 4], straight alpha."""
@@ -75,44 +81,89 @@ def unfilter(kind, row, above, channels):
     return np.frombuffer(bytes(out), np.uint8)
 
 
-def marks_of(picture):
-    """Middles and sizes of connected pixels that differ from the background, which is the most frequent colour."""
+def ink_of(picture, background=None):
+    """How each pixel differs from the background, which is the most frequent colour: [height, width, 3], -1 to 1."""
     alpha = picture[:, :, 3:] / 255.0
     seen = picture[:, :, :3] * alpha + 255.0 * (1.0 - alpha)
-    colors, counts = np.unique(seen.reshape(-1, 3).round(), axis=0, return_counts=True)
-    ink = np.abs(seen - colors[counts.argmax()]).max(axis=2) / 255.0
-    todo = {(int(y), int(x)) for y, x in zip(*np.nonzero(ink > 0.25))}
+    if background is None:
+        colors, counts = np.unique(seen.reshape(-1, 3).round(), axis=0, return_counts=True)
+        background = colors[counts.argmax()]
+    return (seen - background) / 255.0, background
+
+
+def marks_of(ink):
+    """Boxes (x0, y0, x1, y1) around connected pixels with ink; those of large ones are cut into smaller boxes."""
+    dark = np.abs(ink).max(axis=2)
+    todo = {(int(y), int(x)) for y, x in zip(*np.nonzero(dark > DARK * max(dark.max(), 0.1)))}
     marks = []
     while todo:
         stack, inside = [todo.pop()], []
         while stack:
             y, x = stack.pop()
-            inside.append((y, x))
+            inside.append((x, y))
             for near in [(y + j, x + i) for j in (-1, 0, 1) for i in (-1, 0, 1)]:
                 if near in todo:
                     todo.remove(near)
                     stack.append(near)
-        ys, xs = np.array(inside).T
-        # The faint rim counts, too: it says where between pixels the edge is.
-        y0, y1, x0, x1 = max(ys.min() - 1, 0), ys.max() + 2, max(xs.min() - 1, 0), xs.max() + 2
-        part = ink[y0:y1, x0:x1]
-        weight = part.sum()
-        if weight >= 2.0:
-            middle_y = (part.sum(axis=1) * np.arange(y0, y0 + part.shape[0])).sum() / weight
-            middle_x = (part.sum(axis=0) * np.arange(x0, x0 + part.shape[1])).sum() / weight
-            marks.append((middle_x, middle_y, weight))
-    return np.array(marks).reshape(-1, 3)
+        marks += cut(np.array(inside))
+    return np.array(marks, int).reshape(-1, 4)
 
 
-def find(marks, others):
-    """For each mark its distance from the nearest of the others that is about as large; infinity: there is none."""
-    distances = []
-    for x, y, weight in marks:
-        near = np.hypot(others[:, 0] - x, others[:, 1] - y) if len(others) else np.array([])
-        fits = (others[:, 2] > 0.4 * weight) & (others[:, 2] < 2.5 * weight) if len(others) else near
-        near = near[fits] if len(near) else near
-        distances.append(near.min() if len(near) else np.inf)
-    return np.array(distances)
+def cut(points):
+    """Boxes of at most MARK_PX around points."""
+    low, size = points.min(axis=0), np.ptp(points, axis=0) + 1
+    parts = -(-size // MARK_PX)
+    cell = (points - low) * parts // size
+    boxes = []
+    for number in np.unique(cell[:, 1] * parts[0] + cell[:, 0]):
+        own = points[cell[:, 1] * parts[0] + cell[:, 0] == number]
+        if len(own) >= 3:
+            boxes.append([*own.min(axis=0), *(own.max(axis=0) + 1)])
+    return boxes
+
+
+def sum_boxes(values, boxes):
+    """Sums in boxes that may reach out of the picture."""
+    sums = np.pad(values.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    x0, x1 = (np.clip(boxes[:, i], 0, values.shape[1]) for i in (0, 2))
+    y0, y1 = (np.clip(boxes[:, i], 0, values.shape[0]) for i in (1, 3))
+    return sums[y1, x1] - sums[y0, x1] - sums[y1, x0] + sums[y0, x0]
+
+
+def shifted(ink, x, y):
+    """The picture moved to the left and up."""
+    height, width = ink.shape[:2]
+    padded = np.pad(ink, ((REACH_PX, REACH_PX), (REACH_PX, REACH_PX), (0, 0)))
+    return padded[REACH_PX + y : REACH_PX + y + height, REACH_PX + x : REACH_PX + x + width]
+
+
+def find(marks, ink, other):
+    """For each mark how like the other picture is at the best place near it (1: equal), and how far that is, px."""
+    windows = marks + np.array([-MARGIN_PX, -MARGIN_PX, MARGIN_PX, MARGIN_PX])
+    steps = range(-REACH_PX, REACH_PX + 1)
+    own = sum_boxes((ink * ink).sum(axis=2), windows)
+    likeness = np.zeros((len(marks), len(steps), len(steps)))
+    for j, y in enumerate(steps):
+        for i, x in enumerate(steps):
+            moved = shifted(other, x, y)
+            both = sum_boxes((ink * moved).sum(axis=2), windows)
+            theirs = sum_boxes((moved * moved).sum(axis=2), windows)
+            likeness[:, j, i] = 2.0 * both / np.maximum(own + theirs, 1e-9)
+    best = likeness.reshape(len(marks), -1).argmax(axis=1) if len(marks) else np.zeros(0, int)
+    distances = [np.hypot(*(peak(table, *divmod(int(at), len(steps))))) for table, at in zip(likeness, best)]
+    return likeness.reshape(len(marks), -1).max(axis=1) if len(marks) else np.zeros(0), np.array(distances)
+
+
+def peak(table, j, i):
+    """Where a parabola through the best place and its neighbours has its top, px from no move. inf: at the edge."""
+    last = len(table) - 1
+    if not (0 < j < last and 0 < i < last):
+        return np.inf, np.inf
+    place = []
+    for at, (before, top, after) in ((i, table[j, i - 1 : i + 2]), (j, table[j - 1 : j + 2, i])):
+        bend = before - 2.0 * top + after
+        place.append(at - REACH_PX + (0.5 * (before - after) / bend if bend < -1e-12 else 0.0))
+    return tuple(place)
 
 
 def draw(camber, style_path, folder, out):
@@ -131,6 +182,14 @@ def draw(camber, style_path, folder, out):
     return picture
 
 
+def compare(wanted, drawn):
+    """Likeness and distance of each mark: of that engine's first, then of camber's."""
+    ink, background = ink_of(wanted)
+    other = ink_of(drawn, background)[0]
+    there, back = find(marks_of(ink), ink, other), find(marks_of(other), other, ink)
+    return np.concatenate([there[0], back[0]]), np.concatenate([there[1], back[1]])
+
+
 def main(camber, folder, out, part=""):
     folder, out = pathlib.Path(folder).resolve(), pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -144,15 +203,14 @@ def main(camber, folder, out, part=""):
         picture = draw(camber, style_path, folder, out / name.replace("/", "__"))
         if not picture:
             continue
-        wanted, drawn = marks_of(read_png(style_path.parent / "expected.png")), marks_of(read_png(picture))
-        there, back = find(wanted, drawn), find(drawn, wanted)
-        both = np.concatenate([there, back])
-        share = (both < 3.0).mean() if len(both) else 1.0
-        near += list(there[there < 3.0])
+        likeness, distances = compare(read_png(style_path.parent / "expected.png"), read_png(picture))
+        found = (likeness >= LIKE) & (distances < REACH_PX)
+        share = found.mean() if len(found) else 1.0
+        near += list(distances[found])
         agreeing += share >= 0.95
-        exact = (there < 0.5).mean() if len(there) else 1.0
+        exact = (distances[found] < 0.5).mean() if found.any() else 1.0
         flag = "" if share >= 0.95 else "  <--"
-        print(f"{name}: {len(wanted)} marks, {len(drawn)} drawn, {share:.0%} found, {exact:.0%} within 0.5 px{flag}")
+        print(f"{name}: {len(found)} marks, {share:.0%} found, {exact:.0%} within 0.5 px{flag}", flush=True)
     near = np.array(near)
     print(f"{agreeing} of {count} pictures agree; {(near < 0.5).mean() if len(near) else 0:.1%} of the marks found "
           f"are within half a pixel")

@@ -1,14 +1,21 @@
 """Another engine's pictures of symbol layers (CAMBER_DATA/symbol-tests), beside camber's.
 
-usage: symbol_pictures.py CAMBER FOLDER OUT [PART-OF-A-NAME]
+usage: symbol_pictures.py CAMBER OUT [PART-OF-A-NAME]
 
-That engine draws text from signed distances, so edges differ. Two measures do not: which marks (connected dark pixels:
-glyphs and icons) there are, and how far each is from that engine's. A mark is found if there is one of camber's whose
-middle is within 3 px of it and that is about as large; it agrees if their middles are within half a pixel. A picture
-agrees if at least 95 % of the marks of both pictures are found.
+That engine draws text from signed distances, so edges differ. Two measures do not: which marks (glyphs, icons, pieces of
+what is larger) there are, and how far each is from that engine's. A mark is connected pixels with ink. The window around
+it is laid over the other picture, and moved until both are most alike:
+
+    likeness = 2 sum(a b) / (sum(a^2) + sum(b^2))     a, b: how the pixels' colours differ from the background
+
+A mark is found if the windows are alike nearer than 3 px. A picture agrees if 95 % of the marks of both pictures are
+found; of all marks found 95 % must be within half a pixel. The table of exceptions says why other pictures differ, and
+how many of their marks are found at least; one that has come to agree must go from there. Pictures that differ stay in
+OUT, that engine's beside camber's. Exit status: 0, 1 (a picture differs), 77 (there are no pictures).
 """
 
 import json
+import os
 import pathlib
 import struct
 import subprocess
@@ -17,11 +24,42 @@ import zlib
 
 import numpy as np
 
-DARK = 0.5      # of a picture's strongest ink: pixels of marks
-MARK_PX = 16    # larger marks are cut
-MARGIN_PX = 3   # of the window around a mark that is compared
-REACH_PX = 3    # how far a mark may have moved, and still be looked for
-LIKE = 0.9      # marks that are at least so like each other are the same
+DARK = 0.5  # of a picture's strongest ink: pixels of marks
+MARK_PX = 16  # larger marks are cut
+MARGIN_PX = 3  # of the window around a mark
+REACH_PX = 3  # how far a mark is looked for
+NEARER = 0.002  # likeness that a place loses for each px^2 of its distance
+LIKE = 0.85  # the same glyph, blurred, has more; another one has less
+AGREES = 0.95  # the share of marks
+
+ORDER = "there labels come in the order of the tile's features; here in one that is the same in any view, unless the style asks for the source's"
+CUT = "there each tile has its own labels, and lines begin where a tile cuts them; here lines that go on are one"
+WAYS = CUT + "; lines with icons only are not joined there, and each way has its own icons"
+CIRCLES = CUT + "; circles around texts along lines reach farther than the boxes there"
+
+# Pictures that differ: the share of marks that is found at least, and why.
+EXCEPTIONS = {
+    "symbol-avoid-edges/rotated": (0.1, WAYS + "; icons avoid the edges of tiles there, those of the picture here"),
+    "symbol-avoid-edges/true": (0.1, WAYS + "; icons avoid the edges of tiles there, those of the picture here"),
+    "symbol-placement/line-overscaled": (0.1, WAYS + "; there a line's icons are tried one after the other"),
+    "symbol-placement/point-polygon": (0.5, "the point farthest from a polygon's edges is found to 16 px there, to 1 px here"),
+    "symbol-spacing/line-far": (0.2, WAYS),
+    "text-arabic/multi-paragraph": (0.0, "U+001C, which ends a paragraph, cuts lines there after they were chosen; here it ends a line as a newline does"),
+    "text-keep-upright/line-placement-true": (0.2, CUT),
+    "text-max-angle/literal": (0.2, CUT),
+    "text-pitch-alignment/auto-text-rotation-alignment-map": (0.0, CIRCLES),
+    "text-pitch-alignment/map-text-rotation-alignment-viewport": (0.0, CUT),
+    "text-pitch-alignment/viewport-text-rotation-alignment-map": (0.0, CIRCLES),
+    "text-rotate/function": (0.4, ORDER),
+    "text-visibility/visible": (0.3, ORDER),
+    "text-writing-mode/chinese-punctuation": (0.3, "the folder lacks the vertical forms of punctuation, U+FE00 to U+FEFF"),
+    "text-writing-mode/mixed": (0.3, CUT + ", to the right and below of the middle"),
+}
+# Proofs that a reason holds: with these properties in its style, so many marks of a picture are found.
+PROOFS = {
+    "text-rotate/function": ({"symbol-z-order": "source"}, 0.85),
+    "text-visibility/visible": ({"symbol-z-order": "source"}, 0.75),
+}
 
 
 def read_png(path):
@@ -122,36 +160,51 @@ def cut(points):
     return boxes
 
 
-def sum_boxes(values, boxes):
+def sums_of(values):
+    """Sums of all values above and to the left of a corner of pixels."""
+    return np.pad(values.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+
+
+def sum_boxes(sums, boxes):
     """Sums in boxes that may reach out of the picture."""
-    sums = np.pad(values.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
-    x0, x1 = (np.clip(boxes[:, i], 0, values.shape[1]) for i in (0, 2))
-    y0, y1 = (np.clip(boxes[:, i], 0, values.shape[0]) for i in (1, 3))
+    x0, x1 = (np.clip(boxes[:, i], 0, sums.shape[1] - 1) for i in (0, 2))
+    y0, y1 = (np.clip(boxes[:, i], 0, sums.shape[0] - 1) for i in (1, 3))
     return sums[y1, x1] - sums[y0, x1] - sums[y1, x0] + sums[y0, x0]
 
 
-def shifted(ink, x, y):
-    """The picture moved to the left and up."""
+def overlay(ink, other, x, y):
+    """Sums of the products of ink and the other picture, which is moved to the left by x and up by y."""
     height, width = ink.shape[:2]
-    padded = np.pad(ink, ((REACH_PX, REACH_PX), (REACH_PX, REACH_PX), (0, 0)))
-    return padded[REACH_PX + y : REACH_PX + y + height, REACH_PX + x : REACH_PX + x + width]
+    product = np.zeros((height, width))
+    own = np.s_[max(-y, 0) : height - max(y, 0), max(-x, 0) : width - max(x, 0)]
+    moved = np.s_[max(y, 0) : height - max(-y, 0), max(x, 0) : width - max(-x, 0)]
+    product[own] = np.einsum("ijk,ijk->ij", ink[own], other[moved])
+    return sums_of(product)
 
 
-def find(marks, ink, other):
-    """For each mark how like the other picture is at the best place near it (1: equal), and how far that is, px."""
-    windows = marks + np.array([-MARGIN_PX, -MARGIN_PX, MARGIN_PX, MARGIN_PX])
+def find(ink, other):
+    """For each mark of both pictures how like the other picture is at the best place near it (1: equal), and how far that
+    is, px."""
+    pictures = ink, other
+    windows = [marks_of(picture) + np.array([-1, -1, 1, 1]) * MARGIN_PX for picture in pictures]
+    squares = [sums_of(np.square(picture).sum(axis=2)) for picture in pictures]
     steps = range(-REACH_PX, REACH_PX + 1)
-    own = sum_boxes((ink * ink).sum(axis=2), windows)
-    likeness = np.zeros((len(marks), len(steps), len(steps)))
-    for j, y in enumerate(steps):
-        for i, x in enumerate(steps):
-            moved = shifted(other, x, y)
-            both = sum_boxes((ink * moved).sum(axis=2), windows)
-            theirs = sum_boxes((moved * moved).sum(axis=2), windows)
-            likeness[:, j, i] = 2.0 * both / np.maximum(own + theirs, 1e-9)
-    best = likeness.reshape(len(marks), -1).argmax(axis=1) if len(marks) else np.zeros(0, int)
-    distances = [np.hypot(*(peak(table, *divmod(int(at), len(steps))))) for table, at in zip(likeness, best)]
-    return likeness.reshape(len(marks), -1).max(axis=1) if len(marks) else np.zeros(0), np.array(distances)
+    likeness = [np.zeros((len(boxes), len(steps), len(steps))) for boxes in windows]
+    for y in steps:
+        for x in steps:
+            products = overlay(ink, other, x, y)
+            for side, (boxes, sign) in enumerate(zip(windows, (1, -1))):
+                moved = boxes + sign * np.array([x, y, x, y])
+                both = sum_boxes(products, moved if side else boxes)
+                squared = sum_boxes(squares[side], boxes) + sum_boxes(squares[1 - side], moved)
+                # Along an edge all places are alike: the nearest counts.
+                likeness[side][:, sign * y + REACH_PX, sign * x + REACH_PX] = (
+                    2.0 * both / np.maximum(squared, 1e-9) - NEARER * (x * x + y * y))
+    tables = np.concatenate(likeness)
+    best = tables.reshape(len(tables), len(steps) ** 2)
+    places = [divmod(int(at), len(steps)) for at in (best.argmax(axis=1) if len(best) else [])]
+    distances = [np.hypot(*peak(table, *place)) for table, place in zip(tables, places)]
+    return best.max(axis=1) if len(best) else np.zeros(0), np.array(distances)
 
 
 def peak(table, j, i):
@@ -166,55 +219,113 @@ def peak(table, j, i):
     return tuple(place)
 
 
-def draw(camber, style_path, folder, out):
-    text = style_path.read_text().replace("local://", f"{folder}/")
-    style = json.loads(text)
+# ---- Pictures ----
+
+
+def draw(camber, style, folder, out):
+    """Draws a style, and returns the picture's path."""
     test = style.get("metadata", {}).get("test", {})
     size = f"{test.get('width', 512)}x{test.get('height', 512)}"
     document, picture = out.with_suffix(".json"), out.with_suffix(".png")
-    document.write_text(json.dumps(style))
+    document.write_text(json.dumps(style).replace("local://", f"{folder}/"))
     command = [camber, "render", "--style", str(document), "--size", size, "--ratio", str(test.get("pixelRatio", 1)),
                "-f", "-q", "--format", "png", "-o", str(picture)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    if done.returncode:
-        print(f"{style_path.parent.name}: exit {done.returncode}: {done.stderr.strip()[:200]}")
-        return None
+    subprocess.run(command, check=True, timeout=600)
     return picture
 
 
+def write_png(path, colors):
+    height, width, _ = colors.shape
+    rows = b"".join(b"\0" + row.tobytes() for row in colors.round().astype(np.uint8))
+    chunks = ((b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b""))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for kind, data in chunks:
+            file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+
+
 def compare(wanted, drawn):
-    """Likeness and distance of each mark: of that engine's first, then of camber's."""
+    """Which marks of both pictures are found, and how far each is from its place."""
     ink, background = ink_of(wanted)
     other = ink_of(drawn, background)[0]
-    there, back = find(marks_of(ink), ink, other), find(marks_of(other), other, ink)
-    return np.concatenate([there[0], back[0]]), np.concatenate([there[1], back[1]])
+    likeness, distances = find(ink, other)
+    return (likeness >= LIKE) & (distances < REACH_PX), distances
 
 
-def main(camber, folder, out, part=""):
-    folder, out = pathlib.Path(folder).resolve(), pathlib.Path(out)
-    out.mkdir(parents=True, exist_ok=True)
-    agreeing = count = 0
-    near = []
-    for style_path in sorted(folder.glob("tests/*/*/style.json")):
+def share_of(found):
+    return found.mean() if len(found) else 1.0
+
+
+def change(style, properties):
+    """The style with these properties in its symbol layers."""
+    layers = [layer | {"layout": layer.get("layout", {}) | properties} if layer["type"] == "symbol" else layer
+              for layer in style["layers"]]
+    return style | {"layers": layers}
+
+
+class Suite:
+    def __init__(self, camber, folder, out):
+        self.camber, self.folder, self.out = camber, folder, out
+        self.distances, self.faults, self.agreeing, self.count = [], [], 0, 0
+
+    def check(self, style_path):
+        """Draws a style, and compares the pictures."""
         name = f"{style_path.parent.parent.name}/{style_path.parent.name}"
-        if part not in name:
-            continue
-        count += 1
-        picture = draw(camber, style_path, folder, out / name.replace("/", "__"))
-        if not picture:
-            continue
-        likeness, distances = compare(read_png(style_path.parent / "expected.png"), read_png(picture))
-        found = (likeness >= LIKE) & (distances < REACH_PX)
-        share = found.mean() if len(found) else 1.0
-        near += list(distances[found])
-        agreeing += share >= 0.95
-        exact = (distances[found] < 0.5).mean() if found.any() else 1.0
-        flag = "" if share >= 0.95 else "  <--"
-        print(f"{name}: {len(found)} marks, {share:.0%} found, {exact:.0%} within 0.5 px{flag}", flush=True)
-    near = np.array(near)
-    print(f"{agreeing} of {count} pictures agree; {(near < 0.5).mean() if len(near) else 0:.1%} of the marks found "
-          f"are within half a pixel")
+        out = self.out / name.replace("/", "__")
+        style = json.loads(style_path.read_text())
+        wanted = read_png(style_path.parent / "expected.png")
+        drawn = read_png(draw(self.camber, style, self.folder, out))
+        found, distances = compare(wanted, drawn)
+        share = share_of(found)
+        self.count += 1
+        self.agreeing += share >= AGREES
+        self.distances += list(distances[found])
+        print(f"{name}: {share:.0%} of {len(found)} marks are found", flush=True)
+        if share < AGREES:
+            sides = [ink_of(picture, np.zeros(3))[0] * 255.0 for picture in (wanted, drawn)]
+            write_png(out.with_suffix(".beside.png"), np.concatenate(sides, axis=1))
+        if name.startswith("text-anchor/"):
+            self.check_measure(name, drawn)
+        self.judge(name, share)
+        if name in PROOFS:
+            properties, least = PROOFS[name]
+            changed = draw(self.camber, change(style, properties), self.folder, out.with_name(out.name + "__changed"))
+            self.expect(share_of(compare(wanted, read_png(changed))[0]) >= least, f"{name}: its reason does not hold")
+
+    def judge(self, name, share):
+        if name not in EXCEPTIONS:
+            self.expect(share >= AGREES, f"{name}: only {share:.0%} of its marks are found")
+            return
+        least, reason = EXCEPTIONS[name]
+        self.expect(share >= least, f"{name}: only {share:.0%} of its marks are found, not {least:.0%} ({reason})")
+        self.expect(share < AGREES, f"{name}: it agrees now, so it must go from the exceptions")
+
+    def check_measure(self, name, drawn):
+        """The measure tells a picture from itself, 6 px farther right."""
+        found = compare(drawn, np.roll(drawn, 6, axis=1))[0]
+        self.expect(found.mean() < 0.5, f"{name}: the measure takes what has moved for the same")
+
+    def expect(self, holds, fault):
+        if not holds:
+            self.faults.append(fault)
+
+
+def main(camber, out, part=""):
+    folder, out = pathlib.Path(os.environ.get("CAMBER_DATA", "")).resolve() / "symbol-tests", pathlib.Path(out)
+    if not os.environ.get("CAMBER_DATA") or not folder.is_dir():
+        print("CAMBER_DATA names no folder that has symbol-tests: another engine's symbols are not compared")
+        return 77
+    out.mkdir(parents=True, exist_ok=True)
+    suite = Suite(camber, folder, out)
+    for style_path in sorted(folder.glob("tests/*/*/style.json")):
+        if part in str(style_path.parent):
+            suite.check(style_path)
+    near = (np.array(suite.distances) < 0.5).mean() if suite.distances else 1.0
+    suite.expect(near >= AGREES, f"only {near:.1%} of the marks are within half a pixel")
+    print(f"{suite.agreeing} of {suite.count} pictures agree; {near:.1%} of the marks found are within half a pixel")
+    print(*suite.faults, sep="\n")
+    return 1 if suite.faults else 0
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    sys.exit(main(*sys.argv[1:]))

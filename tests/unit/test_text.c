@@ -3,6 +3,7 @@
 #include "core.h"
 
 #include "base/embedded.h"
+#include "text/contours.h"
 #include "text/fonts.h"
 
 #include <math.h>
@@ -243,6 +244,11 @@ static void test_breaks(void **state) {
     check_lines(&m, "Avenue of the Americas", 0.0f, "Avenue of the Americas");
     check_lines(&m, "Avenue\nof the Americas", 0.0f, "Avenue|of the Americas");
     check_lines(&m, "a\n\nb", 0.0f, "a||b");
+    check_lines(&m,
+                "a\x1c"
+                "b\xc2\x85"
+                "c",
+                0.0f, "a|b|c");
     check_lines(&m, "  a  \n  b ", 10.0f, "a|b");
     check_lines(&m, "Frankfurt-Hoechst/Sued", 5.0f, "Frankfurt-|Hoechst/|Sued");
     check_lines(&m, "Praha (Prag) (Prague)", 6.0f, "Praha (Prag)|(Prague)");
@@ -376,8 +382,13 @@ static void test_spacing_and_scale(void **state) {
     camber_text *wide = shape(&m, "office", noto_sans, (camber_text_desc){.letter_spacing_em = 0.1f});
     assert_int_equal(wide->glyph_count, 6);
     assert_true(wide->right - wide->left > plain->right - plain->left + 0.45f);
+    camber_text *back = shape(&m, "office", noto_sans, (camber_text_desc){.letter_spacing_em = -4.0f});
+    assert_true(back->lines[0].width < -16.0f);
+    assert_near(back->glyphs[0].x, -back->lines[0].width / 2.0f);
+    assert_near(back->right, back->left);
     camber_text_destroy(plain);
     camber_text_destroy(wide);
+    camber_text_destroy(back);
     camber_text_run runs[3] = {
         run_of("H", noto_sans), {.image_width_em = 0.5f, .image_height_em = 0.4f}, run_of("H", noto_sans)};
     camber_text *mixed = NULL;
@@ -501,6 +512,36 @@ static void test_ranges(void **state) {
     unmake(&m);
 }
 
+/* Strokes of one width, upright and level, wherever they are between the centres of pixels. The edge is halfway between
+ * 191 and 192. */
+static void test_thin_strokes(void **state) {
+    (void)state;
+    enum { SIZE = 16 };
+    static const float WIDTH_PX = 0.8f, LENGTH_PX = 8.0f;
+    maker m;
+    make_shipped(&m);
+    for (int i = 0; i < 20; i++) {
+        const float middle = 8.0f + (float)(i / 2) * 0.1f;
+        uint8_t values[SIZE * SIZE];
+        for (int k = 0; k < SIZE * SIZE; k++) {
+            const float x = (float)(k % SIZE) + 0.5f, y = (float)(k / SIZE) + 0.5f;
+            const float across = fabsf((i & 1 ? y : x) - middle), along = fabsf((i & 1 ? x : y) - 8.0f);
+            const float inside = fminf(0.5f * WIDTH_PX - across, 0.5f * LENGTH_PX - along);
+            values[k] = (uint8_t)fmaxf(192.0f + 32.0f * inside, 0.0f);
+        }
+        const camber_contour_source source = {.values = values, .width = SIZE, .height = SIZE, .scale = 1.0f};
+        camber_outline_maker drawn = {.context = m.context};
+        camber_outline outline;
+        void *block;
+        camber_contours_trace(&source, &drawn);
+        assert_int_equal(camber_outline_finish(&drawn, &outline, &block), CAMBER_OK);
+        assert_int_equal(outline.ring_count, 1);
+        assert_true(fabs(area_of(&outline) - (double)(WIDTH_PX * LENGTH_PX)) < 1.0);
+        camber_free(m.context, block);
+    }
+    unmake(&m);
+}
+
 /* Arabic letters are drawn in the forms in which they join, and with ligatures, if there are glyphs for these. */
 static void test_arabic_ranges(void **state) {
     (void)state;
@@ -559,6 +600,28 @@ static void test_vertical(void **state) {
     assert_near(text->glyphs[2].y, 0.0);
     assert_true(fabsf(text->glyphs[2].x + 1.8f + 9.0f / 24.0f) < 0.1f);
     assert_false(text->glyphs[3].turned);
+    camber_text_destroy(text);
+    unmake(&m);
+}
+
+/* A full stop takes its vertical form between ideographs, and is turned between letters. */
+static void test_vertical_punctuation(void **state) {
+    (void)state;
+    static const char *const names[] = {"NotoCJK"};
+    static glyph_folder folder;
+    char path[2048];
+    maker m;
+    if (!open_ranges(&m, &folder, path))
+        skip();
+    camber_text *text = shape(&m, "\xe4\xb8\xad.\xe5\xb0\x8f", names, (camber_text_desc){.vertical = true});
+    assert_int_equal(text->glyph_count, 3);
+    assert_false(text->glyphs[1].turned);
+    assert_near(text->glyphs[1].advance, 1.0);
+    assert_int_equal(m.fonts->glyphs[text->glyphs[1].glyph].number, 0x30fb);
+    camber_text_destroy(text);
+    text = shape(&m, "\xe4\xb8\xad.H", names, (camber_text_desc){.vertical = true});
+    assert_true(text->glyphs[1].turned);
+    assert_int_equal(m.fonts->glyphs[text->glyphs[1].glyph].number, '.');
     camber_text_destroy(text);
     unmake(&m);
 }
@@ -830,8 +893,10 @@ int main(void) {
         cmocka_unit_test(test_spacing_and_scale),
         cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_thin_strokes),
         cmocka_unit_test(test_arabic_ranges),
         cmocka_unit_test(test_vertical),
+        cmocka_unit_test(test_vertical_punctuation),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_missing_font),
         cmocka_unit_test(test_folder),

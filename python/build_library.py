@@ -12,8 +12,8 @@ import sys
 
 from cffi import FFI
 
-HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_map.h",
-           "camber_text.h", "camber_tiles.h")
+HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_text.h",
+           "camber_map.h", "camber_tiles.h")
 
 # Rows with straight (not premultiplied) alpha are written to an array by C code, without Python and its lock.
 HELPERS = """

@@ -492,7 +492,6 @@ typedef struct camber_mesh_info {
     camber_method method;
     bool strips;         /* triangle strips; else triangles */
     bool has_arc_length; /* as the tessellation was asked for */
-    bool of_network;     /* the last tessellation was of a network; else of polylines */
     /* If the mesh's renderer draws in OpenCL, it needs only points. The next three are then 0 until
      * camber_mesh_count_joins. */
     size_t record_count;      /* camber_record */

@@ -23,8 +23,8 @@ typedef enum camber_theme {
 
 typedef struct camber_style camber_style;
 
-/* Parses a style document and compiles its background, line, fill and circle layers. It warns once of each layer type
- * and each property that camber does not draw.
+/* Parses a style document and compiles its background, line, fill, circle and symbol layers. It warns once of each
+ * layer type and each property that camber does not draw.
  * name is used in messages.
  * Returns CAMBER_ERROR_INPUT, CAMBER_ERROR_MEMORY. The message gives the line and column if the text is not JSON, or
  * the JSON pointer of a wrong type or value. */
@@ -105,7 +105,7 @@ typedef struct camber_style_type {
 
 typedef struct camber_style_report_source {
     const char *name, *type;
-    size_t layers; /* line layers that name it */
+    size_t layers; /* layers that are drawn and name it */
     /* why it cannot be read, and the cure. NULL: no reason is known, but the check does not open it */
     const char *trouble;
 } camber_style_report_source;
@@ -267,23 +267,22 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
-/* Reads the sources that the style's line, fill and circle layers name, instead of files that the caller names. From a
- * source of type vector it reads the tiles that the view sees, and those from which circles of up to 256 CSS px reach
- * into it: the source's tiles or url is a template of file names, TileJSON, MBTiles or PMTiles. Tiles are 512 CSS px
- * wide, and of the view's zoom, clamped to the zooms of the source. Sources of type geojson are read whole. A missing
- * tile counts as empty; damage is counted, and a warning is logged. Lines that the style cannot tell apart are merged
- * where one continues the other almost straight, unless the style uses a property that depends on a line's direction.
- * view selects the tiles; for another view, read into another set. A view of kind CAMBER_VIEW_FIT shows the sources'
- * bounds, or the whole world if none are known.
+/* Reads the sources that the style's line, fill and circle layers name, and after camber_features_read_fonts those of
+ * its symbol layers, instead of files that the caller names. From a source of type vector it reads the tiles that the
+ * view sees, and those from which circles of up to 256 CSS px reach into it: the source's tiles or url is a template of
+ * file names, TileJSON, MBTiles or PMTiles. Tiles are 512 CSS px wide, and of the view's zoom, clamped to the zooms of
+ * the source. Sources of type geojson are read whole. A missing tile counts as empty; damage is counted, and a warning
+ * is logged. Lines that the style cannot tell apart are merged where one continues the other almost straight, unless
+ * the style uses a property that depends on a line's direction. view selects the tiles; for another view, read into
+ * another set. A view of kind CAMBER_VIEW_FIT shows the sources' bounds, or the whole world if none are known.
  * base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working folder.
  * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
  * that cannot be read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
                                                       const char *base_path);
 
-/* Reads the style's sprites, which have the images of its patterns. For a style without patterns it reads nothing.
- * Lines and backgrounds whose image is in no sprite, or in a sprite on the network, are left out, and a warning is
- * logged.
+/* Reads the style's sprites, which have the images of its patterns and icons. For a style that names no images it reads
+ * nothing. Everything whose image is in no sprite, or in a sprite on the network, is left out, and a warning is logged.
  * ratio is device px per CSS px; 0: 1. Above 1 the call takes the high-resolution sprites, if they exist. base_path is
  * as in camber_features_read_sources.
  * Returns CAMBER_ERROR_NOT_FOUND (a sprite's file), CAMBER_ERROR_INPUT (a file that is not what it claims to be, an
@@ -293,9 +292,11 @@ CAMBER_API camber_status camber_features_read_sprites(camber_features *features,
 
 /* Reads the fonts that labels are drawn with; without this call symbol layers are left out. Call it before files are
  * read, since what is only labelled is read only for labels. Glyphs that the style names (as files: nothing is
- * downloaded) are used before fonts. desc may be NULL. base_path is as in camber_features_read_sources.
- * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, an unknown scheme),
- * CAMBER_ERROR_MEMORY. */
+ * downloaded) are used before fonts. The scenes of the set, except those of CAMBER_SCENE_LINES, then have the labels of
+ * their view, which camber_scene_tessellate draws; tiles have none. desc may be NULL. base_path is as in
+ * camber_features_read_sources.
+ * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, or not in the root; an unknown
+ * scheme), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_fonts(camber_features *features, const camber_fonts_desc *desc,
                                                     const char *base_path);
 
@@ -330,6 +331,7 @@ typedef struct camber_scene_info {
     size_t features;
     size_t polylines, points; /* to tessellate */
     size_t points_in;         /* points of these features' polylines, before simplification and clipping */
+    size_t labels;            /* labels that are shown */
 } camber_scene_info;
 
 typedef struct camber_scene camber_scene;

@@ -93,6 +93,8 @@ typedef struct camber_camera {
 CAMBER_API camber_status camber_mesh_tessellate_network(camber_mesh *mesh, camber_network *network,
                                                         const camber_camera *camera,
                                                         const camber_tessellation_desc *desc);
+/* Returns whether the mesh holds this network from its last tessellation. */
+CAMBER_API bool camber_mesh_holds_network(const camber_mesh *mesh, const camber_network *network);
 
 #ifdef __cplusplus
 }

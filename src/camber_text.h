@@ -21,8 +21,8 @@ extern "C" {
 /* A run of text names a stack of fonts. A character, with the marks on it, is drawn by the first of these that has it:
  *
  *     1. the glyphs that the caller's function gives
- *     2. the fonts of the stack: of a folder, else of the system; a name means the font that is called so, else the one
- *        of its family with the nearest weight, width and slant
+ *     2. the fonts of the stack: from a folder, else the shipped one, else from the system; a name means the font that is
+ *        called so, else the one of its family with the nearest weight, width and slant
  *     3. the shipped font: Noto Sans for Latin, Greek and Cyrillic, regular, bold or italic
  *     4. Noto Sans of the character's script, such as Noto Sans Arabic
  *     5. any font of the folders

@@ -73,7 +73,8 @@ def styles() -> list[str]: ...
 
 class Map:
     def __init__(self, *inputs: _Path, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
-                 layer: Optional[str] = None, where: Optional[str] = None,
+                 layer: Optional[str] = None, where: Optional[str] = None, labels: bool = True,
+                 fonts: Sequence[_Path] = (), language: Optional[str] = None,
                  context: Optional[Context] = None) -> None: ...
     def draw(self, *, center: Optional[Sequence[float]] = None, zoom: Optional[float] = None,
              bbox: Optional[Sequence[float]] = None, bearing: Optional[float] = None, pitch: Optional[float] = None,
@@ -93,8 +94,8 @@ class Map:
               description: Optional[str] = None, attribution: Optional[str] = None) -> dict[str, Any]: ...
 
 def render(*inputs: _Path, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
-           layer: Optional[str] = None, where: Optional[str] = None, context: Optional[Context] = None,
-           **view: Any) -> _Picture: ...
+           layer: Optional[str] = None, where: Optional[str] = None, labels: bool = True, fonts: Sequence[_Path] = (),
+           language: Optional[str] = None, context: Optional[Context] = None, **view: Any) -> _Picture: ...
 def tiles(*inputs: _Path, output: _Path, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
           layer: Optional[str] = None, where: Optional[str] = None, context: Optional[Context] = None,
           **pyramid: Any) -> dict[str, Any]: ...

@@ -56,22 +56,41 @@ def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
     return view
 
 
-class Map:
-    """Files with a style. They are read once; draw() moves the view over them."""
+def translate(core, text, name, language):
+    """Returns a style document that reads names in a language first."""
+    made = ffi.new("char **")
+    core.check(lib.camber_style_translate(core.pointer, text, len(text), name, as_text(language), made))
+    try:
+        return ffi.string(made[0])
+    finally:
+        lib.camber_style_free_text(core.pointer, made[0])
 
-    def __init__(self, *inputs, style=None, theme="light", layer=None, where=None, context=None):
+
+class Map:
+    """Files with a style. They are read once; draw() moves the view over them.
+
+    labels: whether the style's symbol layers are drawn. fonts: folders that are searched for fonts before the system's.
+    language: the code of the language of names, such as "de"; None: the local names.
+    """
+
+    def __init__(self, *inputs, style=None, theme="light", layer=None, where=None, labels=True, fonts=(), language=None,
+                 context=None):
         self._context = default(context)
+        self._labels, self._fonts = labels, [as_path(folder) for folder in fonts]
         self._inputs = [as_path(path) for path in inputs]
         self._layer, self._where = as_text(layer), as_text(where)
         self._scene = self._mesh = self._features = None
         self._read_for = None  # the view that the features were read for; None: everything was read
         self._once = False
         theme = pick(THEMES, "theme", theme)
+        if style is None and language is not None:
+            style = styles()[0]
         text, name, self._base = (None, None, None) if style is None else read_style(style, theme)
         with self._context._core as core:
             if text is None:
                 self._style = core.make(lib.camber_style_create_builtin, core.pointer, theme)
             else:
+                text = text if language is None else translate(core, text, name, language)
                 self._style = core.make(lib.camber_style_parse, core.pointer, text, len(text), name)
 
     def _read(self, core, view, once):
@@ -83,6 +102,10 @@ class Map:
         self._features = None
         features = core.make(lib.camber_features_create, core.pointer, self._style)
         base = ffi.NULL if self._base is None else self._base
+        if self._labels:
+            folders = [ffi.new("char[]", folder) for folder in self._fonts]
+            fonts = ffi.new("camber_fonts_desc *", {"folders": ffi.new("char *[]", folders), "folder_count": len(folders)})
+            core.check(lib.camber_features_read_fonts(features, fonts, base))
         if self._inputs and once:
             desc = ffi.new("camber_scene_desc *", {"view": view, "simplify_px": SIMPLIFY_PX})
             core.check(lib.camber_features_read_for(features, desc))
@@ -186,13 +209,16 @@ class Map:
         return {field: getattr(stats, field) for field, _ in ffi.typeof("camber_tiles_stats").fields}
 
 
-def render(*inputs, style=None, theme="light", layer=None, where=None, context=None, **view):
+def render(*inputs, style=None, theme="light", layer=None, where=None, labels=True, fonts=(), language=None, context=None,
+           **view):
     """Draws files once, into an array. Only the part of indexed files that the view needs is read."""
-    shown = Map(*inputs, style=style, theme=theme, layer=layer, where=where, context=context)
+    shown = Map(*inputs, style=style, theme=theme, layer=layer, where=where, labels=labels, fonts=fonts,
+                language=language, context=context)
     shown._once = True
     return shown.draw(**view)
 
 
 def tiles(*inputs, output, style=None, theme="light", layer=None, where=None, context=None, **pyramid):
     """Draws a pyramid of tiles from files into an archive, and returns its counts as a dictionary."""
-    return Map(*inputs, style=style, theme=theme, layer=layer, where=where, context=context).tiles(output, **pyramid)
+    return Map(*inputs, style=style, theme=theme, layer=layer, where=where, labels=False, context=context).tiles(
+        output, **pyramid)

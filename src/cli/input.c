@@ -467,7 +467,10 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
         return;
     char why[1024] = "no polylines";
 #ifdef CAMBER_MAP
-    const double zoom = input->scene ? camber_scene_get_info(input->scene).zoom : 0.0;
+    const camber_scene_info scene = input->scene ? camber_scene_get_info(input->scene) : (camber_scene_info){0};
+    const double zoom = scene.zoom;
+    if (scene.labels > 0)
+        return;
     if (input->features)
         (void)camber_features_explain_nothing(input->features, zoom, zoom, why, sizeof why);
 #endif

@@ -79,6 +79,7 @@ static int print_json(const job *j) {
         {"features", scene.features},
         {"polylines", scene.polylines},
         {"points_in", scene.points_in},
+        {"labels", scene.labels},
         {"closed_rings", read.closed_rings},
         {"turned_rings", read.turned_rings},
         {"empty_rings", read.empty_rings},
@@ -125,10 +126,11 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
     char drawn[64] = "drawn by OpenCL kernels";
     if (camber_renderer_get_rasterizer(j->session->renderer) == CAMBER_RASTERIZER_GL)
         snprintf(drawn, sizeof drawn, "%zu draw call%s", calls, camber_plural(calls));
-    camber_report_say(j->session->report, "%zu feature%s, %zu polyline%s, %zu point%s, %zu triangle%s (%s), %s",
-                      scene->features, camber_plural(scene->features), scene->polylines,
-                      camber_plural(scene->polylines), scene->points, camber_plural(scene->points), mesh.triangle_count,
-                      camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
+    camber_report_say(
+        j->session->report, "%zu feature%s, %zu polyline%s, %zu point%s, %zu label%s, %zu triangle%s (%s), %s",
+        scene->features, camber_plural(scene->features), scene->polylines, camber_plural(scene->polylines),
+        scene->points, camber_plural(scene->points), scene->labels, camber_plural(scene->labels), mesh.triangle_count,
+        camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
 }
 
 /* Prints how many rings were invalid; usually none is. */

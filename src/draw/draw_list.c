@@ -515,7 +515,7 @@ static camber_status find_pitch(camber_context *context, const camber_frame *fra
     bool found = pitch > 0.0;
     for (size_t i = 0; i < frame->pass_count; i++) {
         const camber_pass *pass = frame->passes + i;
-        if (pass->kind != CAMBER_PASS_LINES || !pass->mesh->mesh_info.of_network)
+        if (pass->kind != CAMBER_PASS_LINES || !pass->mesh->has_camera)
             continue;
         const double of_mesh = pass->mesh->pitch_deg;
         if (found && (of_mesh < pitch || of_mesh > pitch))

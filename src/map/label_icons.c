@@ -10,6 +10,7 @@
 #include "map/label_icons.h"
 
 #include "text/contours.h"
+#include "text/distances.h"
 
 #include <math.h>
 #include <string.h>
@@ -114,13 +115,22 @@ static camber_status make_image(camber_context *context, const curve *x_curve, c
 static camber_status make_outline(camber_context *context, const curve *x_curve, const curve *y_curve,
                                   camber_icon_form *form) {
     const camber_sprite_image *icon = form->icon;
-    uint8_t *distances = camber_alloc(context, (size_t)icon->width * icon->height, 1);
-    if (!distances)
+    uint8_t *alphas = camber_alloc(context, (size_t)icon->width * icon->height, 1);
+    if (!alphas)
         return CAMBER_ERROR_MEMORY;
     for (size_t y = 0; y < icon->height; y++)
         for (size_t x = 0; x < icon->width; x++)
-            distances[y * icon->width + x] = texel(icon, (int)x, (int)y)[3];
-    const camber_contour_source source = {distances, icon->width, icon->height, 0.0f, 0.0f, 1.0f};
+            alphas[y * icon->width + x] = texel(icon, (int)x, (int)y)[3];
+    float *distances = camber_distances_refine(context, alphas, icon->width, icon->height);
+    camber_free(context, alphas);
+    if (!distances)
+        return CAMBER_ERROR_MEMORY;
+    const camber_contour_source source = {.values = distances,
+                                          .width = CAMBER_DISTANCE_STEPS * (icon->width - 1) + 1,
+                                          .height = CAMBER_DISTANCE_STEPS * (icon->height - 1) + 1,
+                                          .left = 0.5f,
+                                          .top = 0.5f,
+                                          .scale = 1.0f / CAMBER_DISTANCE_STEPS};
     camber_outline_maker maker = {.context = context, .scale = 1.0f, .tolerance_em = 1.0f / 256.0f};
     camber_contours_trace(&source, &maker);
     for (size_t i = 0; i < maker.point_count; i++) {

@@ -14,6 +14,8 @@
 static const double TOLERANCE_PX = 1.0 / 32.0;
 /* A halo's edge fades over so many times its blur, as the distances of glyphs in MapLibre do. */
 static const float BLUR_SCALE = 1.19f;
+/* As wide as strokes may be. */
+static const float WIDEST_PX = 16384.0f;
 
 /* Rings while they are gathered. */
 typedef struct rings {
@@ -56,13 +58,16 @@ static void unproject(const tilt *t, float p[2]) {
     p[1] = (float)(t->y + plane_y);
 }
 
-/* Adds u, v of the item's outline. */
-static void add_point(rings *r, const camber_label_item *item, const tilt *t, float u, float v) {
-    float *p = r->points + 2 * r->point_count++;
+/* Finds where the plane has the point u, v of an item. t: NULL if the item is in the plane. */
+static void find_point(const camber_label_item *item, const tilt *t, float u, float v, float p[2]) {
     p[0] = item->x + item->xx * u + item->xy * v;
     p[1] = item->y + item->yx * u + item->yy * v;
     if (t)
         unproject(t, p);
+}
+
+static void add_point(rings *r, const camber_label_item *item, const tilt *t, float u, float v) {
+    find_point(item, t, u, v, r->points + 2 * r->point_count++);
 }
 
 /* Adds the rings of an outline. Those of one row are one area. */
@@ -108,26 +113,34 @@ static camber_status add_frame(rings *r, const camber_icon_form *form, const cam
     return CAMBER_OK;
 }
 
-/* Lays the image, whose pointer is set later, into the frame. */
-static void place_image(const camber_icon_form *form, const camber_label_item *item, const camber_label_look *look,
-                        camber_fill *fill) {
-    const float edge_x = 1.0f / (float)form->width, edge_y = 1.0f / (float)form->height;
+/* Lays the image, whose pointer is set later, into the frame. In a picture with a pitch the frame is a quadrangle of
+ * the plane, and the image the rectangle with the same middle axes. */
+static void place_image(const camber_icon_form *form, const camber_label_item *item, const tilt *t,
+                        const camber_label_look *look, camber_fill *fill) {
+    const float half_x = 0.5f + 1.0f / (float)form->width, half_y = 0.5f + 1.0f / (float)form->height;
+    float left[2], right[2], top[2], bottom[2];
+    find_point(item, t, 0.5f - half_x, 0.5f, left);
+    find_point(item, t, 0.5f + half_x, 0.5f, right);
+    find_point(item, t, 0.5f, 0.5f - half_y, top);
+    find_point(item, t, 0.5f, 0.5f + half_y, bottom);
     fill->color = look->color;
-    fill->width_px = hypotf(item->xx, item->yx) * (1.0f + 2.0f * edge_x);
-    fill->height_px = hypotf(item->xy, item->yy) * (1.0f + 2.0f * edge_y);
-    fill->x_px = item->x - item->xx * edge_x - item->xy * edge_y;
-    fill->y_px = item->y - item->yx * edge_x - item->yy * edge_y;
-    fill->bearing_deg = -atan2((double)item->yx, (double)item->xx) * 180.0 / 3.14159265358979323846;
+    fill->width_px = hypotf(right[0] - left[0], right[1] - left[1]);
+    fill->height_px = hypotf(bottom[0] - top[0], bottom[1] - top[1]);
+    fill->x_px = left[0] - 0.5f * (bottom[0] - top[0]);
+    fill->y_px = left[1] - 0.5f * (bottom[1] - top[1]);
+    fill->bearing_deg =
+        -atan2((double)(right[1] - left[1]), (double)(right[0] - left[0])) * 180.0 / 3.14159265358979323846;
 }
 
 /* ---- Looks ---- */
 
 static void make_look(const camber_label_look *look, camber_label_shapes *s, size_t i) {
     const float blur = BLUR_SCALE * look->halo_blur_px;
-    const float half = look->halo_width_px > 0.0f && look->halo_color.a > 0.0f ? look->halo_width_px + blur : 0.0f;
-    s->strokes[i] = (camber_stroke){.width_px = 2.0f * half, .join = CAMBER_JOIN_ROUND, .cap = CAMBER_CAP_ROUND};
+    const bool has_halo = look->halo_width_px > 0.0f && look->halo_color.a > 0.0f;
+    const float width = has_halo ? fminf(2.0f * (look->halo_width_px + blur), WIDEST_PX) : 0.0f;
+    s->strokes[i] = (camber_stroke){.width_px = width, .join = CAMBER_JOIN_ROUND, .cap = CAMBER_CAP_ROUND};
     s->halos[i] = (camber_paint){
-        .width_px = 2.0f * half, .color = look->halo_color, .blur_px = 2.0f * blur, .smooth_blur = blur > 0.0f};
+        .width_px = width, .color = look->halo_color, .blur_px = 2.0f * blur, .smooth_blur = blur > 0.0f};
     s->fills[i] = (camber_fill){.color = look->color};
     s->paints[i] = (camber_paint){.fill = s->fills + i};
 }
@@ -174,7 +187,7 @@ static camber_status add_icon(shape_maker *m, const camber_label_item *item, cam
         return add_outline(&m->texts, &s->forms.forms[*form].outline, item, t);
     }
     camber_fill *fill = s->fills + s->look_count + s->icon_count;
-    place_image(s->forms.forms + *form, item, m->labels->looks + item->look, fill);
+    place_image(s->forms.forms + *form, item, t, m->labels->looks + item->look, fill);
     s->paints[s->look_count + s->icon_count].fill = fill;
     return add_frame(&m->icons, s->forms.forms + *form, item, t, (uint32_t)s->icon_count++);
 }

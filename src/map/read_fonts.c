@@ -38,6 +38,14 @@ static char *fill_in(camber_context *context, const char *text, const char *name
     return made;
 }
 
+/* Whether a name leads out of its folder: names of fonts come from a style, too. */
+static bool leads_up(const char *name) {
+    for (const char *at = strstr(name, ".."); at; at = strstr(at + 1, ".."))
+        if ((at == name || at[-1] == '/') && (at[2] == 0 || at[2] == '/'))
+            return true;
+    return false;
+}
+
 static camber_status read_range(void *user, const char *stack, uint32_t first, const uint8_t **bytes,
                                 size_t *size_bytes) {
     glyph_files *files = user;
@@ -49,7 +57,8 @@ static camber_status read_range(void *user, const char *stack, uint32_t first, c
     snprintf(range, sizeof range, "%u-%u", first, first + 255);
     if ((with_stack = fill_in(context, files->name, "{fontstack}", stack)) &&
         (name = fill_in(context, with_stack, "{range}", range)))
-        status = camber_read_file_below(context, files->folder, name, &files->bytes, size_bytes);
+        status = leads_up(name) ? CAMBER_ERROR_NOT_FOUND
+                                : camber_read_file_below(context, files->folder, name, &files->bytes, size_bytes);
     camber_free(context, with_stack);
     camber_free(context, name);
     *bytes = (const uint8_t *)files->bytes;
@@ -93,6 +102,11 @@ static camber_status find_files(camber_context *context, const char *template, c
         files->context = context;
         status = split(files, url.path);
     }
+    /* Files below the folder are in the root, too, since no link is followed there. */
+    if (status == CAMBER_OK && !camber_file_is_reached(context, files->folder))
+        status = camber_fail(context, CAMBER_ERROR_INPUT,
+                             "style: /glyphs: %s is not in %s, and a style may name files only there; put it there",
+                             files->folder, context->desc.access.root);
     camber_free(context, url.path);
     if (status == CAMBER_OK)
         *found = files;

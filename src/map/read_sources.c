@@ -7,9 +7,9 @@
 
 /* The same values as in fit.c. */
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
-/* The largest circle radius, in CSS px, for which more tiles are read. It also applies to circles whose size depends on
- * the features. */
-static const double MOST_CIRCLE_PX = 256.0;
+/* The largest circle radius, in CSS px, for which more tiles are read. It also applies to labels, and to circles whose
+ * size depends on the features. */
+static const double MOST_REACH_PX = 256.0;
 
 /* Moves a view without a camera to show the bounds of all sources. */
 static void fit_bounds(const camber_sources *sources, camber_view *view) {
@@ -24,13 +24,15 @@ static void fit_bounds(const camber_sources *sources, camber_view *view) {
     camber_view_frame(view, bounds, FILL, LARGEST_FIT_ZOOM);
 }
 
-/* Returns the tiles that the view sees, and those from which circles reach into it: a point is only in the tile that
- * contains it, while a tile's buffer repeats the lines of its neighbours. */
-static camber_tile_cover cover_of(const camber_style *style, const camber_view *view) {
+/* Returns the tiles that the view sees, and those from which circles and labels reach into it: a point is only in the
+ * tile that contains it, while a tile's buffer repeats the lines of its neighbours. */
+static camber_tile_cover cover_of(const camber_features *features, const camber_view *view) {
     camber_tile_cover cover = {.zoom = view->zoom};
     double centre[2] = {0.0, 0.0};
     camber_view_corners(view, cover.corners);
-    const double reach_px = fmin(camber_view_circle_reach(style, view), MOST_CIRCLE_PX * view->ratio);
+    double reach_px = fmin(camber_view_circle_reach(features->style, view), MOST_REACH_PX * view->ratio);
+    if (camber_features_label_kinds(features))
+        reach_px = MOST_REACH_PX * view->ratio;
     const double grown = 2.0 * reach_px / fmin((double)view->width, (double)view->height);
     for (int i = 0; i < 8; i++)
         centre[i & 1] += 0.25 * cover.corners[i];
@@ -52,7 +54,7 @@ camber_status camber_features_read_sources(camber_features *features, const camb
     if (status == CAMBER_OK) {
         if (view->kind == CAMBER_VIEW_FIT)
             fit_bounds(sources, &seen);
-        const camber_tile_cover cover = cover_of(features->style, &seen);
+        const camber_tile_cover cover = cover_of(features, &seen);
         status = camber_sources_read(sources, &cover);
     }
     camber_sources_close(sources);

@@ -27,6 +27,7 @@ struct camber_scene {
     camber_plan_network geometry;
     camber_pass_list pair_passes;
     camber_label_shapes labels; /* of the picture */
+    size_t label_count;
 
     /* On the host: empty until camber_scene_project. */
     bool is_projected;
@@ -161,6 +162,7 @@ static camber_status make_labels(camber_scene *scene) {
     camber_status status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
         status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
+    scene->label_count = labels.label_count;
     camber_labels_free(&labels);
     return status;
 }
@@ -215,7 +217,7 @@ static camber_status warn_if_nothing_is_drawn(const camber_scene *scene) {
         return CAMBER_OK;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: no layer draws %zu of the %zu features", undrawn, all);
-    if (!undrawn || undrawn < all)
+    if (!undrawn || undrawn < all || scene->label_count)
         return CAMBER_OK;
     const camber_status status = camber_plan_explain_nothing(features, zoom, zoom, why, sizeof why, &draws);
     if (status == CAMBER_OK)
@@ -359,6 +361,7 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     info.polylines = scene->counts.polylines;
     info.points = scene->counts.points;
     info.points_in = scene->counts.points_in;
+    info.labels = scene->label_count;
     return info;
 }
 
@@ -406,7 +409,7 @@ static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
 }
 
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
-    const bool of_network = mesh && camber_mesh_get_info(mesh).of_network;
+    const bool of_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
     assert(of_network || scene->is_projected);
     if (!scene->own && (scene->zoom->has_images || scene->zoom->has_area_images))
         move_fills(scene);

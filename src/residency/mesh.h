@@ -128,8 +128,9 @@ struct camber_mesh {
     bool wide;          /* a row is so wide that joins may be flat */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
-    double pitch_deg;   /* of the network's camera */
-    bool empty;         /* nothing to draw: not tessellated yet, failed, or without any point or vertex */
+    bool has_camera;    /* the last tessellation was of a network; pitch_deg is its camera's */
+    double pitch_deg;
+    bool empty; /* nothing to draw: not tessellated yet, failed, or without any point or vertex */
 };
 
 enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };

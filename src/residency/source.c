@@ -178,3 +178,7 @@ camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, co
                                                                camera->pitch_deg > 0.0, &mesh->held->program)
                                : status;
 }
+
+bool camber_mesh_holds_network(const camber_mesh *mesh, const camber_network *network) {
+    return mesh->done && mesh->serial == network->serial;
+}

@@ -38,7 +38,7 @@ void camber_painter_destroy(camber_painter *painter);
 void camber_painter_put(camber_painter *painter, const camber_map_source *source);
 
 /* Callbacks for camber_draw_queue_desc; user is the painter. */
-camber_status camber_painter_draw(void *user, const camber_route_request *request, camber_rendered_picture *drawn);
+camber_status camber_painter_draw(void *user, const camber_route_request *request, camber_rendered_picture *rendered);
 bool camber_painter_prepare(void *user);
 
 #endif

@@ -199,10 +199,8 @@ static camber_status plan_parts(camber_mesh *mesh, const source *from, const cam
 /* Resets the mesh, notes which kinds of joins and caps its rows have, plans its parts and tessellates them. On failure
  * the mesh is empty. */
 static camber_status tessellate(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
-    const camber_mesh_info nothing = {.method = desc->method,
-                                      .strips = desc->method == CAMBER_METHOD_STRIP,
-                                      .has_arc_length = desc->has_arc_length,
-                                      .of_network = from->camera != NULL};
+    const camber_mesh_info nothing = {
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
     camber_status status = camber_check_process(context);
@@ -221,6 +219,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;
+    mesh->has_camera = from->camera != NULL;
     mesh->pitch_deg = from->camera ? from->camera->pitch_deg : 0.0;
     mesh->remade_parts = 0;
     for (size_t i = 0; i < mesh->part_capacity; i++)

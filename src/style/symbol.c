@@ -221,7 +221,7 @@ static bool find_anchor(const camber_value *value, camber_text_anchor *anchor) {
 
 /* Whether the anchor is at the text's left (-1), right (1) or neither, and at its top (-1), bottom (1) or neither. */
 static void side_of(camber_text_anchor anchor, int *x, int *y) {
-    static const signed char sides[CAMBER_SYMBOL_ANCHORS_MAX][2] = {
+    static const int sides[CAMBER_SYMBOL_ANCHORS_MAX][2] = {
         [CAMBER_ANCHOR_LEFT] = {-1, 0},        [CAMBER_ANCHOR_RIGHT] = {1, 0},
         [CAMBER_ANCHOR_TOP] = {0, -1},         [CAMBER_ANCHOR_BOTTOM] = {0, 1},
         [CAMBER_ANCHOR_TOP_LEFT] = {-1, -1},   [CAMBER_ANCHOR_TOP_RIGHT] = {1, -1},

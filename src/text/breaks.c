@@ -117,7 +117,8 @@ static void find_breaks(breaker *b, bool has_width, float spacing) {
         const uint32_t code = shaping->codes[i], next = i + 1 < shaping->count ? shaping->codes[i + 1] : 0;
         if (!camber_is_white(code))
             x += (double)((shaping->characters[i].width_em + spacing) * UNITS);
-        if (i + 1 == shaping->count || (!has_width && code != '\n') || shaping->characters[i + 1].is_mark)
+        if (i + 1 == shaping->count || (!has_width && code != '\n') ||
+            (code != '\n' && shaping->characters[i + 1].is_mark))
             continue;
         const bool is_ideographic = camber_is_ideographic(code);
         if (is_breakable(code) || is_ideographic || shaping->characters[i].is_image ||

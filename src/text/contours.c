@@ -1,21 +1,12 @@
-/* Marching squares. Corners are the centres of pixels and the places between them, and around those one row and column
- * that are outside. A ring crosses the sides of squares at which one end is inside and the other is not. In each
- * square, it goes from the side that it enters by to the side that it leaves by, with the inside to its right:
+/* Marching squares. Corners are the values, and one row and column more on each side, which are outside. A
+ * ring crosses the sides of squares at which one end is inside and the other is not. In each square, it goes from the
+ * side that it enters by to the side that it leaves by, with the inside to its right:
  *
  *     o---x     o outside, x inside. The ring enters from the right side and leaves through the top:
  *     |  /      each crossing has one crossing that follows it, so walking from one to the next gives the rings.
  *     o-' o
  *
- * Strokes may be so thin that they pass between the centres of pixels, which are all outside. The values on both sides
- * rise towards the stroke as steeply as distances can, so the value between them is where these slopes meet:
- *
- *            /\
- *     ------/--\------ the edge
- *          o    o
- *         /      \
- *        o        o     o values of pixels
- *
- * The same goes for thin gaps. Then points that a straight line passes within a small tolerance are left out. */
+ * Then points that a straight line passes within a small tolerance are left out. */
 #include "text/contours.h"
 
 #include <math.h>
@@ -25,54 +16,17 @@ static const float EDGE = 191.5f;
 /* Distance from a ring to the points that are left out of it: 1/40 px of the bitmap. */
 static const float TOLERANCE_EM = 1.0f / 960.0f;
 
-/* Slopes from here on belong to a straight edge, and not to a curve that the values go round: values for each pixel, of
- * 32 at most. */
-static const float LEAST_SLOPE = 18.0f;
-
 typedef struct grid {
     const camber_contour_source *source;
     uint32_t width, height; /* corners */
-    float *values;          /* of corners */
     uint32_t *next;         /* a crossing -> the next one + 1. 0: nothing crosses there, or it is done */
 } grid;
 
 static float get_value(const grid *g, uint32_t x, uint32_t y) {
-    return g->values[(size_t)y * g->width + x];
+    if (x == 0 || y == 0 || x > g->source->width || y > g->source->height)
+        return 0.0f;
+    return g->source->values[(size_t)(y - 1) * g->source->width + (x - 1)];
 }
-
-/* ---- Values at corners ---- */
-
-/* The value between b and c, which a and d are next to. */
-static float find_between(float a, float b, float c, float d) {
-    const float middle = 0.5f * (b + c), from_left = b + 0.5f * (b - a), from_right = c + 0.5f * (c - d);
-    if (fminf(b - a, c - d) >= LEAST_SLOPE)
-        return fmaxf(fminf(from_left, from_right), middle);
-    if (fminf(a - b, d - c) >= LEAST_SLOPE)
-        return fminf(fmaxf(from_left, from_right), middle);
-    return middle;
-}
-
-/* Fills in the values between those of pixels, of which there are count, 2 * step apart. */
-static void fill_between(float *values, size_t count, size_t step) {
-    for (size_t i = 0; i + 1 < count; i++) {
-        float *b = values + 2 * i * step, *c = b + 2 * step;
-        b[step] = find_between(i ? b[-2 * (ptrdiff_t)step] : *b, *b, *c, i + 2 < count ? c[2 * step] : *c);
-    }
-}
-
-static void fill_grid(grid *g) {
-    const size_t width = g->source->width, height = g->source->height, row = g->width;
-    for (size_t y = 0; y < height; y++) {
-        float *first = g->values + (2 * y + 1) * row + 1;
-        for (size_t x = 0; x < width; x++)
-            first[2 * x] = (float)g->source->values[y * width + x];
-        fill_between(first, width, 1);
-    }
-    for (size_t x = 0; x + 1 < 2 * width; x++)
-        fill_between(g->values + row + 1 + x, height, row);
-}
-
-/* ---- Rings ---- */
 
 /* The number of a square's side: its top (0), right (1), bottom (2), left (3). Sides are numbered by the corner at
  * their left or top end. */
@@ -121,8 +75,8 @@ static void add_crossing(const grid *g, uint32_t side, camber_outline_maker *mak
     const float a = get_value(g, x, y);
     const float b = is_vertical ? get_value(g, x, y + 1) : get_value(g, x + 1, y);
     const float share = (EDGE - a) / (b - a);
-    const float px = 0.5f * ((float)x + (is_vertical ? 0.0f : share));
-    const float py = 0.5f * ((float)y + (is_vertical ? share : 0.0f));
+    const float px = (float)x - 1.0f + (is_vertical ? 0.0f : share);
+    const float py = (float)y - 1.0f + (is_vertical ? share : 0.0f);
     camber_outline_add_point(maker, g->source->left + px * g->source->scale, g->source->top + py * g->source->scale);
 }
 
@@ -183,18 +137,15 @@ static void thin_ring(camber_outline_maker *maker) {
 }
 
 void camber_contours_trace(const camber_contour_source *source, camber_outline_maker *maker) {
-    if (maker->status || source->width == 0 || source->height == 0)
-        return;
-    grid g = {source, 2 * source->width + 1, 2 * source->height + 1, NULL, NULL};
+    grid g = {source, source->width + 2, source->height + 2, NULL};
     const size_t side_count = 2 * (size_t)g.width * g.height;
-    g.values = camber_alloc_zero(maker->context, side_count / 2, sizeof *g.values);
-    g.next = g.values ? camber_alloc_zero(maker->context, side_count, sizeof *g.next) : NULL;
+    if (maker->status)
+        return;
+    g.next = camber_alloc_zero(maker->context, side_count, sizeof *g.next);
     if (!g.next) {
-        camber_free(maker->context, g.values);
         maker->status = CAMBER_ERROR_MEMORY;
         return;
     }
-    fill_grid(&g);
     for (uint32_t y = 0; y + 1 < g.height; y++)
         for (uint32_t x = 0; x + 1 < g.width; x++)
             join_square(&g, x, y);
@@ -211,6 +162,5 @@ void camber_contours_trace(const camber_contour_source *source, camber_outline_m
         thin_ring(maker);
         camber_outline_end_ring(maker);
     }
-    camber_free(maker->context, g.values);
     camber_free(maker->context, g.next);
 }

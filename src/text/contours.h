@@ -1,14 +1,14 @@
-/* The outline of a bitmap of signed distances. */
+/* The outline of signed distances. */
 #ifndef CAMBER_TEXT_CONTOURS_H
 #define CAMBER_TEXT_CONTOURS_H
 
 #include "text/outline.h"
 
 typedef struct camber_contour_source {
-    const uint8_t *values; /* width * height, rows from the top down; more is inside */
+    const float *values; /* width * height, rows from the top down; more is inside */
     uint32_t width, height;
-    float left, top; /* of the bitmap's corner */
-    float scale;     /* of a pixel */
+    float left, top; /* of the first value */
+    float scale;     /* from a value to the next */
 } camber_contour_source;
 
 /* Adds the rings at which the distance is 0. */

@@ -22,6 +22,7 @@ static camber_status add_shipped(camber_font_index *index) {
             return CAMBER_ERROR_MEMORY;
         entry->bytes = fonts[i].bytes;
         entry->size_bytes = fonts[i].size_bytes;
+        entry->index = (uint32_t)i;
         entry->style = fonts[i].is;
         camber_font_entry_name(entry, "Noto Sans", fonts[i].style, NULL);
     }
@@ -32,11 +33,9 @@ static int compare(const void *a, const void *b) {
     const camber_font_entry *one = a, *other = b;
     if (one->origin != other->origin)
         return one->origin < other->origin ? -1 : 1;
-    const int order = one->origin == CAMBER_FONT_SHIPPED ? 0 : strcmp(one->path, other->path);
+    const int order = strcmp(one->path, other->path);
     if (order)
         return order;
-    if (one->bytes || other->bytes)
-        return one->bytes < other->bytes ? -1 : one->bytes > other->bytes;
     return one->index < other->index ? -1 : one->index > other->index;
 }
 
@@ -45,10 +44,12 @@ camber_status camber_font_index_fill(camber_font_index *index, const char *const
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < folder_count && !status; i++)
         status = camber_font_index_add_folder(index, folders[i]);
+    if (!status)
+        status = add_shipped(index);
     if (!status && has_system)
         status = camber_font_index_add_system(index);
-    /* Which of equal fonts is taken must not depend on the order of files in folders. */
+    /* Which of several equal fonts is used must not depend on the order of files in folders. */
     if (!status && index->count)
         qsort(index->entries, index->count, sizeof *index->entries, compare);
-    return status ? status : add_shipped(index);
+    return status;
 }

@@ -12,8 +12,8 @@ enum { CAMBER_FONT_KEYS = 8 };
 
 typedef enum camber_font_origin {
     CAMBER_FONT_FROM_FOLDER = 0,
+    CAMBER_FONT_SHIPPED, /* before the system's, so that it draws its names' texts alike everywhere */
     CAMBER_FONT_FROM_SYSTEM,
-    CAMBER_FONT_SHIPPED,
 } camber_font_origin;
 
 typedef struct camber_font_entry {
@@ -58,8 +58,8 @@ size_t camber_font_index_find(const camber_font_index *index, const char *name);
 /* The entry of a family with the nearest style. SIZE_MAX: there is none. */
 size_t camber_font_index_find_family(const camber_font_index *index, uint64_t family_key,
                                      const camber_font_style *style);
-/* Opens an entry's font. Sets *face to NULL if it is broken. Returns CAMBER_ERROR_MEMORY. */
-camber_status camber_font_index_open(camber_font_index *index, size_t entry, camber_face **face);
+/* Opens the font of the entry with this number. Sets *face to NULL if it is broken. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_font_index_open(camber_font_index *index, size_t number, camber_face **face);
 
 /* The system's fonts in the order in which it would try them for a style and a language, as patterns of entries. NULL:
  * there are none. */

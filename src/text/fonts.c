@@ -8,6 +8,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
+#include <string.h>
 #include <sys/stat.h>
 
 static void free_strings(camber_context *context, char **strings, size_t count) {
@@ -176,12 +177,18 @@ camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint
 
 /* ---- Stacks ---- */
 
+/* The specification's fonts for styles that name none. Nobody chose them, so nobody misses them. */
+static bool is_default(const char *name) {
+    return strcmp(name, "Open Sans Regular") == 0 || strcmp(name, "Arial Unicode MS Regular") == 0;
+}
+
 /* Warns of a font that is missing. The caller's ranges have what a style draws, so that they need no fonts. */
 static void tell_missing_font(camber_fonts *fonts, const camber_font_stack *stack, const char *name) {
     const char *package = camber_font_name_package(name);
     if (!is_news(fonts, camber_font_name_key(name, "?")))
         return;
-    camber_log(fonts->context, stack->ranges_source == CAMBER_NO_SOURCE ? CAMBER_LOG_WARNING : CAMBER_LOG_INFO,
+    const bool matters = stack->ranges_source == CAMBER_NO_SOURCE && !is_default(name);
+    camber_log(fonts->context, matters ? CAMBER_LOG_WARNING : CAMBER_LOG_INFO,
                package ? "there is no font \"%s\": another one draws its text (Debian has it in %s)"
                        : "there is no font \"%s\": another one draws its text",
                name, package);

@@ -4,10 +4,11 @@
 #include "text/glyph_ranges.h"
 
 #include "text/contours.h"
+#include "text/distances.h"
 
 #include <glyphs.pb-c.h>
 
-static const uint32_t MOST_BITMAP_PX = 1024; /* wide or high */
+static const uint32_t MOST_BITMAP_PX = 256; /* wide or high */
 static const uint32_t MOST_METRIC_PX = 4096;
 
 /* protobuf's memory. */
@@ -180,13 +181,21 @@ void camber_glyph_ranges_draw(const camber_glyph_ranges *ranges, uint32_t code, 
     const camber_range_glyph *glyph = get_glyph(ranges, code);
     if (!glyph || !glyph->values)
         return;
+    const size_t width = glyph->width + 2 * CAMBER_RANGE_BORDER_PX, height = glyph->height + 2 * CAMBER_RANGE_BORDER_PX;
+    float *values = camber_distances_refine(ranges->context, glyph->values, width, height);
+    if (!values) {
+        maker->status = CAMBER_ERROR_MEMORY;
+        return;
+    }
+    /* Values are those of the centres of pixels. */
     const camber_contour_source source = {
-        .values = glyph->values,
-        .width = glyph->width + 2 * CAMBER_RANGE_BORDER_PX,
-        .height = glyph->height + 2 * CAMBER_RANGE_BORDER_PX,
-        .left = ((float)glyph->left - CAMBER_RANGE_BORDER_PX) / CAMBER_RANGE_EM_PX,
-        .top = (-(float)glyph->top - CAMBER_RANGE_BORDER_PX) / CAMBER_RANGE_EM_PX - ranges->ascender_em,
-        .scale = 1.0f / CAMBER_RANGE_EM_PX,
+        .values = values,
+        .width = CAMBER_DISTANCE_STEPS * ((uint32_t)width - 1) + 1,
+        .height = CAMBER_DISTANCE_STEPS * ((uint32_t)height - 1) + 1,
+        .left = ((float)glyph->left - CAMBER_RANGE_BORDER_PX + 0.5f) / CAMBER_RANGE_EM_PX,
+        .top = (-(float)glyph->top - CAMBER_RANGE_BORDER_PX + 0.5f) / CAMBER_RANGE_EM_PX - ranges->ascender_em,
+        .scale = 1.0f / (CAMBER_DISTANCE_STEPS * CAMBER_RANGE_EM_PX),
     };
     camber_contours_trace(&source, maker);
+    camber_free(ranges->context, values);
 }

@@ -8,8 +8,9 @@ enum { MOST_OF_CLUSTER = 32, MOST_OF_ITEM = 1 << 13 };
 /* The end of a cluster: a character with the marks on it. */
 static size_t find_cluster_end(const camber_shaping *shaping, size_t first) {
     size_t end = first + 1;
-    while (end < shaping->count && end - first < MOST_OF_CLUSTER && shaping->characters[end].is_mark &&
-           !shaping->characters[first].is_image && shaping->characters[end].run == shaping->characters[first].run)
+    while (end < shaping->count && shaping->codes[first] != '\n' && end - first < MOST_OF_CLUSTER &&
+           shaping->characters[end].is_mark && !shaping->characters[first].is_image &&
+           shaping->characters[end].run == shaping->characters[first].run)
         end++;
     return end;
 }
@@ -24,11 +25,10 @@ static camber_status choose_source(camber_fonts *fonts, size_t first, size_t end
     for (size_t i = first; i < end; i++)
         if (!camber_is_invisible(shaping->codes[i]))
             visible[visible_count++] = shaping->codes[i];
-    if (shaping->codes[first] == '\n') /* draws nothing, and ends an item */
-        visible_count = 0;
-    else if (visible_count && !characters[first].is_image)
+    if (visible_count && !characters[first].is_image)
         status = camber_fonts_find_source(fonts, stack, visible, visible_count, &source);
-    else if (first && !characters[first].is_image && characters[first - 1].run == characters[first].run)
+    else if (shaping->codes[first] != '\n' && first && !characters[first].is_image &&
+             characters[first - 1].run == characters[first].run)
         source = characters[first - 1].source;
     for (size_t i = first; i < end && !status; i++)
         characters[i].source = source;

@@ -174,7 +174,7 @@ static size_t compare(network_devices *b, size_t which, camber_network *network,
     camber_mesh *mesh = b->meshes[which];
     assert_int_equal(camber_network_project(network, camera, desc, &twin), CAMBER_OK);
     assert_int_equal(camber_mesh_tessellate_network(mesh, network, camera, desc), CAMBER_OK);
-    assert_true(camber_mesh_get_info(mesh).of_network);
+    assert_true(camber_mesh_holds_network(mesh, network));
     for (size_t i = 0; b->rounds && i < mesh->part_count; i++)
         compare_part(b, which, mesh->parts + i, twin);
     camber_mesh_data device, twins;

@@ -296,6 +296,9 @@ styled("tiles within the root that are not there", lambda: write("style.json", s
     '"type":"vector","tiles":["t/{z}/{x}/{y}.pbf"]')), "", 0, options=("--root", "."))
 styled("tiles beyond the root", lambda: write("style.json", style('"type":"vector","tiles":["../{z}/{x}/{y}.pbf"]')),
        "only there", options=("--root", "."))
+LABELS = '{"version":8,"zoom":0,"glyphs":"../{fontstack}/{range}.pbf","sources":{"s":{"type":"geojson","data":' + LINE + \
+    '}},"layers":[{"id":"a","type":"symbol","source":"s","layout":{"text-field":"x","text-font":["f"]}}]}'
+styled("glyphs beyond the root", lambda: write("style.json", LABELS), "only there", options=("--root", "."))
 
 # ---- Files that OUT may be ----
 

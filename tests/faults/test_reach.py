@@ -21,8 +21,8 @@ TMP = tempfile.mkdtemp(prefix="camber-reach-")
 HOME = os.path.join(TMP, "home")
 LINE = '{"type":"LineString","coordinates":[[0,0],[1,1]]}'
 # Libraries, drivers and their settings; this process and the machine; what libraries look for in a home and do not find.
-SYSTEM = re.compile(r"^(/usr/|/lib|/etc/(ld\.so|OpenCL/|localtime|nsswitch|passwd$|group$|ssl/|gdal|proj|drirc|glvnd|egl)|/proc/|/sys/|"
-                    r"/dev/(dri|shm|null|urandom|tty|kfd|nvidia)|/run/|" + re.escape(HOME) + "/)")
+SYSTEM = re.compile(r"^(/usr/|/lib|/etc/(ld\.so|OpenCL/|localtime|nsswitch|passwd$|group$|ssl/|gdal|proj|drirc|glvnd|egl|fonts/)|/proc/|/sys/|"
+                    r"/dev/(dri|shm|null|urandom|tty|kfd|nvidia)|/run/|/var/cache/fontconfig/|" + re.escape(HOME) + "/)")
 OWN = [os.path.dirname(TOOL), *(os.environ[name] for name in ("XDG_CACHE_HOME", "POCL_CACHE_DIR", "CAMBER_KERNELS",
                                                               "MESA_SHADER_CACHE_DIR") if os.environ.get(name))]
 # To ask whether a file is there opens nothing.
@@ -138,6 +138,11 @@ case("a style that leads elsewhere", lambda: write("s.json", style('"type":"geoj
      ["--style", "s.json", "--root", "."], ["s.json"], 65)
 case("a sprite elsewhere", lambda: write("s.json", style('"type":"geojson","data":' + LINE, root=',"sprite":"../secret"',
      paint=',"line-pattern":"x"')), ["--style", "s.json", "--root", "."], ["s.json"], 65)
+LABELS = ('{"version":8,"glyphs":"g/{fontstack}/{range}.pbf","sources":{"s":{"type":"geojson","data":%s}},"layers":[{"id":"a",'
+          '"type":"symbol","source":"s","layout":{"text-field":"x","text-font":["../../glyphs"]}}]}' % LINE)
+os.mkdir(os.path.join(TMP, "glyphs"))
+write(os.path.join(TMP, "glyphs", "0-255.pbf"), "SECRET")
+case("a font whose name leads elsewhere", lambda: (os.mkdir("g"), write("s.json", LABELS)), ["--style", "s.json"], ["s.json"])
 case("a style on the network", lambda: write("s.json", style('"type":"geojson","data":"http://127.0.0.1:9/a"')),
      ["--style", "s.json"], ["s.json"], 65)
 # The check itself: what is read elsewhere is told.

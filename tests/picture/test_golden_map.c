@@ -10,6 +10,7 @@
 typedef struct place {
     const char *path;
     camber_view_desc view;
+    bool labels;
 } place;
 
 static const place CROSSING = {CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles",
@@ -22,7 +23,8 @@ static const place GARDENS = {CAMBER_TEST_DATA "/monaco/monaco.osm.pbf",
 /* As ./dev demo shows it. */
 static const place DEMO = {
     CAMBER_TEST_DATA "/monaco/monaco.osm.pbf",
-    {CAMBER_VIEW_CENTER, .longitude = 7.4235, .latitude = 43.7365, .zoom = 15.1, .width = 1000, .height = 640}};
+    {CAMBER_VIEW_CENTER, .longitude = 7.4235, .latitude = 43.7365, .zoom = 15.1, .width = 1000, .height = 640},
+    .labels = true};
 
 static camber_scene *load(camber_context *context, const place *shown, camber_theme theme, camber_style **style,
                           camber_features **features) {
@@ -31,6 +33,9 @@ static camber_scene *load(camber_context *context, const place *shown, camber_th
     const camber_scene_desc desc = {.view = shown->view, .simplify_px = 0.1};
     assert_int_equal(camber_style_create_builtin(context, theme, style), CAMBER_OK);
     assert_int_equal(camber_features_create(context, *style, features), CAMBER_OK);
+    if (shown->labels)
+        assert_int_equal(camber_features_read_fonts(*features, &(camber_fonts_desc){.no_system = true}, NULL),
+                         CAMBER_OK);
     assert_int_equal(camber_features_read(*features, &source), CAMBER_OK);
     assert_int_equal(camber_scene_create(*features, &desc, &map), CAMBER_OK);
     return map;

@@ -92,9 +92,9 @@ static town *open_town(const char *layers) {
 }
 
 static void close_town(town *t) {
-    for (size_t i = 0; i < t->sprites.missed_count; i++)
-        camber_free(t->context, t->sprites.missed[i]);
-    camber_free(t->context, t->sprites.missed);
+    for (size_t i = 0; i < t->sprites.missing_count; i++)
+        camber_free(t->context, t->sprites.missing[i]);
+    camber_free(t->context, t->sprites.missing);
     camber_fonts_destroy(t->fonts);
     camber_style_destroy(t->style);
     camber_context_destroy(t->context);

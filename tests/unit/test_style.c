@@ -84,7 +84,9 @@ static void set_values(const camber_style *style, const feature *road, camber_va
     } known[] = {
         {"highway", text_value(road->highway)}, {"type", text_value(road->type)},
         {"MTFCC", text_value(road->mtfcc)},     {"bridge", text_value(road->bridge)},
-        {"tunnel", text_value(road->tunnel)},
+        {"tunnel", text_value(road->tunnel)},   {"name", text_value(NULL)},
+        {"FULLNAME", text_value(NULL)},         {"ref", text_value(NULL)},
+        {"shield_text", text_value(NULL)},
     };
     assert_in_range(style->schema.property_count, 1, PROPERTY_LIMIT);
     for (size_t i = 0; i < style->schema.property_count; i++) {
@@ -220,7 +222,7 @@ static void check_order(const camber_style *style) {
     static const char *const classes[] = {"path",      "track",   "service", "minor", "tertiary",
                                           "secondary", "primary", "ramp",    "trunk", "motorway"};
     size_t at = 1;
-    assert_int_equal(style->layer_count, 1 + 3 * 2 * 10 + 1); /* and what is drawn plainly */
+    assert_int_equal(style->layer_count, 1 + 3 * 2 * 10 + 1 + 4); /* and what is drawn plainly, and names */
     assert_int_equal(style->layers[0].kind, CAMBER_LAYER_BACKGROUND);
     for (size_t l = 0; l < 3; l++) {
         for (size_t p = 0; p < 2; p++) {
@@ -308,7 +310,7 @@ static void set_tags(const camber_style *style, const char *tags, camber_value *
 /* Writes the ids of the layers of a kind that draw the feature, of a source layer or of any. */
 static const char *drawn_by(const camber_style *style, camber_layer_kind kind, const char *source_layer,
                             const char *tags, char ids[256]) {
-    camber_value values[32];
+    camber_value values[64];
     char texts[128];
     assert_in_range(style->schema.property_count, 1, sizeof values / sizeof *values);
     set_tags(style, tags, values, texts);

@@ -311,8 +311,9 @@ static camber_status anchor_lines(layout_maker *m, const thing *t) {
     double length = 0.0;
     if (text)
         length = (double)(text->vertical ? text->bottom - text->top : text->right - text->left) * rule->text_px;
+    /* In MapLibre the px of an icon count as if they were units of text, of which an em has 24. */
     if (form->icon)
-        length = fmax(length, form->icon->width / form->icon->pixel_ratio * rule->symbol.icon_size * ratio);
+        length = fmax(length, form->icon->width / form->icon->pixel_ratio * rule->text_px / 24.0);
     const camber_anchor_rule anchors = {.spacing = fmax(rule->symbol.spacing_px * ratio, 1.0),
                                         .label_length = length,
                                         .em = rule->text_px,

@@ -51,6 +51,11 @@ static bool is_mark(uint32_t code) {
            category == HB_UNICODE_GENERAL_CATEGORY_ENCLOSING_MARK || code == 0x200d || code == 0x200c;
 }
 
+/* Unicode's separators of lines and paragraphs. */
+static bool is_separator(uint32_t code) {
+    return (code >= 0x1c && code <= 0x1e) || code == 0x85 || code == 0x2028 || code == 0x2029;
+}
+
 /* Whether a paragraph with this character may run from right to left. */
 static bool is_right_to_left(uint32_t code) {
     return (code >= 0x590 && code <= 0x8ff) || (code >= 0x200f && code <= 0x202e && code != 0x2010) ||
@@ -61,8 +66,6 @@ static bool is_right_to_left(uint32_t code) {
 
 static void add(camber_shaping *shaping, uint32_t code, uint32_t run, uint32_t byte) {
     camber_character *made = &shaping->characters[shaping->count];
-    if (code == 0x2028 || code == 0x2029)
-        code = '\n';
     shaping->codes[shaping->count++] = code;
     *made = (camber_character){.run = run, .byte = byte, .is_mark = is_mark(code)};
     made->script = code < 0x80 && (code | 32) >= 'a' && (code | 32) <= 'z'
@@ -95,6 +98,8 @@ camber_status camber_shaping_read(camber_context *context, camber_shaping *shapi
         }
         for (size_t at = 0, size; run->text && at < run->size_bytes; at += size) {
             size = read_code((const unsigned char *)run->text + at, run->size_bytes - at, &code);
+            if (is_separator(code))
+                code = '\n';
             if (!is_left_out(code))
                 add(shaping, code, (uint32_t)i, (uint32_t)at);
         }

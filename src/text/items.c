@@ -88,6 +88,28 @@ static camber_status find_stacks(camber_fonts *fonts, const camber_text_desc *de
     return status;
 }
 
+/* Whether a character next to punctuation lets it take its vertical form: all but those that are turned do. */
+static bool lets_turn(const camber_shaping *shaping, size_t i) {
+    return i >= shaping->count || shaping->codes[i] == '\n' || camber_is_upright(shaping->codes[i]) ||
+           camber_get_vertical_form(shaping->codes[i]);
+}
+
+/* Decides how a cluster stands in a vertical line. Punctuation that other scripts have, too, such as a quotation mark,
+ * takes its vertical form between ideographs. */
+static void set_upright(camber_fonts *fonts, size_t first, size_t end) {
+    camber_shaping *shaping = &fonts->shaping;
+    const uint32_t code = shaping->codes[first], source = shaping->characters[first].source;
+    const uint32_t form = camber_get_vertical_form(code);
+    bool is_upright = camber_is_upright(code);
+    if (!is_upright && form && source != CAMBER_NO_SOURCE && end == first + 1 && lets_turn(shaping, first - 1) &&
+        lets_turn(shaping, end) && camber_glyph_source_has(&fonts->sources[source], form)) {
+        shaping->codes[first] = form;
+        is_upright = true;
+    }
+    for (size_t i = first; i < end; i++)
+        shaping->characters[i].is_upright = is_upright;
+}
+
 camber_status camber_shaping_itemize(camber_fonts *fonts, const camber_text_desc *desc) {
     camber_shaping *shaping = &fonts->shaping;
     camber_character *characters = shaping->characters;
@@ -96,8 +118,8 @@ camber_status camber_shaping_itemize(camber_fonts *fonts, const camber_text_desc
         end = find_cluster_end(shaping, first);
         status = choose_source(fonts, first, end);
         characters[first].begins_item = characters[first].is_mark;
-        for (size_t i = first; i < end; i++)
-            characters[i].is_upright = desc->vertical && camber_is_upright(shaping->codes[first]);
+        if (desc->vertical && !status)
+            set_upright(fonts, first, end);
     }
     spread_scripts(shaping);
     for (size_t first = 0, end; first < shaping->count && !status; first = end) {

@@ -149,17 +149,19 @@ static void measure_line(layout *l, camber_line_break line) {
     l->content_em = fmaxf(l->content_em, l->scale);
 }
 
-/* Adds a line's glyphs, and sets *width to its length without the last spacing. */
+/* Adds a line's glyphs, and sets *width to its length without the last spacing. It is negative if the spacing is so
+ * small that the line runs back. */
 static camber_status add_line(layout *l, camber_line_break line, size_t *item, float *width) {
     camber_shaping *shaping = &l->fonts->shaping;
     camber_status status = find_pieces(l->fonts, l->desc, line, item);
+    const size_t first = l->text->glyph_count;
     l->u = 0.0f;
     for (size_t i = 0; i < shaping->piece_count && !status; i++) {
         const camber_text_item piece = shaping->pieces[shaping->order[i]];
         for (size_t g = 0; g < piece.glyph_count && !status; g++)
             status = add_glyph(l, &piece, &shaping->glyphs[piece.glyph + g]);
     }
-    *width = l->u > 0.0f ? fmaxf(l->u - l->spacing, 0.0f) : 0.0f;
+    *width = l->text->glyph_count > first ? l->u - l->spacing : 0.0f;
     return status;
 }
 

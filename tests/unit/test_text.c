@@ -246,6 +246,7 @@ static void test_breaks(void **state) {
     check_lines(&m, "Avenue\nof the Americas", 0.0f, "Avenue|of the Americas");
     check_lines(&m, "a\n\nb", 0.0f, "a||b");
     check_lines(&m, "a\n\xcc\x81", 0.0f, "a|\xcc");
+    check_lines(&m, "a\x1c.\xc2\x85.", 0.0f, "a|.|.");
     check_lines(&m, "  a  \n  b ", 10.0f, "a|b");
     check_lines(&m, "Frankfurt-Hoechst/Sued", 5.0f, "Frankfurt-|Hoechst/|Sued");
     check_lines(&m, "Praha (Prag) (Prague)", 6.0f, "Praha (Prag)|(Prague)");
@@ -379,8 +380,13 @@ static void test_spacing_and_scale(void **state) {
     camber_text *wide = shape(&m, "office", noto_sans, (camber_text_desc){.letter_spacing_em = 0.1f});
     assert_int_equal(wide->glyph_count, 6);
     assert_true(wide->right - wide->left > plain->right - plain->left + 0.45f);
+    camber_text *back = shape(&m, "office", noto_sans, (camber_text_desc){.letter_spacing_em = -4.0f});
+    assert_true(back->lines[0].width < -16.0f);
+    assert_near(back->glyphs[0].x, -back->lines[0].width / 2.0f);
+    assert_near(back->right, back->left);
     camber_text_destroy(plain);
     camber_text_destroy(wide);
+    camber_text_destroy(back);
     camber_text_run runs[3] = {
         run_of("H", noto_sans), {.image_width_em = 0.5f, .image_height_em = 0.4f}, run_of("H", noto_sans)};
     camber_text *mixed = NULL;
@@ -599,6 +605,28 @@ static void test_vertical(void **state) {
     assert_near(text->glyphs[2].y, 0.0);
     assert_true(fabsf(text->glyphs[2].x + 1.8f + 9.0f / 24.0f) < 0.1f);
     assert_false(text->glyphs[3].turned);
+    camber_text_destroy(text);
+    unmake(&m);
+}
+
+/* A full stop takes its vertical form between ideographs, and is turned between letters. */
+static void test_vertical_punctuation(void **state) {
+    (void)state;
+    static const char *const names[] = {"NotoCJK"};
+    static glyph_folder folder;
+    char path[2048];
+    maker m;
+    if (!open_ranges(&m, &folder, path))
+        skip();
+    camber_text *text = shape(&m, "\xe4\xb8\xad.\xe5\xb0\x8f", names, (camber_text_desc){.vertical = true});
+    assert_int_equal(text->glyph_count, 3);
+    assert_false(text->glyphs[1].turned);
+    assert_near(text->glyphs[1].advance, 1.0);
+    assert_int_equal(m.fonts->glyphs[text->glyphs[1].glyph].number, 0x30fb);
+    camber_text_destroy(text);
+    text = shape(&m, "\xe4\xb8\xad.H", names, (camber_text_desc){.vertical = true});
+    assert_true(text->glyphs[1].turned);
+    assert_int_equal(m.fonts->glyphs[text->glyphs[1].glyph].number, '.');
     camber_text_destroy(text);
     unmake(&m);
 }
@@ -860,17 +888,29 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_beside_hb_shape), cmocka_unit_test(test_bidi_beside_unicode),
-        cmocka_unit_test(test_order),           cmocka_unit_test(test_both_directions),
-        cmocka_unit_test(test_breaks),          cmocka_unit_test(test_breaks_plainly),
-        cmocka_unit_test(test_anchors),         cmocka_unit_test(test_spacing_and_scale),
-        cmocka_unit_test(test_outlines),        cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_thin_strokes),    cmocka_unit_test(test_arabic_ranges),
-        cmocka_unit_test(test_vertical),        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_missing_font),    cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_pictograph),      cmocka_unit_test(test_marks),
-        cmocka_unit_test(test_threads),         cmocka_unit_test(test_long),
-        cmocka_unit_test(test_invalid),         cmocka_unit_test(test_broken_files),
+        cmocka_unit_test(test_beside_hb_shape),
+        cmocka_unit_test(test_bidi_beside_unicode),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_both_directions),
+        cmocka_unit_test(test_breaks),
+        cmocka_unit_test(test_breaks_plainly),
+        cmocka_unit_test(test_anchors),
+        cmocka_unit_test(test_spacing_and_scale),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_thin_strokes),
+        cmocka_unit_test(test_arabic_ranges),
+        cmocka_unit_test(test_vertical),
+        cmocka_unit_test(test_vertical_punctuation),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_missing_font),
+        cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_pictograph),
+        cmocka_unit_test(test_marks),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_long),
+        cmocka_unit_test(test_invalid),
+        cmocka_unit_test(test_broken_files),
         cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* The last reader: GDAL, for all files that no other reader takes. */
+/* The last reader, which passes all files that no other reader takes to GDAL. */
 #ifndef CAMBER_FORMATS_GDAL_H
 #define CAMBER_FORMATS_GDAL_H
 

@@ -17,7 +17,7 @@
 
 enum { SIDES = 4 };
 
-/* The sides cut one after the other: a point that passes one side is handed to the next. */
+/* One side of the tile. The sides cut one after the other: each hands the points that pass it to the next. */
 typedef struct side {
     double first[2], last[2];
     bool begun;

@@ -65,8 +65,8 @@ typedef struct camber_archive_desc {
     camber_archive_format format;
     camber_tile_type type;
     bool gzipped; /* the bytes of tiles are compressed with gzip */
-    bool force;   /* replace an existing archive */
-    bool resume;  /* keep the units that an earlier run finished */
+    bool force;   /* replaces an existing archive */
+    bool resume;  /* keeps the units that an earlier run finished */
     bool unites;  /* merging: two tiles with the same number and different bytes are an error; otherwise the later tile
                      wins */
     int min_zoom; /* min_zoom and max_zoom are only used if there are no tiles */
@@ -77,7 +77,7 @@ typedef struct camber_archive_desc {
     /* Identifies the origin of the tiles, as words name=value separated by blanks: "input=... style=... options=...
      * version=...". All parts of an archive have the same fingerprint. NULL: unknown. */
     const char *fingerprint;
-    uint32_t shard, shards; /* this is part shard, from 1, of this many shards; 0: the whole archive */
+    uint32_t shard, shards; /* this is part number `shard` of `shards` parts, counted from 1; 0: the whole archive */
 } camber_archive_desc;
 
 typedef struct camber_archive_writer camber_archive_writer;
@@ -150,7 +150,7 @@ camber_status camber_archive_sniff(camber_archive *archive);
 void camber_archive_close(camber_archive *archive);
 
 typedef struct camber_archive_tile {
-    uint64_t number, run_length; /* tiles number, number + 1, ... have the same bytes */
+    uint64_t number, run_length; /* the run_length tiles number, number + 1, ... have the same bytes */
     uint64_t offset;             /* PMTiles: within the file's section of tiles */
     uint64_t size_bytes;
     const unsigned char *bytes; /* valid during the call. NULL: PMTiles */

@@ -11,7 +11,7 @@
 /* A checksum that is zeroed apart from its context is the checksum of no contents. */
 typedef struct camber_checksum {
     camber_context *context;
-    uint64_t *hashes; /* of contents; the same one may occur several times */
+    uint64_t *hashes; /* hashes of contents; a content may occur several times */
     size_t count, capacity;
 } camber_checksum;
 

@@ -7,9 +7,9 @@
 
 typedef enum camber_database_kind {
     CAMBER_DATABASE_PLAIN = 0,   /* reading creates no file; also returned for files that are not SQLite's */
-    CAMBER_DATABASE_AT_REST,     /* in WAL mode, but there is no log now: the file can be read as it is */
+    CAMBER_DATABASE_AT_REST,     /* in WAL mode, but without a log at present: the file can be read as it is */
     CAMBER_DATABASE_LOGGED,      /* somebody is writing: the log and its index exist */
-    CAMBER_DATABASE_INTERRUPTED, /* a log without an index: the writer was interrupted */
+    CAMBER_DATABASE_INTERRUPTED, /* there is a log without an index: the writer was interrupted */
 } camber_database_kind;
 
 camber_database_kind camber_database_get_kind(const char *path);

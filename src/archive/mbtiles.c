@@ -13,7 +13,7 @@ typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
     camber_context *context;
-    bool computes; /* one of its views asked for something that is not allowed */
+    bool computes; /* one of its views does something that is not allowed */
 } database;
 
 static int count_steps(void *user) {

@@ -138,8 +138,8 @@ static void unite(camber_archive_desc *whole, const camber_archive *part) {
     bounds[3] = part->bounds[3] > bounds[3] ? part->bounds[3] : bounds[3];
 }
 
-/* Parts of one run are equal in everything but their tiles. For other archives, the texts of the first are used, and
- * the bounds are united; if the centres differ, the middle of the united bounds is used. */
+/* Parts of one run differ only in their tiles. For other archives, the texts of the first one are used, and the bounds
+ * are united; if the centres differ, the middle of the united bounds is used. */
 static camber_archive_desc describe(const merging *m, camber_archive_format format) {
     const camber_archive *first = m->parts[0];
     camber_archive_desc whole = {.path = m->desc->output,

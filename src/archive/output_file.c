@@ -1,8 +1,8 @@
 /* Writes files that appear either complete or not at all: each file gets its final name after all its bytes are written
  * and synced.
  *
- * Input: a context for messages, paths, bytes. A failure is reported in one line with the cause and what to do, and
- * leaves the old file or folder in place. */
+ * Input: paths and bytes, and a context for messages. A failure is reported in one line with the cause and what to do,
+ * and leaves the old file or folder in place. */
 #define _XOPEN_SOURCE 700 /* nftw */
 #define _FILE_OFFSET_BITS 64
 

@@ -36,7 +36,7 @@ static void check_bounds(camber_verify *v) {
     camber_verify_find_boxes(v);
 }
 
-/* Compares the stated zooms with those of the tiles. */
+/* Compares the stated zooms with the zooms of the tiles. */
 static void check_zooms(camber_verify *v) {
     int low = -1, high = -1;
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {

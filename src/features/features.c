@@ -640,7 +640,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
-/* Makes room for this many polylines, and gives the last one the progress of a whole line, 0 to 1. */
+/* Makes room for the progress of this many polylines, and gives the last one the progress of a whole line, 0 to 1. */
 static bool grow_progress(camber_features *features, size_t polylines) {
     if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
                      2 * sizeof *features->progress))

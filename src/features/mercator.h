@@ -25,7 +25,7 @@ void camber_mercator_unproject(double x, double y, double *longitude, double *la
 /* Converts metres of EPSG:3857, with y up, to world coordinates. */
 void camber_mercator_from_metres(double east_m, double north_m, double *x, double *y);
 
-/* Moves x by whole worlds into 0 to 1. 0 and 1, the two edges of the map, stay as they are. */
+/* Moves x by whole worlds into the range from 0 to 1. 0 and 1, the two edges of the map, stay as they are. */
 double camber_mercator_wrap(double x);
 
 #endif

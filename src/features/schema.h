@@ -85,7 +85,7 @@ typedef struct camber_schema {
      * first. The style layers own the strings. */
     const char **source_layers;
     size_t source_layer_count, drawn_source_layer_count;
-    size_t label_source_layer_count; /* how many source layers after the drawn ones visible symbol layers name */
+    size_t label_source_layer_count; /* how many more source layers, after these, visible symbol layers name */
     bool wants_id;                   /* an expression reads the feature's id */
     bool wants_all_properties;       /* an expression reads properties without naming them */
     bool directed;       /* a line layer depends on the direction of lines: dashes, offsets, gradients, patterns */

@@ -1,9 +1,9 @@
 /* Cuts rings of areas to their vector tiles.
  *
  * Input: a ring that includes the buffer around its tile. Output: the part of it inside the tile, closed along the
- * tile's sides, by Sutherland-Hodgman clipping. The main idea: the neighbour's piece ends on the same side of the tile
- * and runs along it in the other direction. So the edges along the side cancel each other, and no seam is drawn,
- * however the buffers overlap.
+ * tile's sides, by Sutherland-Hodgman clipping. The main idea: the piece in the neighbouring tile ends on the same side
+ * of the tile and runs along it in the other direction. So the edges along the side cancel each other, and no seam is
+ * drawn, however the buffers overlap.
  *
  *         tile A    |    tile B
  *     a ----------->|------------> b

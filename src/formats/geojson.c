@@ -74,7 +74,7 @@ static camber_status read_value(reader *self, const json_t *json, camber_value *
     return CAMBER_OK;
 }
 
-/* Reads an id. As in other engines, a text that is a number counts as a number. */
+/* Reads an id. As in other engines, a text that contains a number counts as a number. */
 static camber_status read_id(reader *self, const json_t *feature, const json_t *properties, camber_value *id) {
     const json_t *json = json_object_get(feature, "id");
     if (self->promote_id)
@@ -299,7 +299,7 @@ static camber_status read_geometry(reader *self, const json_t *geometry, int dep
     return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, false);
 }
 
-/* Whether a geometry contains lines, polygons or points at all. */
+/* Whether a geometry, or any part of a collection, is of this kind. */
 static bool has_kind(const json_t *geometry, camber_geometry_kind kind, int depth) {
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (!type)

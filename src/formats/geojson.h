@@ -5,7 +5,7 @@
 #include "features/features.h"
 
 typedef struct camber_geojson_desc {
-    const char *what;         /* the source's name in messages */
+    const char *what;         /* the source's name, for messages */
     const json_t *root;       /* the document */
     const json_t *promote_id; /* the name of the property to use as id, a string. NULL: none */
     bool generates_ids;       /* a feature's id is its index in the document */

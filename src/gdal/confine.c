@@ -1,4 +1,4 @@
-/* Confines GDAL to the file that it reads. By default it follows references in files to servers and to other files.
+/* Confines GDAL to the file that it reads. By default, GDAL follows references in files to servers and to other files.
  *
  * Only drivers whose files contain their data, or store it in other files of their format, are allowed. Network access
  * is refused unless the context allows it.

@@ -23,7 +23,7 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
-        /* GDAL's message becomes part of one of our sentences. */
+        /* GDAL's message becomes part of one of camber's sentences. */
         size_t length = strlen(errors->message);
         while (length && strchr(". \n", errors->message[length - 1]))
             errors->message[--length] = 0;
@@ -46,7 +46,7 @@ static bool has_key(const key_list *list, const char *key, size_t length) {
 }
 
 static bool add_key(key_list *list, const char *key, size_t length) {
-    /* The key goes into a comma-separated line of the configuration. */
+    /* The key becomes part of a comma-separated line of the configuration. */
     if (!camber_osm_is_key(key, length) || (list->size && has_key(list, key, length)))
         return true;
     if (!camber_grow(list->context, &list->text, &list->capacity, list->size + length + 2, 1))

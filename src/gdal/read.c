@@ -383,7 +383,7 @@ static camber_status add_of_box(void *user, OGRFeatureH feature) {
 }
 
 /* Reads the layer for the set's region, if that is possible. If only features without lines are found, the whole layer
- * is read to find out what is wrong with it. */
+ * is read to find out the reason. */
 static camber_status read_by_box(reader *self) {
     const camber_box_reading reading = {.features = self->features,
                                         .lines = &self->lines,

@@ -23,7 +23,7 @@ typedef enum camber_projection_kind {
 typedef struct camber_feature_lines {
     camber_context *context;
     camber_projection_kind projection;
-    bool latitude_first;                    /* degrees come as latitude, longitude */
+    bool latitude_first;                    /* the file has latitude before longitude */
     OGRCoordinateTransformationH transform; /* owned */
     unsigned kinds;                         /* CAMBER_KIND_*: the kinds that are read */
     camber_rings rings;

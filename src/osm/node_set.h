@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 
-/* Ids must be below 2^36; those of OpenStreetMap are below 2^34 (2026). */
+/* Ids must be below 2^36. The ids in OpenStreetMap are below 2^34 (2026). */
 #define CAMBER_OSM_MOST_ID ((int64_t)1 << 36)
 
 enum { CAMBER_OSM_LEAF_WORDS = 8, CAMBER_OSM_LEAF_BITS = 9 };
@@ -50,14 +50,14 @@ static inline int32_t camber_osm_latitude(uint64_t place) {
 /* A thread's hint for its next search: the leaf and the node that it found last, because ids are often consecutive. */
 typedef struct camber_osm_search_hint {
     uint64_t leaf_id; /* UINT64_MAX: none yet */
-    uint32_t leaf;    /* index + 1; 0: no such leaf */
+    uint32_t leaf;    /* the leaf's index + 1; 0: the set does not have this leaf */
     int64_t id;
     uint32_t index;
 } camber_osm_search_hint;
 
 void camber_osm_node_set_init(camber_osm_node_set *set, camber_context *context);
 void camber_osm_node_set_free(camber_osm_node_set *set);
-/* 0 <= id < CAMBER_OSM_MOST_ID */
+/* Adds an id, with 0 <= id < CAMBER_OSM_MOST_ID. */
 camber_status camber_osm_node_set_add(camber_osm_node_set *set, int64_t id);
 /* Adds ids that share a leaf. A bitmap has their lower bits, and leaf_id is their upper bits. *leaf: the leaf's
  * index. */

@@ -1,9 +1,9 @@
 /* Reads the places of nodes.
  *
  * Input: blobs, and the set of nodes that lines need. Output: their places, as the same integers in 10^-7 degrees that
- * GDAL's reader uses. Places may instead be stored in ways (osmium add-locations-to-ways); then a node has one in each
- * way that names it. Threads store places as they find them, so the choice among several places must not depend on the
- * order. */
+ * GDAL's reader uses. Places may instead be stored in ways (osmium add-locations-to-ways); then a node has a place in
+ * each way that names it. Threads store places as they find them, so the choice among several places must not depend on
+ * the order. */
 #include "osm/nodes.h"
 
 #include <math.h>
@@ -282,7 +282,7 @@ static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *s
     const search *self = user;
     const size_t count = self->file->blob_count;
     (void)part;
-    /* In most files, six of seven blobs have nodes, and the last few have relations. */
+    /* The guesses: in most files, six of seven blobs have nodes, and the last few have relations. */
     return find_end(self, CAMBER_OSM_HAS_NODES, count / 7 * 6 + count % 7 * 6 / 7, &self->ends->nodes, pass, slot,
                     failure) &&
            (!self->of_ways || count == 0 ||

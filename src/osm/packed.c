@@ -1,4 +1,4 @@
-/* Packs ways: each node is stored as its difference from the one before.
+/* Packs ways: stores each node as the difference from the node before it.
  *
  * Input: ways with ids of nodes, and the places of these nodes. Output: the places of the ways, one way after the
  * other; the memory of ids and nodes is freed. The main idea: lines in world coordinates take 16 bytes per point, and
@@ -145,7 +145,7 @@ camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc 
                                        .from = desc->from,
                                        .to = desc->to};
     bool declined;
-    /* Most places take one word; the first of a way takes three. */
+    /* Most places take one word, but the first place of a way takes three. */
     camber_status status = CAMBER_ERROR_MEMORY;
     if (camber_grow(ways->context, &ways->packed, &ways->packed_capacity, ways->node_count + 2 * ways->way_count,
                     sizeof *ways->packed))

@@ -29,7 +29,7 @@ typedef struct camber_osm_pass_desc {
     void *user;
     /* Runs on any thread. Returns false and sets *failure if it fails. */
     bool (*work)(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure);
-    /* Runs on the caller's thread, one part after the other. NULL: nothing to commit. */
+    /* Runs on the caller's thread, for one part after the other. NULL: there is nothing to commit. */
     camber_status (*commit)(void *user, size_t part, void *slot);
     void (*free_slot)(camber_context *context, void *slot);
     double from, to; /* the progress before and after this pass */

@@ -59,10 +59,10 @@ typedef struct arranger {
     uint64_t *tops; /* by owner: one of its places */
     uint8_t *odd;   /* by owner: it is inside an odd number of others */
     row_index rows;
-    /* Only used if places occur twice: */
+    /* The following fields are used only if places occur twice. */
     half_edge *halves; /* sorted by place, and around each place counter-clockwise from the south */
     size_t half_count;
-    uint32_t *twins, *nodes; /* by half-edge: the same edge from its other end; the index of its place */
+    uint32_t *twins, *nodes; /* by half-edge: the half-edge at the other end of its edge, and the index of its place */
     uint32_t *first;         /* by node, and one more at the end: its first half-edge */
     uint32_t node_count;
     uint32_t *parts;  /* by node: its connected part; NONE */
@@ -258,8 +258,8 @@ static bool find_roles(arranger *self) {
     return true;
 }
 
-/* Whether a place occurs twice among a few places. Most relations are houses with a yard, for which making a table is
- * not worth it. */
+/* Whether a place occurs twice among a few places. Most relations are houses with a yard, for which it is not worth
+ * making a table. */
 static bool repeats_few(const camber_osm_assembly *to) {
     uint64_t keys[FEW_PLACES];
     size_t count = 0;

@@ -8,8 +8,8 @@
  *
  * If areas are wanted, the relations that name ways are read before the ways, and the sea is made from the ways of the
  * coast (coast.h). If points are wanted, the nodes are read once more to find those with tags, which are GDAL's layer
- * "points". If the kinds of entities are not in the usual order, reading starts again: each pass then searches the
- * whole file for its kind, which takes more time, but no more memory. */
+ * "points". If the kinds of entities are not in the usual order, reading starts again. Each pass then searches the
+ * whole file for entities of its kind, which takes more time but no more memory. */
 #include "osm/osm.h"
 
 #include "base/threads.h"
@@ -41,7 +41,7 @@ typedef struct reader {
     uint32_t layer;
     unsigned kinds;                           /* CAMBER_KIND_*: the kinds that are read */
     uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, for each set of tags: its class + 1; 0: not needed yet */
-    size_t met; /* how many of the relations' ways were added, in the order in which they were met */
+    size_t met; /* how many of the relations' ways were added so far, in the order in which they were met */
     size_t skipped, clamped, splits;
     size_t nodes, missing; /* how many nodes ways name, and how many of these the file does not have */
     unsigned threads;
@@ -57,7 +57,7 @@ static bool reads(const camber_source_desc *desc) {
 
 typedef struct made_way {
     uint32_t tags;       /* the bits of the way, but the bit for areas is set only if the line is closed */
-    uint32_t line_count; /* lines, or outlines; the ring comes after them */
+    uint32_t line_count; /* how many lines or outlines the way has; its ring comes after them */
     bool has_ring, is_coast;
     uint32_t place_count; /* of a coast, or of a way of a relation: how many places in the run it has */
     size_t first_place;

@@ -12,12 +12,12 @@ typedef struct camber_osm_member {
 
 typedef struct camber_osm_relation {
     uint32_t set;   /* index into the sets of tags, + 1; 0: none */
-    bool is_tagged; /* it has tags besides its type; otherwise it takes those of its first outer way with tags */
+    bool is_tagged; /* it has tags besides its type; otherwise it takes the tags of its first outer way that has any */
     uint32_t member_count;
     size_t first_member;
 } camber_osm_relation;
 
-/* A way that a relation names. Filled in when the way is met in the file. */
+/* A way that a relation names. Its fields are filled in when the way is met in the file. */
 typedef struct camber_osm_member_way {
     size_t first_place;
     uint32_t place_count; /* 0: the file does not have it */

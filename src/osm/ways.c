@@ -3,7 +3,7 @@
  * Input: blobs, and the keys that a style names. Output: for each way with a tag and at least two nodes, its set of
  * tags and the ids of its nodes, and the set of all ids. Ways that relations name are read even without tags. For each
  * node with a tag: its set of tags and its position. Threads decode blocks: tags become indices of strings, and
- * entities with equal tags share a set. The caller's thread then merges a block's sets into those of the file. */
+ * entities with equal tags share a set. The caller's thread then merges each block's sets into the file's. */
 #include "osm/ways.h"
 
 #include "features/osm_keys.h"
@@ -33,7 +33,7 @@ static camber_osm_key *find_key(camber_osm_ways *ways, const char *name) {
     return find_key_of(ways, (camber_osm_text){name, strlen(name)});
 }
 
-/* Adds the filter's keys. Returns false if one differs from another key only in its case, which SQL ignores. */
+/* Adds the filter's keys. Returns false if two keys differ only in their case, which SQL ignores. */
 static bool find_filter_keys(camber_osm_ways *ways) {
     const camber_osm_where *where = ways->where;
     for (uint32_t i = 0; where && i < where->key_count; i++) {
@@ -47,7 +47,7 @@ static bool find_filter_keys(camber_osm_ways *ways) {
     return true;
 }
 
-/* OGR's own columns, which are not tags. */
+/* Whether this is the name of one of OGR's own columns, which are not tags. */
 static bool is_column(const char *name) {
     return strncmp(name, "osm_", 4) == 0 || strcmp(name, "other_tags") == 0 || strcmp(name, "all_tags") == 0;
 }
@@ -321,7 +321,7 @@ static bool grow_leaves(decoder *self) {
     return true;
 }
 
-/* Looks up a leaf among those of the block, or adds it, and remembers it as the last leaf. */
+/* Looks up a leaf among the block's leaves, or adds it, and remembers it as the last leaf. */
 static bool find_leaf(decoder *self, uint64_t leaf_id) {
     block *to = self->to;
     if (to->leaf_count >= to->leaf_slot_count / 2 && !grow_leaves(self))
@@ -771,7 +771,7 @@ static camber_status grow_table(camber_osm_ways *ways, size_t count) {
     return CAMBER_OK;
 }
 
-/* Looks up a block's set among those of the file, or adds it. */
+/* Looks up a block's set among the file's sets, or adds it. */
 static camber_status add_set(camber_osm_ways *ways, const block *from, const uint32_t *strings, uint32_t *set) {
     const camber_schema *schema = ways->features->schema;
     const size_t count = schema->property_count;
@@ -831,7 +831,7 @@ static camber_status add_ids(camber_osm_ways *ways, const block *from) {
     return status;
 }
 
-/* Adds the sets of a block to those of the file; ways->local gets their indices. */
+/* Adds the sets of a block to the file's sets, and stores their indices in ways->local. */
 static camber_status add_sets(camber_osm_ways *ways, const block *from) {
     const uint32_t *sets = (const uint32_t *)(const void *)from->sets.bytes;
     if (!camber_grow(ways->context, &ways->local, &ways->local_capacity, from->set_count, sizeof *ways->local))

@@ -61,7 +61,7 @@ typedef struct camber_osm_ways {
     size_t leaf_count, leaf_capacity;
     camber_osm_run *runs;
     size_t run_count, run_capacity;
-    size_t node_count; /* over all ways; a node counts each time it is named */
+    size_t node_count; /* the number of nodes of all ways; a node counts each time it is named */
     camber_osm_node_set nodes;
     uint32_t *packed; /* places in packed form, after packing (packed.h); a run does not depend on the one before */
     size_t packed_count, packed_capacity;
@@ -88,14 +88,16 @@ void camber_osm_ways_free(camber_osm_ways *ways);
 
 typedef struct camber_osm_ways_desc {
     const camber_osm_file *file;
-    size_t first_blob; /* the first blob that may have a way, or a relation */
-    size_t end_blob;   /* for ways: where relations begin, if the file is in order; for nodes: where nodes end */
+    size_t first_blob; /* the first blob that may have a way (or a relation, when relations are read) */
+    size_t end_blob;   /* for ways: the blob where relations begin, if the file is in order; for nodes: the blob where
+                          nodes end */
     bool any_order;    /* nodes, ways and relations may come in any order */
     unsigned threads;
     double from, to; /* the progress before and after this pass */
 } camber_osm_ways_desc;
 
-/* Reads the relations of a file that are areas; call it before its ways are read. *declined: ids are out of range. */
+/* Reads the relations of a file that are areas. Call this before the file's ways are read. *declined: ids are out of
+ * range. */
 camber_status camber_osm_relations_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
 /* Reads the ways of a file. *declined: nodes come after ways, ids are out of range, or relations that matter come
  * before ways. */

@@ -36,7 +36,7 @@ static inline uint64_t camber_wire_varint(camber_wire *wire) {
     return camber_wire_fail(wire);
 }
 
-/* Reads a zigzag-coded number. */
+/* Reads a number in zigzag coding. */
 static inline int64_t camber_wire_signed(camber_wire *wire) {
     const uint64_t value = camber_wire_varint(wire);
     return (int64_t)(value >> 1 ^ (0 - (value & 1)));

@@ -86,7 +86,7 @@ camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_in
 camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
 void camber_tile_set_close(camber_tile_set *set);
 
-/* ---- For the kinds of sets ---- */
+/* ---- Functions for the kinds of sets ---- */
 
 camber_status camber_mbtiles_open(camber_tile_set *set, const char *path);
 camber_status camber_pmtiles_open(camber_tile_set *set, const char *path);

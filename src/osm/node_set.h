@@ -63,7 +63,7 @@ camber_status camber_osm_node_set_add(camber_osm_node_set *set, int64_t id);
  * index. */
 camber_status camber_osm_node_set_add_leaf(camber_osm_node_set *set, uint64_t leaf_id,
                                            const uint64_t bits[CAMBER_OSM_LEAF_WORDS], uint32_t *leaf);
-/* Completes the set; no ids may be added afterwards. */
+/* Completes the set. No ids may be added afterwards. */
 camber_status camber_osm_node_set_complete(camber_osm_node_set *set);
 /* Finds the index of the place that belongs to an id. Returns false if no line needs the id. */
 bool camber_osm_node_set_find(const camber_osm_node_set *set, int64_t id, camber_osm_search_hint *hint,

@@ -59,7 +59,7 @@ typedef struct made_way {
     uint32_t tags;       /* the bits of the way, but the bit for areas is set only if the line is closed */
     uint32_t line_count; /* how many lines or outlines the way has; its ring comes after them */
     bool has_ring, is_coast;
-    uint32_t place_count; /* of a coast, or of a way of a relation: how many places in the run it has */
+    uint32_t place_count; /* for a coast or a way of a relation: how many places in the run it has */
     size_t first_place;
 } made_way;
 

@@ -42,9 +42,9 @@ typedef struct camber_osm_relations {
 
 void camber_osm_relations_init(camber_osm_relations *relations, camber_context *context);
 void camber_osm_relations_free(camber_osm_relations *relations);
-/* Call it after the last relation was added. */
+/* Call this after the last relation was added. */
 camber_status camber_osm_relations_complete(camber_osm_relations *relations);
-/* Gives relations without tags the tags of their ways. Call it after all ways were met. */
+/* Gives relations without tags the tags of their ways. Call this after all ways have been met. */
 void camber_osm_relations_settle(camber_osm_relations *relations);
 /* Finds the index of a way. Returns false if no relation names it. */
 bool camber_osm_relations_find(const camber_osm_relations *relations, int64_t way, camber_osm_search_hint *hint,

@@ -123,8 +123,8 @@ typedef struct block {
     bool has_ways, has_places;
 } block;
 
-/* Ids that a block names, as a bitmap like a leaf of the node set. So each of the file's leaves is looked up only once
- * per block. */
+/* A leaf of a block: the ids in the range of one leaf of the node set that the block names, as a bitmap. So each leaf
+ * of the node set is looked up only once per block. */
 typedef struct block_leaf {
     uint64_t id; /* the upper bits of the ids */
     uint64_t bits[CAMBER_OSM_LEAF_WORDS];

@@ -162,7 +162,7 @@ static bool parse_name(const char *text, bool file, name *made) {
     return true;
 }
 
-/* Whether a file with this name may be in the folder beside the tiles. */
+/* Whether a file with this name may be in the folder in addition to the tiles. */
 static bool is_companion(const char *entry, bool has_tileset) {
     return strcmp(entry, "metadata.json") == 0 ||
            (has_tileset && (strcmp(entry, "tileset.json") == 0 || strcmp(entry, "subtrees") == 0));

@@ -1,6 +1,5 @@
-/* The attribution of a set of features: the credits that its files contain, as plain text, each text once. The data
- * themselves are no evidence of their origin, because a road from anywhere may have a key that OpenStreetMap also
- * uses. */
+/* The attribution of a set of features: the credits that its files contain, as plain text, each text once. The origin
+ * is never guessed from the data, because any road may have a key that OpenStreetMap also uses. */
 #include "features/features.h"
 
 #include <ctype.h>

@@ -1,7 +1,7 @@
 /* Turns rings of areas into the form that fill layers draw.
  *
- * Input: a ring as a file has it, open or closed, in either direction. Output: a closed ring whose direction shows
- * whether it is an outer ring or a hole, or nothing if the ring has no area. Every repair is counted. Rings that cross
+ * Input: a ring from a file, open or closed, in either direction. Output: a closed ring whose direction shows whether
+ * it is an outer ring or a hole, or nothing if the ring has no area. Every repair is counted. Rings that cross
  * themselves or have spikes, and holes outside their area, are only counted and stay as they are. */
 #include "features/rings.h"
 

@@ -6,7 +6,7 @@
  * rows of samples at exact positions. The excess winding between them is subtracted from the sum:
  *
  *      once  twice  once
- *     ----+-------+-------    a row of samples: the sum has 2 between the edges, and 1 too much
+ *     ----+-------+-------    a row of samples: between the edges the sum is 2, which is 1 too much
  *         e1      e2
  *
  * So a pixel without such winding numbers keeps its sum. Here a lane is a row of samples. */
@@ -144,7 +144,7 @@ typedef struct camber_row_edges {
     int count;
 } camber_row_edges;
 
-/* Computes these for vector v of a row. */
+/* Finds these edges for vector v of a row of pixels. */
 CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, camber_row_edges *s) {
     const camber_real y = camber_piled_cell_rows(o, row, v), none = CAMBER_REAL(0.0f);
     const float top = (float)(CAMBER_CELL_PX * o->row + row);
@@ -158,7 +158,8 @@ CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, c
     }
 }
 
-/* Adds to each pixel the excess of its sum in a vector of rows of samples. much: that of the rows, for each column. */
+/* Adds to each pixel the excess of its sum in a vector of rows of samples. much: the excess of the rows, for each
+ * column. */
 CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin, float sign, camber_u32 mode,
                                    camber_real much[CAMBER_CELL_PX]) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), from = camber_too_much(begin, sign, mode);

@@ -80,7 +80,7 @@ typedef struct camber_footprint {
     camber_real ax, ay, bx, by, reach;
 } camber_footprint;
 
-/* Computes that of one segment, the same in all lanes. */
+/* Computes the footprint of one segment, the same in all lanes. */
 CAMBER_FN void camber_footprint_of(CAMBER_GLOBAL const float *segment, camber_footprint *f) {
     f->ax = CAMBER_REAL(segment[CAMBER_SEGMENT_AX]);
     f->ay = CAMBER_REAL(segment[CAMBER_SEGMENT_AY]);
@@ -94,7 +94,7 @@ typedef struct camber_cell_boxes {
     camber_mask x, y, columns, rows; /* as integers */
 } camber_cell_boxes;
 
-/* wanted: the lanes that count. */
+/* Computes the boxes of segments. wanted: the lanes that count. */
 CAMBER_FN void camber_cell_boxes_of(const camber_footprint *f, camber_tile_rows where, camber_mask wanted,
                                     camber_cell_boxes *b) {
     const float a_cell = 1.0f / CAMBER_CELL_PX;
@@ -114,7 +114,7 @@ CAMBER_FN void camber_cell_boxes_of(const camber_footprint *f, camber_tile_rows 
 
 #if !CAMBER_STROKE_PITCHED
 
-/* ---- How cells lie to segments from above; edge.h has it for a pitch ---- */
+/* ---- The position of cells relative to segments without a pitch; edge.h has it with one ---- */
 
 /* Bounds, in px, that the position of a cell's middle is compared with to find the cell's position relative to a
  * segment. */

@@ -184,8 +184,8 @@ CAMBER_FN camber_kept_point camber_pull(const camber_walk *w, const camber_proje
 }
 
 #if CAMBER_WALK_PITCHED
-/* Returns where between a and b, 0 to 1, the segment crosses a side of the window. Both arguments are px inside the
- * side; b's is below 0. */
+/* Returns where between a and b, 0 to 1, the segment crosses a side of the window. The arguments say how far inside the
+ * side a and b are, in px; b's is below 0. */
 CAMBER_FN float camber_share_to(float a_inside, float b_inside) {
     return a_inside / (a_inside - b_inside);
 }
@@ -229,8 +229,8 @@ CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projectio
     return w->importance[i] >= p->tolerance ? 1u : 0u;
 }
 
-/* Returns how far from a to b, 0 to 1, the first side of the window is that b is beyond; 1 if it is beyond none. a is
- * not beyond any of these sides, so there is no division by 0. */
+/* Returns where between a and b, 0 to 1, the segment crosses the first side of the window that b is beyond; 1 if b is
+ * beyond none. a is not beyond any of these sides, so there is no division by 0. */
 CAMBER_FN float camber_share_within(const camber_projection *p, camber_kept_point a, camber_kept_point b) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f)
@@ -312,8 +312,8 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
 
 /* ---- Areas ---- */
 
-/* Returns where the segment from `in` to `out` crosses the window's left side, which only `out` is beyond. It has the
- * bits that camber_put_cut computes if it cuts there. */
+/* Returns where the segment from `in` to `out` crosses the window's left side, which only `out` is beyond. The result
+ * has the same bits that camber_put_cut computes if it cuts there. */
 CAMBER_FN float camber_left_crossing(const camber_projection *p, camber_kept_point in, camber_kept_point out) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f) {
@@ -338,7 +338,7 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
  *
  *     A1----------+---A2           A1'---+
  *      \          | window          |    |     A1' is on the left side, as high as A1. Points of the ring left of
- *       A0        |                 A0'  |     the window change nothing else there. */
+ *       A0        |                 A0'  |     the window change nothing else in it. */
 CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     float from = a.y, to = b.y;
@@ -446,7 +446,8 @@ CAMBER_FN void camber_walk_chunk(camber_walk *w, const camber_projection *p,
     }
 }
 
-/* Computes the points of a chunk to walk, counted from the start of the arrays; none if end is not above begin. */
+/* Computes the points of a chunk to walk, counted from the start of the arrays; there are none if end is not above
+ * begin. */
 CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk, camber_u32 *begin, camber_u32 *end) {
     const camber_u32 first = chunk * CAMBER_CULL_CHUNK;
     *begin = first > p->begin ? first : p->begin;

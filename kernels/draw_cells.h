@@ -1,8 +1,8 @@
 /* Draws a tile, or one cell of it, one segment and one pixel at a time: for rasterize on GPUs, and for the CPU twin.
  *
  * Input: the tile's list of segments, from its end, and everything that these are drawn from. Output: a tile's state.
- * On a CPU device, rasterize draws sixteen segments and pixels side by side (rasterize.cl). For all of them,
- * tile_state.h does what happens to a pixel. */
+ * On a CPU device, rasterize draws sixteen segments and pixels side by side (rasterize.cl). Both use tile_state.h for
+ * everything that happens to a pixel. */
 #ifndef CAMBER_KERNELS_DRAW_CELLS_H
 #define CAMBER_KERNELS_DRAW_CELLS_H
 
@@ -152,7 +152,8 @@ CAMBER_FN void camber_put_pixels(camber_tile_state *c, const camber_drawn_segmen
 }
 
 #if CAMBER_HAS_MASKS
-/* Returns the colour of a pixel: of a ramp, or of an image along the line. range: where along the line the cell is. */
+/* Returns the colour of a pixel, from a ramp or from an image along the line. range: where along the line the cell is.
+ */
 CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pixel *at, const float range[2],
                                   float color[4]) {
     color[0] = color[1] = color[2] = color[3] = 1.0f;

@@ -21,7 +21,7 @@ typedef struct camber_cell_masks {
 
 /* ---- With a pitch ---- */
 
-/* Returns the form of a line of the plane, given its unit normal and its position along that. */
+/* Returns the form of a line of the plane, given its unit normal and its position along this normal. */
 CAMBER_FN camber_form camber_form_of(camber_eye e, float nx, float ny, float at) {
     camber_form f;
     f.at = at;

@@ -31,7 +31,7 @@
 CAMBER_STRUCT(camber_extras) {
     camber_u32 features;
     float half_gap, blur;     /* blur below 0: it fades by a smooth step */
-    float along, rate, total; /* arc length of A, px; arc length of a px; the line's whole length, px */
+    float along, rate, total; /* arc length of A, px; arc length per px; the line's whole length, px */
     float trim_from, trim_to; /* px along the line */
     float period, drawn;      /* of dashes: the period, in px; the fraction of it that is drawn */
     camber_u32 dash_count, stop_count;

@@ -46,7 +46,7 @@
  * that emits nothing. A ring is stored as a sentinel of its last but one point, its points with the first repeated at
  * the end, and a sentinel of its second point, so that neighbours are always i - 1 and i + 1. A first or last point
  * that is CUT is not an end: the line continues outside the window. A point of an AREA's ring has no join: only edges
- * are made of it. */
+ * are made from it. */
 #define CAMBER_POINT_REAL 1u
 #define CAMBER_POINT_FIRST 2u
 #define CAMBER_POINT_LAST 4u
@@ -105,7 +105,7 @@ CAMBER_STRUCT(camber_row) {
  *             27  the next point is its line's last
  *          28-31  kind: in the top bits, so that no mask narrows it to three bits, which oclgrind 21.10 gets wrong
  *
- * The stub: 1 + the length of the shorter of its two segments, whole units of CAMBER_STUB_UNIT_PX, and 63 from
+ * The stub: 1 + the length of the shorter of its two segments in whole units of CAMBER_STUB_UNIT_PX, and 63 from
  * CAMBER_STUB_PX on. */
 #define CAMBER_JOIN_END_SHIFT 16
 #define CAMBER_JOIN_END_MASK 7u

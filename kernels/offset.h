@@ -11,11 +11,11 @@
  *
  * Parts without room are removed: what remains of a segment or an arc is at least the offset away from every part of
  * the source line within its reach, which is CAMBER_OFFSET_REACH offsets around the end of the segment. A segment of
- * the source line hides everything nearer than the offset, which is a capsule. Since a capsule is convex, it hides one
- * interval of an offset segment; the line before hides the beginning of the offset segment up to that interval's end,
- * the line after hides its end. The remaining parts are linked in the order of the line. So a line has no more segments
- * than it had, and parts of the line beyond the reach do not count: a line that crosses itself is drawn through the
- * crossing. */
+ * the source line hides everything that is nearer to it than the offset, which is a capsule. Since a capsule is convex,
+ * it hides one interval of an offset segment; the line before hides the beginning of the offset segment up to that
+ * interval's end, the line after hides its end. The remaining parts are linked in the order of the line. So an offset
+ * line has no more segments than its source line, and parts of the line beyond the reach do not count: a line that
+ * crosses itself is drawn through the crossing. */
 #ifndef CAMBER_KERNELS_OFFSET_H
 #define CAMBER_KERNELS_OFFSET_H
 
@@ -28,7 +28,7 @@
 #define CAMBER_OFFSET_SEGMENTS 128u
 /* The most slots that are passed to find a ring's other end, if the search crosses its seam. */
 #define CAMBER_OFFSET_SEAM 65536u
-/* An arc's points are at most so far outside it; and the most points of an arc. */
+/* The most that an arc's points may be outside it, and the most points of an arc. */
 #define CAMBER_OFFSET_ARC_TOLERANCE_PX 0.125f
 #define CAMBER_OFFSET_ARC_POINTS_MAX 64u
 /* The rest of a cut segment is longer than this. Linked elements share one point if their ends are closer than this. */

@@ -237,7 +237,7 @@ CAMBER_FN void camber_offset_emit_segment(const camber_source_line *c, camber_of
     camber_offset_writer_point(writer, x, y, camber_offset_along_segment(c, slot, &segment, clip.from));
 }
 
-/* Emits the points of a slot's arc and segment, linked to the previous element: none, or at least one. */
+/* Emits the points of a slot's arc and segment, each linked to the element before it. The slot may have neither. */
 CAMBER_FN void camber_offset_emit_elements(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                            camber_offset_row row, camber_offset_writer *writer) {
     if (camber_has_arc(c, slot)) {
@@ -300,7 +300,7 @@ CAMBER_FN void camber_offset_emit_same(const camber_source_line *c, camber_u32 s
         camber_offset_writer_slot(writer, c->x[slot + 1u], c->y[slot + 1u], 0u, 0.0f);
 }
 
-/* Emits the slots that are made of a source slot: its own points, a ring's sentinels, a line's last point. */
+/* Emits the slots that come from a source slot: its own points, a ring's sentinels, a line's last point. */
 CAMBER_FN void camber_offset_emit_beside(const camber_source_line *c, camber_u32 slot, camber_offset_writer *writer) {
     const camber_u32 info = c->info[slot];
     if (!(info & CAMBER_POINT_REAL))

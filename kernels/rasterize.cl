@@ -27,8 +27,8 @@
 #define WRITE(vector, at) CAMBER_STORE(vector, 0, at)
 #endif
 
-/* The number of adjacent cells that equals the number of a cell's rows in a vector: together, a row of them fills a
- * vector. */
+/* How many adjacent cells are written together: as many as a vector holds rows of a cell, so that one row of all these
+ * cells fills a vector. */
 #define CELLS_ABREAST (CAMBER_LANES / CAMBER_CELL_PX)
 #if CAMBER_LANES == 16
 #define ABREAST(cells, row) (uint16)((cells)[0].row, (cells)[1].row, (cells)[2].row, (cells)[3].row)
@@ -210,7 +210,7 @@ static inline void ask_for(global const float *segments, global const float *edg
     }
 }
 
-/* Returns its brush. */
+/* Returns the brush of a listed segment. */
 static inline camber_u32 brush_of(global const float *segments, global const float *edges, camber_target_args s,
                                   camber_u32 which) {
     const camber_u32 brush =

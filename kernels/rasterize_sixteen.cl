@@ -20,8 +20,8 @@ typedef struct segment_batch {
 #define draw_segment_batch(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* Classes of a segment's ends: they need nothing more, flat caps, or one of the rest, of which sharp joins need most.
- */
+/* Classes of segments by what their ends need: nothing more, flat caps, or something else, of which sharp joins need
+ * most. */
 #define ENDS_PLAIN 0u
 #define ENDS_CAPPED 1u
 #define ENDS_OTHER 2u
@@ -37,7 +37,7 @@ static inline camber_words ends_of(const camber_edges *p) {
     return (p->sharp | p->thin | p->tips | joined_a | joined_b) ? rest : plain;
 }
 
-/* Takes the coefficients of one of sixteen segments, as if no join of it were sharp. */
+/* Takes the coefficients of one of sixteen segments, as if none of its joins were sharp. */
 static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
     const camber_edges *all = from + k / CAMBER_LANES;
     const int lane = (int)(k % CAMBER_LANES);

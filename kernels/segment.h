@@ -81,12 +81,12 @@ CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *change
 #define CAMBER_SEGMENT_WORDS 16u
 
 /* The edges of rings are stored apart from segments, in groups of sixteen: first the ends of each, ax, ay, bx, by, then
- * the brushes of all. An edge has the number of its segment, whose own words are not used. Among edges, lines have
- * CAMBER_NO_EDGE there. */
+ * the brushes of all. An edge has the number of its segment, whose own words are not used. A segment of a line that is
+ * among edges has CAMBER_NO_EDGE in place of its brush. */
 #define CAMBER_SIXTEEN_EDGES_WORDS 80u
 #define CAMBER_NO_EDGE 0xffffffffu
 
-/* Returns the word at which the ends of edge i are, and that of its brush. */
+/* Return the word at which the ends of edge i are, and the word of its brush. */
 CAMBER_FN size_t camber_edge_ends(size_t i) {
     return CAMBER_SIXTEEN_EDGES_WORDS * (i / 16u) + 4u * (i % 16u);
 }
@@ -228,7 +228,7 @@ CAMBER_FN void camber_tile_line_of(CAMBER_GLOBAL const float *segment, camber_ti
     l->reach = segment[CAMBER_SEGMENT_REACH];
 }
 
-/* Makes the same of an edge, given its ends. */
+/* Makes the same from an edge, given its ends. */
 CAMBER_FN void camber_tile_line_of_edge(CAMBER_GLOBAL const float *ends, camber_tile_line *l) {
     l->ax = ends[0];
     l->ay = ends[1];
@@ -288,7 +288,7 @@ CAMBER_FN camber_u32 camber_line_is_narrow(const camber_tile_line *l) {
 
 /* Returns the tiles of a box in row y that a segment touches: first | last << 8. If the box is one column or row, these
  * are all its tiles. At the area's edge the box may be cut, but the span must be the same as in any other area. words:
- * those of the segment, or the ends of an edge. */
+ * the words of the segment, or the ends of an edge. */
 CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_flag is_edge, camber_u32 box,
                                       camber_u32 y, const camber_tile_grid *of) {
     const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;

@@ -128,7 +128,7 @@ static inline void put_planes(const camber_segment *s, const camber_plane *p, gl
 }
 #endif
 
-/* Where the segments or edges of a vector of slots go. */
+/* Where the segments or edges of a vector of slots are written. */
 typedef struct outputs {
     global float *segments;
     global camber_u32 *boxes;

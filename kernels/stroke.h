@@ -88,7 +88,7 @@ CAMBER_FN void camber_second_of(camber_u32 end, float c, float s, CAMBER_OUT(cam
     l->ny = l->bevel ? l->outer * c : l->outer * (c * c - sine * sine);
 }
 
-/* Returns how far inside it a pixel is. past: px past the end. */
+/* Returns how far inside the second line a pixel is. past: px past the end. */
 CAMBER_FN camber_real camber_second_inside(CAMBER_IN(camber_second) l, float half_width, camber_real past,
                                            camber_real y, float c) {
     return (l->bevel ? half_width * c : half_width) - (past * l->nx + y * l->ny);

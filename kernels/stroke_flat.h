@@ -74,7 +74,7 @@ CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
 CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real none = CAMBER_REAL(0.0f), arc_a = at->past_a - p->round_a, arc_b = at->past_b - p->round_b;
     const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = CAMBER_MORE(farther, none);
-    /* On an arc farther than a pixel from the segment, only the distance counts. */
+    /* More than a pixel onto an arc, past the segment's end, only the distance counts. */
     const camber_real straight = 1.0f - arc, bend = camber_join_bend(at->fa, p->sa) + camber_join_bend(-at->fb, p->sb);
     at->off = arc;
     at->across = at->y - bend * CAMBER_MORE(straight, none);

@@ -1,9 +1,9 @@
 /* The coefficients of strokes: everything that is the same for all pixels of a segment.
  *
- * Input: a segment's words, or single ones of them. Output: camber_edge, from which stroke.h computes areas. The same
- * code is compiled for one segment (camber_edge) and, on a device, for as many as a vector has lanes (camber_edges):
- * stroke.h includes this file for each, after defining CAMBER_COEF and the like. So it is not a header. In shaders the
- * vertex stage calls its functions one by one, because varyings hold their results. */
+ * Input: a segment's words, or some of them. Output: camber_edge, from which stroke.h computes areas. The same code is
+ * compiled for one segment (camber_edge) and, on a device, for as many as a vector has lanes (camber_edges): stroke.h
+ * includes this file for each, after defining CAMBER_COEF and the like. So it is not a header. In shaders the vertex
+ * stage calls its functions one by one, because varyings hold their results. */
 
 /* How a straight edge cuts pixels: half a pixel's extent along its normal, the smaller component of that, and how the
  * covered area grows, linearly and over a pixel's corners. */

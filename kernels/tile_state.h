@@ -321,7 +321,7 @@ CAMBER_FN void camber_tile_use_ext(camber_tile_state *c, camber_brush_ext brush_
     }
 }
 
-/* Composites such colours of a vector directly under what the level has. The level must have been prepared. */
+/* Composites a vector of these colours directly under what the level has. The level must have been prepared. */
 CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber_real area, const camber_real *color) {
     const int level = camber_tile_level(c);
     const camber_real through = c->level[level][i][3][v], seen = through * area * c->now.a;
@@ -336,7 +336,7 @@ CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber
     }
 }
 
-/* Counts a segment of such colours that was drawn into a cell; whole: the cell is inside the stroke. */
+/* Counts a segment with these colours that was drawn into a cell; whole: the cell is inside the stroke. */
 CAMBER_FN void camber_tile_count_colors(camber_tile_state *c, int i, int whole) {
     const int level = camber_tile_level(c);
     if (++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL && !whole)

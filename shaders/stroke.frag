@@ -28,7 +28,7 @@ precision highp int;
 flat in vec4 v_segment; // A in the area, or with PITCHED from the point that the camera looks at; direction
 flat in vec4 v_shape;   // length, half width; at A and B: where a flat end is, px past the end
 flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine is > 0 if the line turns towards +y
-flat in vec4 v_rest;    // slope and curve of the edge; at A and B: px past the end from which pixels are the neighbour's
+flat in vec4 v_rest;    // slope and curve of the edge; at A and B: how far past the end the segment draws, px
 #if TIPS
 flat in vec2 v_tips; // at A and B: where the round cap of a thin line ends, px past the end
 #endif

@@ -1,5 +1,5 @@
-/* Buffers in OpenCL. Some drivers allocate memory only when a kernel first uses it, and then cannot report that there
- * is none: PoCL ends the process. So buffers are allocated at once in host memory (CL_MEM_ALLOC_HOST_PTR). */
+/* Buffers in OpenCL. Some drivers allocate memory only when a kernel first uses it, and then cannot report a lack of
+ * memory: PoCL ends the process. So buffers are allocated at once in host memory (CL_MEM_ALLOC_HOST_PTR). */
 #include "gpu/opencl/opencl.h"
 
 #include <CL/cl_gl.h>

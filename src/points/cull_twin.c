@@ -1,4 +1,4 @@
-/* The CPU twin of cull_count and cull_emit: projects a network on the host, and gives the visible lines as polylines.
+/* The CPU twin of cull_count and cull_emit: projects a network on the host, and returns the visible lines as polylines.
  *
  * Input: a network, a camera, strokes. Output: camber_polylines with the slots that the device would make; or lines of
  * points in px. Main idea: it runs the kernels' own walk (kernels/cull.h), but entry by entry instead of chunk by
@@ -65,7 +65,7 @@ static void count_slots(camber_polylines *p) {
     }
 }
 
-/* Makes count slots, padded to whole blocks, and the array of where each entry begins. */
+/* Makes `count` slots, padded to whole blocks, and the array that says where each entry begins. */
 static camber_status make_slots(const camber_network *network, const camber_projection *projection, size_t count,
                                 camber_polylines *p) {
     camber_context *context = network->context;

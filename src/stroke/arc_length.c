@@ -63,7 +63,8 @@ camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *p
 
 /* ---- Twin ---- */
 
-/* Measures the slots [first, end), from the first point of a stretch to its last. The first pass finds the total. */
+/* Measures the slots [first, end), from the first point of a stretch to its last. The first of two passes finds the
+ * total. */
 static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_arc_length *arc_lengths) {
     camber_u64 sum = 0;
     for (size_t pass = 0; pass < 2; pass++) {

@@ -1,4 +1,4 @@
-/* The buffers of a part: which there are, and making, moving and releasing them. */
+/* The buffers of a part: lists, makes, moves and releases them. */
 #include "residency/memory.h"
 
 #include "kernels/arc_length.h"

@@ -12,7 +12,7 @@ void camber_mesh_return_points(camber_mesh *mesh) {
         camber_mesh_part *part = mesh->parts + i;
         if (!part->borrowed)
             continue;
-        camber_device_settle(mesh->device); /* then nothing maps them any more */
+        camber_device_settle(mesh->device); /* after this the device no longer uses them */
         part->uploaded = false;
         camber_part_release_points(mesh, part);
     }
@@ -67,7 +67,8 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
         if (status == CAMBER_OK && given < words)
             status = camber_buffer_write_later(device, arrays[i].buffer, 4 * given, 4 * (words - given), zeros);
     }
-    /* classify writes a join word for each slot. Neighbours also read those of the sentinels around them. */
+    /* classify writes a join word for each slot. Neighbours also read the join words of the sentinels around the slots.
+     */
     if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_buffer_write_later(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK && !mesh->has_offsets)

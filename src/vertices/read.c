@@ -40,7 +40,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     return status;
 }
 
-/* Reads the records of a part. With arc lengths a record has 32 bytes, of which the first 16 are its words. */
+/* Reads the records of a part. With arc lengths a record has 32 bytes, and the first 16 are its words. */
 static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
     camber_buffer *buffer = part->buffers[CAMBER_BUFFER_RECORDS].buffer;
     camber_record *records = data->records + part->first_record;

@@ -2,8 +2,8 @@
  *
  * Input: a brush's edges in a tile, and how often its rings wind around the tile's top left corner. Output: the area of
  * each pixel that is inside the rings. Main idea: an edge changes the winding number of everything to its right in the
- * rows that it passes. So each edge adds to a pixel only what it changes there, exactly, as an area. A running sum from
- * left to right then gives the winding number of each pixel. Edges in opposite directions cancel, so that polygons that
+ * rows that it passes. So each edge adds to a pixel only its own change, exactly, as an area. A running sum from left
+ * to right then gives the winding number of each pixel. Edges in opposite directions cancel, so that polygons that
  * share an edge have no seam.
  *
  *      corner                      e1 crosses the top left of the corner: wind counts it for the whole tile.
@@ -156,7 +156,8 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GL
     return camber_put_crossings(turns, first, last, brush, crossings, count);
 }
 
-/* The crossings of a tile's row that no brush has taken yet: those of the brushes still to come, the next one last. */
+/* The crossings of a tile's row that no brush has taken yet: they belong to the brushes that follow, and those of the
+ * next brush are last. */
 typedef struct camber_crossings_left {
     CAMBER_GLOBAL const camber_u32 *words;
     camber_u32 first, end, column; /* column: the tile's column */
@@ -226,7 +227,8 @@ CAMBER_FN camber_mask camber_cell_at(camber_real at, camber_mask counts, float m
     return CAMBER_TO_INTEGERS((counts & (cell > none)) ? (cell < most ? cell : CAMBER_REAL(most)) : none);
 }
 
-/* Cuts the edges that enter the tile through its left side on their way down, and those that leave it there. */
+/* Cuts the edges that enter the tile through its left side on their way down, and the edges that leave it through that
+ * side. */
 CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camber_mask leaves) {
     camber_ring_edges *e = &t->in;
     const camber_real none = CAMBER_REAL(0.0f), side = CAMBER_REAL((float)CAMBER_TILE_PX);

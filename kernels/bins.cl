@@ -95,7 +95,7 @@ static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from
     }
 }
 
-/* Puts the segments of a chunk into their lists, or counts them. */
+/* Adds the segments of a chunk to their lists, or counts them. */
 static __attribute__((noinline)) void bin_chunk(global const float *segments, global const float *edges,
                                                 global const camber_u32 *boxes, camber_u32 chunk,
                                                 const camber_bin_args *c, const bins *to) {

@@ -12,8 +12,8 @@
 /* A vector has CAMBER_LANES of the sixteen pixels of a cell, row by row, or of sixteen segments. */
 #define CAMBER_VECTORS (16 / CAMBER_LANES)
 
-/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. What is stored per row or column of
- * cells is at CAMBER_OWN_ROW or CAMBER_OWN_COLUMN, and what is stored per cell at CAMBER_OWN_CELL. */
+/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. Values per row or column of cells
+ * are stored at CAMBER_OWN_ROW or CAMBER_OWN_COLUMN, and values per cell at CAMBER_OWN_CELL. */
 #if defined(CAMBER_DEVICE) && CAMBER_LANES == 1
 #define CAMBER_OWN_SIDE 1
 #define CAMBER_OWN_ROW(row) 0

@@ -4,15 +4,15 @@
  *     stretches its polylines without invalid points, with their boxes
  *     slots     what classify reads: the points that the camera sees at its tolerance, in px
  *
- * Each chunk of points is walked separately: each point puts its own slot, and, if the window cuts the segment after
+ * Each chunk of points is walked separately: each point writes its own slot, and, if the window cuts the segment after
  * it, the ends of that segment. The walk also reads points past the chunk's end, so that slots do not depend on how
  * points are divided into chunks.
  *
  *     window  +-----------------------------+
- *             |   A1.....A2                 |      A1, A2, then an end that A2 puts
+ *             |   A1.....A2                 |      A1, A2, then an end that A2 writes
  *             |            \                |
  *             +-------------e---------------+
- *                            A3        A5          A3 puts nothing, A4 a beginning
+ *                            A3        A5          A3 writes nothing, A4 a beginning
  *             +--------------------b---/----+
  *                               A4-'               (pictured: two sides of one window) */
 #ifndef CAMBER_KERNELS_CULL_H
@@ -61,7 +61,7 @@ typedef struct camber_projection {
     float window_x0, window_y0, window_x1, window_y1; /* px: all slots are inside it */
     camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* stretches whose boxes do not touch it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
-    camber_u32 begin, end;                            /* the points to walk, counted from there */
+    camber_u32 begin, end;                            /* the points to walk, counted from first_point */
     float step_px;
     /* For a camera with a pitch, the window is a trapezoid. Its sides come `slope` px closer per px down, to window_x0
      * and window_x1 at its bottom. Depth is 1 at middle_y, where `tolerance` holds, and falls by `fall` per px down. */
@@ -69,13 +69,13 @@ typedef struct camber_projection {
     float middle_y, fall, nearest, inverse_cosine;
 } camber_projection;
 
-/* A walk over points: the arrays that it reads, and where it puts slots. */
+/* A walk over points: the arrays that it reads, and where it writes slots. */
 typedef struct camber_walk {
     CAMBER_GLOBAL const camber_i32 *x, *y;
     CAMBER_GLOBAL const float *importance;
     CAMBER_GLOBAL float *slot_x, *slot_y;
     CAMBER_GLOBAL camber_u32 *slot_info;
-    camber_u32 puts;             /* 0: slots are only counted, 1: they are also put */
+    camber_u32 puts;             /* 0: slots are only counted, 1: they are also written */
     camber_u32 at;               /* the next slot */
     camber_u32 first, end, word; /* of the stretch */
 #if CAMBER_WALK_ARC_LENGTHS
@@ -210,8 +210,8 @@ CAMBER_FN float camber_share_within_pitched(const camber_projection *p, camber_k
     return t > 0.0f ? t : 0.0f;
 }
 
-/* Returns the tolerance at a point: a px there is depth px of the plane from side to side, and more from front to back,
- * but less near the camera. */
+/* Returns the tolerance at a point. A px of the picture there spans `depth` px of the plane from side to side, and more
+ * from front to back, but less near the camera. */
 CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, camber_i32 y) {
     const float depth = 1.0f - p->fall * (camber_project_y(p, x, y) - p->middle_y);
     const float seen = depth > p->nearest ? depth : p->nearest;
@@ -262,7 +262,7 @@ CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_pro
 }
 #endif
 
-/* Puts b, or the point where the segment from a to b leaves the window. */
+/* Writes a slot for b, or for the point where the segment from a to b leaves the window. */
 CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b,
                               camber_u32 info) {
     const float t = camber_share_within(p, a, b);
@@ -295,8 +295,8 @@ CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_
     return next;
 }
 
-/* Puts the sentinel of a ring: before the first point the last different one, after the last point the second one. It
- * is cut like the segment that it stands for, so that both ends of the ring have the same turn. */
+/* Writes the sentinel of a ring: before the first point the last different one, after the last point the second one. It
+ * is cut like the segment that it represents, so that both ends of the ring have the same turn. */
 CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection *p, camber_u32 before,
                                         camber_kept_point seam) {
     camber_kept_point other = seam;
@@ -333,8 +333,8 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
 #endif
 }
 
-/* Left of the window a polygon's segment still changes the winding number of what is in the window. That part is put as
- * a line along the window's left side, from where the segment crosses it to the height of the segment's end:
+/* Left of the window a polygon's segment still changes the winding number of points in the window. That part is written
+ * as a line along the window's left side, from where the segment crosses it to the height of the segment's end:
  *
  *     A1----------+---A2           A1'---+
  *      \          | window          |    |     A1' is on the left side, as high as A1. Points of the ring left of
@@ -359,7 +359,8 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 
 /* ---- Points ---- */
 
-/* Puts the slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
+/* Writes the slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point.
+ */
 CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;

@@ -169,7 +169,7 @@ CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pi
     }
 }
 
-/* Composites colours that change from pixel to pixel under what a cell has. */
+/* Composites colours that change from pixel to pixel under the colours that a cell already has. */
 CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segment *t, int number,
                                  const camber_cell_pixels *pixels, float range[2]) {
 #if CAMBER_STROKE_PITCHED

@@ -8,7 +8,8 @@
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
-/* Functions that are inlined into kernels do not use restrict, because oclgrind does not support it there. */
+/* Functions that are inlined into kernels do not use restrict, because oclgrind does not support it in such functions.
+ */
 
 static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
@@ -173,8 +174,8 @@ static inline void put_wedge(global camber_u32 *indices, camber_u32 p, camber_u3
     put_triangle(indices, flip ? other : p, flip ? p : other, carries);
 }
 
-/* Writes a join's triangles from the outer edge of the incoming segment to that of the outgoing one. A kite's tip
- * belongs to neither: the edge is the provoking vertex of its first triangle. */
+/* Writes a join's triangles from the outer edge of the incoming segment to the outer edge of the outgoing one. A kite's
+ * tip belongs to neither: the edge is the provoking vertex of its first triangle. */
 static inline void put_join(global camber_u32 *indices, camber_u32 record, camber_u32 triangles, camber_u32 is_fan,
                             float outer) {
     const camber_u32 p = record | CAMBER_CORNER_CENTRE;

@@ -41,7 +41,7 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     const float product = along * along + aside * aside; /* of the squared lengths */
     const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
     const float dot = along * scale, cross = aside * scale;
-    /* The larger one of c and s comes from a root that loses no precision, the smaller from cross = 2 s c. */
+    /* The larger one of c and s is a root that loses no precision, and the smaller one follows from cross = 2 s c. */
     const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
     const float smaller = 0.5f * cross / larger;
     camber_turn turn;

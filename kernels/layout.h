@@ -78,7 +78,7 @@ CAMBER_STRUCT(camber_row) {
 /* A record's last word is its point's info, with one of these. The outgoing segment places the vertices of a start,
  * except those that it shares with the end before: the incoming segment places these, to the last bit. The incoming
  * segment begins at the break before the start, or at a tight join at the record before the end. */
-#define CAMBER_RECORD_BREAK 16u /* between two strips: both its vertices are those of its neighbours */
+#define CAMBER_RECORD_BREAK 16u /* between two strips: its vertices repeat those of its neighbours */
 #define CAMBER_RECORD_START 32u /* start of a strip inside a polyline, where the previous strip has ended */
 
 /* Kite and fan: an index is record << CAMBER_CORNER_BITS | corner. IN and OUT refer to the segments into and out of the

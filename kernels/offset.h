@@ -47,7 +47,7 @@ typedef struct camber_offset_row {
     camber_u32 spare;
 } camber_offset_row;
 
-/* The rest of the offset segment that begins at a slot, in px along it, and of the arc there. */
+/* The rest of the offset segment that begins at a slot, in px along it, and the rest of the arc at the slot. */
 typedef struct camber_offset_clip {
     float from, to; /* nothing if to is not above from */
     camber_u32 arc; /* its first point | the one after its last << 8 | how many it would have in full << 16 */
@@ -155,7 +155,7 @@ typedef struct camber_offset_corner {
 } camber_offset_corner;
 
 /* Returns the corner at a slot that has neighbours. If its segments coincide, as on a way to a dead end and back, the
- * offset line goes around the end on either side. */
+ * offset line runs around the end on either side. */
 CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line *c, camber_u32 slot, float offset) {
     const float x = c->x[slot], y = c->y[slot];
     const float dx = x - c->x[slot - 1u], dy = y - c->y[slot - 1u];

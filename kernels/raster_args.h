@@ -90,8 +90,8 @@ typedef struct camber_spill_args {
 #define CAMBER_PLACED_MOST 1024
 #define CAMBER_PLACED_ENTERS 2.0f
 #define CAMBER_PLACED_LEAVES 3.0f
-/* Changes of a brush's winding numbers at the top and the bottom of a row of cells, as spilled; the edges come after
- * those of all rows. */
+/* Changes of a brush's winding numbers at the top and the bottom of a row of cells, as spilled; the edges follow the
+ * changes of all rows. */
 #define CAMBER_TURN_WORDS 18
 #define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
 /* A cell that more edges than this pass keeps its plain sums even if polygons overlap, and so does a tile with more

@@ -197,8 +197,8 @@ static inline camber_real cut_caps(const camber_edge *p, const camber_pixel *at,
                                camber_cut_along(p, at, p->flat_b - at->past_b));
 }
 
-/* Computes the areas of a cell's pixels near an end. `ends` is a constant, so that the compiler leaves out what such
- * ends do not need. Caps come last: what belongs to a neighbour is 0 and stays 0. */
+/* Computes the areas of a cell's pixels near an end. `ends` is a constant, so that the compiler leaves out code that
+ * such ends do not need. Caps are computed last: the area of a neighbour's pixel is 0 and stays 0. */
 static inline __attribute__((always_inline)) void find_areas_by(const list_source *d, uint word, uint ends,
                                                                 camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
@@ -217,7 +217,7 @@ static inline __attribute__((always_inline)) void find_areas_by(const list_sourc
     }
 }
 
-/* The expensive cases are a function of their own; inlined, they would make the drawing of a list keep everything about
+/* The expensive cases are in a separate function; inlined, they would make the drawing of a list keep everything about
  * a pixel in memory instead of registers. */
 static __attribute__((noinline)) void find_other_areas(const list_source *d, uint word, camber_real *area) {
     find_areas_by(d, word, ENDS_OTHER, area);

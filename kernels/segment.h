@@ -124,7 +124,7 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
-/* Computes the direction of a vector; that of a dot is the x axis. Returns its length. */
+/* Computes the direction of a vector; a dot has the direction of the x axis. Returns its length. */
 CAMBER_FN camber_real camber_direction(camber_real dx, camber_real dy, camber_real *ux, camber_real *uy) {
     const camber_real one = CAMBER_REAL(1.0f), none = CAMBER_REAL(0.0f), length = CAMBER_SQRT(dx * dx + dy * dy);
     const camber_real scale = one / (length > 0.0f ? length : one);
@@ -306,7 +306,8 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_f
     return camber_row_span(&line, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
-/* Returns the first row of tiles whose top a segment with this box may cross; the last is that of the box. */
+/* Returns the first row of tiles whose top a segment with this box may cross; the last such row is the box's last row.
+ */
 CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
     return CAMBER_BOX_FIRST_Y(box) == 0u ? 0u : CAMBER_BOX_FIRST_Y(box) + 1u;
 }

@@ -65,7 +65,7 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
         row[k] = CAMBER_LOAD(0, words[k]);
 }
 
-/* Returns the brushes of a vector of edges that end in the slots from `first` on, given those of their rows. */
+/* Returns the brushes of a vector of edges that end in the slots from `first` on, given the brushes of their rows. */
 static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, const camber_setup_args *r,
                                         camber_real of_rows) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -156,7 +156,7 @@ static inline void look_up_rows(global const float *rows, const camber_setup_arg
 #endif
 }
 
-/* Takes the points of the slots from `first` on. The words of the slots come after that of the leading sentinel. */
+/* Takes the points of the slots from `first` on. The words of the slots follow the word of the leading sentinel. */
 static inline void take_points(part_points from, int first, const camber_setup_args *r, ends *e) {
     const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const int at = first + 1;

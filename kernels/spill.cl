@@ -153,7 +153,7 @@ static inline void restore_sets(camber_tile_state *c, camber_u32 state, int i) {
     c->blend_count[i] = (uchar)(state >> CAMBER_SPILL_COUNT_SHIFT);
 }
 
-/* Restores what a cell has of the current brush, if any, and of its levels. */
+/* Restores a cell's values of the current brush, if any, and of its levels. */
 static inline void restore_cell(camber_tile_state *c, const spilled_tile *from, camber_spill_args s, camber_u32 sets,
                                 camber_tile_rows where, int row, int column) {
     const int i = CAMBER_OWN_CELL(row, column, where), cell = CAMBER_TILE_CELLS * row + column;

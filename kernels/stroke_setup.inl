@@ -58,15 +58,15 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_round_from(CAMBER_COEF_WORDS kind)
 }
 
 /* Returns where the cap of a thin line ends, in px past the end. The formula for arcs would treat such a line as one
- * that crosses the whole pixel. So it is cut straight there, where the cap has the area of a half circle: pi / 4 of
- * half the width. */
+ * that crosses the whole pixel. So the line is cut straight at a position where the cap has the area of a half circle:
+ * pi / 4 of half the width. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_cap_until(CAMBER_COEF half_width) {
     const CAMBER_COEF more = half_width - 0.5f, past = more > 0.0f ? more : CAMBER_COEF_OF(0.0f);
     return 0.5f + 0.785398f * half_width + 1.2f * past;
 }
 
-/* The same for an end that may not be a round cap. With a pitch, the width of a line in the picture differs from pixel
- * to pixel, so it is computed from what is seen. */
+/* Returns camber_cap_until for an end that may not be a round cap. With a pitch, the width of a line in the picture
+ * differs from pixel to pixel, so it is computed from what is seen. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_tip_from(CAMBER_COEF_MASK is_round_cap, CAMBER_COEF half_width) {
 #if CAMBER_STROKE_PITCHED
     CAMBER_UNUSED(half_width)

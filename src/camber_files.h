@@ -70,8 +70,8 @@ typedef struct camber_png camber_png;
 
 /* Makes a PNG writer. Call camber_png_write_rows until all rows are written, and then camber_png_finish. The writer
  * buffers a picture of up to 2^22 px, uses a palette if 256 colours are enough, and writes the file at the end. It
- * writes the rows of a larger picture as they come, at half the speed and without a palette. After a failure, all
- * further calls fail.
+ * writes the rows of a larger picture as it receives them, at half the speed and without a palette. After a failure,
+ * all further calls fail.
  * Returns CAMBER_ERROR_ARGUMENT (a size, a level or the length of a text's key is out of range), CAMBER_ERROR_IO (the
  * sink returned false), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,

@@ -1,4 +1,4 @@
-/* Puts the images of a frame that OpenCL draws into the side table: their texels, once for each size, and the words
+/* Stores the images of a frame that OpenCL draws in the side table: their texels, once for each size, and the words
  * that kernels/images.h lists, for each brush with an image. */
 #include "draw/draw_cl.h"
 

@@ -151,7 +151,7 @@ void camber_gl_hide_horizon(camber_renderer *renderer, const camber_gl_area *are
 
 /* ---- gl_rows.c ---- */
 
-/* Whether the row texture can hold that many rows and that many texels of the side table. */
+/* Whether the row texture can hold row_count rows and side_texels texels of the side table. */
 bool camber_rows_fit(const camber_renderer *renderer, size_t row_count, size_t side_texels);
 /* Makes room for these rows and texels. Returns CAMBER_ERROR_LIMIT if that is not possible. */
 camber_status camber_rows_reserve(camber_renderer *renderer, size_t row_count, size_t side_texels);

@@ -45,8 +45,8 @@ camber_status camber_surface_make_current(camber_surface *surface);
  */
 bool camber_surface_try_current(camber_surface *surface);
 
-/* Returns as a status the errors that GL has reported since the last check, and logs them. what is a name for the call
- * that failed. */
+/* Returns as a status the errors that GL has reported since the last check, and logs them. `what` names the call that
+ * failed. */
 camber_status camber_surface_check(camber_surface *surface, const char *what);
 /* Drops the errors that GL has reported, after a failure that is logged already. */
 void camber_surface_forget_errors(camber_surface *surface);

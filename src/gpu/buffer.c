@@ -1,4 +1,4 @@
-/* Makes, fills, maps and releases buffers, and counts those in the host's memory against the budget. */
+/* Makes, fills, maps and releases buffers, and counts buffers in the host's memory against the budget. */
 #include "gpu/backend.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-/* Buffers on a device. Those in the host's memory count against the run's memory budget. */
+/* Buffers on a device. Buffers in the host's memory count against the run's memory budget. */
 #ifndef CAMBER_GPU_BUFFER_H
 #define CAMBER_GPU_BUFFER_H
 

@@ -157,7 +157,7 @@ static size_t last_of(const visible_lines *p, size_t first) {
 }
 
 /* Appends the visible lines of an entry. If the window cuts a ring, the line across the ring's seam consists of two
- * halves, and its end comes first in the slots. The end waits at `seam` until the beginning has been appended:
+ * halves, and its end is first in the slots. The end waits at `seam` until the beginning has been appended:
  *
  *     slots     S..e   b..S              S: the seam, the ring's first and last point
  *     line      b..S..e                  from b, where the window cuts, across the seam to e */

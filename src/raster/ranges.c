@@ -83,7 +83,7 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
     return status;
 }
 
-/* Orders ranges by part, and those of one part by drawing order. */
+/* Orders ranges by part, and the ranges of one part by drawing order. */
 static int compare_ranges(const void *left, const void *right) {
     const camber_slot_range *a = left, *b = right;
     const uintptr_t meshes[2] = {(uintptr_t)a->mesh, (uintptr_t)b->mesh};

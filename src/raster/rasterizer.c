@@ -16,8 +16,8 @@
  * for every tile. A GPU has more chunks, because it needs many work-items.
  * HEAVY: on a CPU, a tile with more segments than this is drawn by as many work-items as it has rows of cells; each
  * walks the list until its row is full. Edges of rings have to be walked to their end. So if there are any, such a tile
- * must also have more than one in SHARES of what each of the device's processors draws, and it must be drawn in one
- * slice, because its rows share the edges that they spill. */
+ * must also have more than one in SHARES of the segments that each of the device's processors draws, and it must be
+ * drawn in one slice, because its rows share the edges that they spill. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 1024, GPU_CHUNKS_MAX = 512, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
@@ -301,7 +301,7 @@ static void put_job(camber_raster *raster, size_t job, size_t tile, uint32_t row
                                                 : spill;
 }
 
-/* Lists the jobs for the tiles that the slice draws; the last slice draws all tiles. Heavy tiles come first, with one
+/* Lists the jobs for the tiles that the slice draws; the last slice draws all tiles. Heavy tiles are first, with one
  * job per row of cells, and then whole tiles. */
 static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;

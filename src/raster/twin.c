@@ -165,7 +165,7 @@ static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, boo
         add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
 }
 
-/* Counts a segment in each tile that it touches, or puts it into their lists. */
+/* Counts a segment in each tile that it touches, or adds it to their lists. */
 static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;

@@ -6,7 +6,7 @@
  *
  *     1  parts of this mesh that hold buffers but no valid output
  *     2  parts, then sections, of the device's other meshes
- *     3  sections of this mesh, except that of the requesting part
+ *     3  sections of this mesh, except the requesting part's
  *     4  parts of this mesh with valid output, unless spare_made
  *
  * Within step 4 the victim is the part that will be needed last. A frame uses the parts in order, and the next frame

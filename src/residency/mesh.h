@@ -40,7 +40,7 @@ typedef struct camber_mesh_part {
     size_t first_slot, given_count; /* slots before the offset stages; given_count is padded to whole blocks */
     size_t slot_count;              /* slots that classify reads: the given ones, or those of the offset lines */
     size_t used_slots;              /* slot_count without the padding; kept while the part has no buffers */
-    /* For a network: the part's section, its points, and how many slots come before each chunk of the points. */
+    /* For a network: the part's section, its points, and how many slots are before each chunk of the points. */
     size_t section, first_point, end_point;
     uint32_t *chunk_bases; /* one for each chunk, and one after the last */
     size_t chunk_capacity;

@@ -6,7 +6,7 @@
 
 /* limits.c: returns how many bytes a part needs for its input and, if it has been counted, its output. */
 uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
-/* The same for two neighbours as one part. */
+/* The same for two neighbouring parts, if they were one part. */
 uint64_t camber_parts_needed_bytes(const camber_mesh *mesh, const camber_mesh_part parts[2]);
 /* Returns how many bytes a part's input of `slots` slots takes, including the host's arrays for it. */
 uint64_t camber_part_slots_bytes(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots);
@@ -86,7 +86,7 @@ camber_status camber_part_upload_section(camber_mesh *mesh, const camber_mesh_pa
 void camber_mesh_return_points(camber_mesh *mesh);
 
 /* source.c: plans the parts of polylines or of a network, which the mesh holds from then on. If the source is the same
- * as last time, the parts and what was uploaded to them are kept. */
+ * as last time, the parts are kept, with the data that was uploaded to them. */
 camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines);
 camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network);
 /* Aims a camera at the network that the mesh holds, and gets the kernels for it. */

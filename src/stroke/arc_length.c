@@ -1,7 +1,7 @@
 /* Computes arc lengths: how far along its polyline each point is, for dashes and other things drawn along lines.
  *
  * On a device, arc_length_sum adds up each chunk of points, the host carries the sums from chunk to chunk, and
- * arc_length_scan writes every point's length. The CPU twin goes along each polyline from its first point to its last.
+ * arc_length_scan writes every point's length. The CPU twin follows each polyline from its first point to its last.
  * Both add up integers (kernels/arc_length.h), so that the order does not matter and the two agree bit for bit. */
 #include "stroke/arc_length.h"
 

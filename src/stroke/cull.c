@@ -48,7 +48,7 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
     return status;
 }
 
-/* Counts the part's slots, and sets how many come before each chunk. */
+/* Counts the part's slots, and computes how many are before each chunk. */
 static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p,
                                        uint64_t *slots) {
     const camber_device *device = mesh->device;

@@ -12,8 +12,8 @@ bool camber_desc_has_offsets(const camber_tessellation_desc *desc);
  * its parts lose their buffers. */
 camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellation_desc *desc);
 
-/* Runs offset_clip, offset_count and offset_emit: makes the part's slots from those of its source lines. *fits is as
- * for camber_part_project. */
+/* Runs offset_clip, offset_count and offset_emit: makes the part's slots from the slots of its source lines. *fits is
+ * as for camber_part_project. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 
 /* The CPU twin: makes the offset lines of polylines. arc_lengths: one per slot of the polylines, or NULL if none are

@@ -139,7 +139,7 @@ static uint32_t corner_at(size_t slot, camber_u32 corner) {
 }
 
 /* Appends the triangles of a segment's body, which ends at the point. At a join the body has the point as a vertex (a,
- * b), so that the join's triangles can meet it there; at a cap it is a plain quad's side.
+ * b), so that the join's triangles can share this vertex; at a cap it is a plain quad's side.
  *
  *     left ----------------- end_left          both ends joined: four triangles around a and b
  *       |                        |             one joined: three
@@ -173,8 +173,8 @@ static void push_body(twin *t, const visited_point *p) {
 }
 
 /* Appends a join's triangles. They turn around the centre on the outer side, from the outer edge of the incoming
- * segment to that of the outgoing one. A triangle's last vertex tells the shader its segment, so the order of vertices
- * depends on which vertex carries the right segment. The triangles wind like those of the bodies. */
+ * segment to the outer edge of the outgoing one. A triangle's last vertex tells the shader its segment, so the order of
+ * vertices depends on which vertex carries the right segment. The triangles wind like those of the bodies. */
 static void push_join(twin *t, const visited_point *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);

@@ -30,8 +30,8 @@ void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t p
 size_t camber_records_max(camber_method method);
 camber_status camber_fail_records(camber_context *context, camber_method method);
 
-/* read.c: finds the first index of a polyline among those of the whole mesh, as camber_mesh_read gives them. Makes the
- * polyline's part if it is gone. */
+/* read.c: finds the first index of a polyline among the indices of the whole mesh, as camber_mesh_read gives them.
+ * Makes the polyline's part again if it was evicted. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
 /* slot_starts.c: finds where the output of a part's polylines begins, from the results of classify and scan. */

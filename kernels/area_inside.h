@@ -18,7 +18,8 @@
 
 /* Sums that are off by less than this belong to polygons that do not overlap. */
 #define CAMBER_AREA_SLACK (CAMBER_AREA_ONE / 1024)
-/* An area less than this counts as 0, and one less than this short of a pixel as the whole pixel. */
+/* An area below this counts as 0, and an area that is less than this short of a whole pixel counts as the whole pixel.
+ */
 #define CAMBER_AREA_LEAST 1e-5f
 
 /* Returns how much of each pixel is inside, given the sum of its winding numbers. */

@@ -120,7 +120,7 @@ CAMBER_FN void camber_cell_boxes_of(const camber_footprint *f, camber_tile_rows 
  * segment. */
 typedef struct camber_cell_bounds {
     camber_real wide, full;       /* to the side of the line: for cells that it touches, and for cells that it fills */
-    camber_real near_a, near_b;   /* along the line: an end matters before the first and after the second */
+    camber_real near_a, near_b;   /* along the line: an end matters before near_a and after near_b */
     camber_real near_fa, near_fb; /* the same, past the bisectors */
     camber_real far_a, far_b;     /* past the bisectors, where the neighbour has all pixels */
 } camber_cell_bounds;

@@ -45,7 +45,8 @@
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
 #define CAMBER_STRETCH_AREA CAMBER_POINT_AREA
 
-/* Points of a polyline without invalid ones between them. A final stretch begins at the total number of points. */
+/* Consecutive points of a polyline, with no invalid point among them. A final stretch begins at the total number of
+ * points. */
 typedef struct camber_stretch {
     camber_u32 first; /* its first point; it ends where the next stretch begins */
     camber_u32 word;

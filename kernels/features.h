@@ -210,7 +210,7 @@ CAMBER_FN camber_real camber_round_dashes_within(CAMBER_IN(camber_edge) p, CAMBE
 
 /* ---- Beside the line ---- */
 
-/* Returns how far inside the second line of the join at an end a pixel is; rim if there is none. */
+/* Returns how far a pixel is inside the second line of the join at an end; `rim` if there is no second line. */
 CAMBER_FN camber_real camber_rim_at(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real rim,
                                     float out_of) {
     const float c = out_of > 0.0f ? p->cb : p->ca, s = out_of > 0.0f ? p->sb : p->sa;

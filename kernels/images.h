@@ -170,9 +170,9 @@ CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, CAM
     spot->reach_y = depth * depth / e.cosine;
 }
 
-/* Returns how far before a join a position is in the image, if it is t px before the join on the line. The image is
- * stretched or squeezed near the join, up to `near` px from it, so that its end is on the bisector. A cap leaves it as
- * it is. */
+/* Returns how far before a join a position is in the image, given that it is t px before the join on the line. The
+ * image is stretched or squeezed near the join, up to `near` px from it, so that its end is on the bisector. A cap
+ * leaves it as it is. */
 CAMBER_FN camber_real camber_before_joint(camber_real t, float tangent, camber_real y, float near) {
     const camber_real bisector = tangent * y, room = near - bisector, least = CAMBER_REAL(1e-3f);
     const camber_real share = camber_clamp_to_one((t - bisector) / CAMBER_MORE(room, least));

@@ -291,7 +291,7 @@ CAMBER_FN void camber_join_corner_at(camber_u32 corner, float q, float step, CAM
 }
 #endif
 
-/* Returns how many vertices and indices a point emits, vertices | indices << 16. Only distinct vertices count:
+/* Returns how many vertices and indices a point emits, as vertices | indices << 16. Only distinct vertices count:
  *   strip       L, R of each start and end, except the outer one that they share at a tight join
  *   kite, fan   in L, R | join's own | P if there is a join | out L, R, unless the polyline ends, and except those
  *               that camber_start_corner shares

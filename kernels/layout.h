@@ -82,8 +82,8 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_RECORD_START 32u /* start of a strip inside a polyline, where the previous strip has ended */
 
 /* Kite and fan: an index is record << CAMBER_CORNER_BITS | corner. IN and OUT refer to the segments into and out of the
- * point. From CAMBER_CORNER_FAN on there are a fan's own vertices, by the number of steps from the edge of the incoming
- * segment. */
+ * point. The corners from CAMBER_CORNER_FAN on are a fan's own vertices, in the order of their steps from the edge of
+ * the incoming segment. */
 #define CAMBER_CORNER_BITS 7
 #define CAMBER_CORNER_CENTRE 0u
 #define CAMBER_CORNER_IN_LEFT 1u

@@ -31,10 +31,11 @@
 /* The most that an arc's points may be outside it, and the most points of an arc. */
 #define CAMBER_OFFSET_ARC_TOLERANCE_PX 0.125f
 #define CAMBER_OFFSET_ARC_POINTS_MAX 64u
-/* The rest of a cut segment is longer than this. Linked elements share one point if their ends are closer than this. */
+/* The rest of a cut segment is kept only if it is longer than SHORTEST. Linked elements share one point if their ends
+ * are closer than GAP. */
 #define CAMBER_OFFSET_SEGMENT_SHORTEST_PX (1.0f / 1024.0f)
 #define CAMBER_OFFSET_GAP_PX 0.25f
-/* Cut segments may end this far from where they cross. */
+/* Cut segments may end this far from the point where they cross. */
 #define CAMBER_OFFSET_SLACK_PX 1.0f
 /* Marks an end of a segment that is not cut. */
 #define CAMBER_OFFSET_SEGMENT_WHOLE 1.0e30f

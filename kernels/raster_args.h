@@ -25,7 +25,7 @@ typedef struct camber_setup_args {
     camber_eye eye;
     /* The range's slots at which the brush changes, and how many changes of the same input are before the part. */
     camber_u32 first_change, change_count, changes_before;
-    camber_u32 first_item; /* the first of its work-items; each range begins a new one */
+    camber_u32 first_item; /* the first of its work-items; each range begins a new work-item */
 } camber_setup_args;
 
 /* The number of slots that a work-item of setup takes: several, because starting a work-group takes a while. */
@@ -95,8 +95,8 @@ typedef struct camber_spill_args {
 #define CAMBER_TURN_WORDS 18
 #define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
 /* A cell that more edges than this pass keeps its plain sums even if polygons overlap, and so does a tile with more
- * than CAMBER_PLACED_MOST edges of one brush. If a work-item draws one cell, each has its own turns and edges, at most
- * one more than this. */
+ * than CAMBER_PLACED_MOST edges of one brush. If each work-item draws one cell, each has its own turns and edges, and
+ * keeps at most one edge more than this. */
 #define CAMBER_OVERLAP_EDGES 64
 #define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 

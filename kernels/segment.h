@@ -46,7 +46,7 @@ typedef struct camber_brush {
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
-/* Returns how many of the changes of brush, ascending slots, are at a slot or before it. */
+/* Returns how many changes of the brush, given as slots in ascending order, are at a slot or before it. */
 CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *changes, camber_u32 count, camber_u32 slot) {
     camber_u32 low = 0u, high = count;
     while (low < high) {

@@ -86,7 +86,7 @@ static inline float2 arc_length_at(global const float *slot_arc_lengths, int slo
     return r->has_arc_length ? vload2((size_t)at, slot_arc_lengths) : (float2)(0.0f);
 }
 
-/* Writes arc lengths. Lanes that are dots are as far along their line as their point. */
+/* Writes arc lengths. A lane that is a dot gets the arc length of its point. */
 static inline void put_arc_lengths(global const float *slot_arc_lengths, int first, camber_mask is_dot,
                                    const camber_setup_args *r, const camber_segment *s, global float *arc_lengths) {
     float from[CAMBER_LANES], to[CAMBER_LANES], total[CAMBER_LANES], rates[CAMBER_LANES];

@@ -119,7 +119,7 @@ CAMBER_FN camber_real camber_between_ends(camber_real area, camber_real at_a, ca
 }
 
 /* Returns the part of an area that flat ends leave: one end, or both of a short segment. Ends that are not flat leave
- * all. */
+ * the whole area. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     return camber_between_ends(area, camber_cut_end(p, at, -1.0f), camber_cut_end(p, at, 1.0f));
 }

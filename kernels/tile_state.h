@@ -186,7 +186,8 @@ CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
 
 /* ---- Levels ---- */
 
-/* Prepares a level that is about to be drawn in: a cell that has nothing of it yet becomes empty. */
+/* Prepares a level that is about to be drawn in: clears the level's values of the cell, unless something was drawn
+ * there before. */
 CAMBER_FN void camber_tile_take_level(camber_tile_state *c, int level, int i) {
     const camber_u64 bit = (camber_u64)1 << i;
     if (c->touched[level] & bit)

@@ -101,8 +101,8 @@ CAMBER_API uint64_t camber_budget_get_most_bytes(camber_budget *budget);
 
 /* ---- Access: what files may reach ------------------------------------------------------------------ */
 
-/* camber opens the files that the caller names, those that a style names, and the companion files of a format (.shx,
- * .dbf, .prj, -wal). It never opens a link to a device or a pipe, and it downloads nothing. */
+/* camber opens the files that the caller names, the files that a style names, and the companion files of a format
+ * (.shx, .dbf, .prj, -wal). It never opens a link to a device or a pipe, and it downloads nothing. */
 typedef struct camber_access {
     bool remote; /* input files may be on the network, or refer to it */
     bool vrt;    /* input files may refer to other files (VRT) */

@@ -15,7 +15,8 @@ _Static_assert((int)CAMBER_VARIANT_GAP == (int)CAMBER_FEATURE_GAP * CAMBER_VARIA
                    (int)CAMBER_VARIANT_MASK == 2 * (int)CAMBER_VARIANT_PATTERN,
                "features and variants are the same bits, and variants that are no features lie behind them");
 
-/* The most rows of all tables of a draw call. More rows would take more memory than it is worth to save a call. */
+/* The most rows of all tables of a draw call. The memory for more rows would not be worth the draw call that they save.
+ */
 enum { ROWS_MAX = 1 << 20 };
 
 /* In a pitched view a segment is two triangles. */

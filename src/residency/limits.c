@@ -87,8 +87,8 @@ uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_
     return mesh->buffer_copies * lacks;
 }
 
-/* How many eighths of the memory limit a part may take: a part of a single polyline, and one of several (gpu/memory.h).
- */
+/* How many eighths of the memory limit a part may take: a part of a single polyline, and a part of several polylines
+ * (gpu/memory.h). */
 enum { ALONE = 4, TOGETHER = 1 };
 
 /* Whether `slots` slots fit into the part's share of memory; always true for a single polyline, since it cannot be cut.

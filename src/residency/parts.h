@@ -38,8 +38,8 @@ camber_status camber_part_reserve_source_lines(camber_mesh *mesh, camber_mesh_pa
 camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes);
 
 /* slots.c: returns the first slot of a polyline in its part. The polyline just after the part's last one gives the end
- * of its slots. places are the mapped places of offset_emit; they are not read if the mesh has no offsets, or for an
- * end. */
+ * of its slots. places are the mapped places of offset_emit; they are not read if the mesh has no offsets, or if the
+ * slot is an end. */
 size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, const uint32_t *places, size_t polyline);
 /* The same among the source slots, before the offset stages. */
 size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);

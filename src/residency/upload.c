@@ -2,7 +2,7 @@
 #include "residency/memory.h"
 #include "residency/parts.h"
 
-/* Whether the buffers for the upload are complete, including those of arc lengths if these are needed now. */
+/* Whether the buffers for the upload are complete, including the buffers for arc lengths if these are needed now. */
 static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *part) {
     return !mesh->mesh_info.has_arc_length || (mesh->has_offsets ? part->source_line.arc_lengths : part->arc_lengths);
 }

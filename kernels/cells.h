@@ -37,7 +37,7 @@ typedef struct camber_tile_rows {
     float left, top;
     int first, last;
 #if CAMBER_OWN_SIDE == 1
-    int column; /* of the one cell */
+    int column; /* column of the one cell */
 #endif
 } camber_tile_rows;
 

@@ -78,13 +78,13 @@ typedef struct camber_walk {
     CAMBER_GLOBAL camber_u32 *slot_info;
     camber_u32 puts;             /* 0: slots are only counted, 1: they are also written */
     camber_u32 at;               /* the next slot */
-    camber_u32 first, end, word; /* of the stretch */
+    camber_u32 first, end, word; /* first point, end and word of the stretch */
 #if CAMBER_WALK_ARC_LENGTHS
     CAMBER_GLOBAL const float *lengths;    /* how far along its stretch each point is, in steps. NULL: no arc lengths */
     CAMBER_GLOBAL float *slot_arc_lengths; /* camber_arc_length of each slot */
     CAMBER_GLOBAL const float *totals;     /* for each stretch the length of its whole line, in steps */
     CAMBER_GLOBAL const camber_stretch *stretches;
-    float total; /* of the stretch */
+    float total; /* length of the whole line of the stretch, in steps */
 #endif
 } camber_walk;
 

@@ -37,7 +37,7 @@ typedef struct camber_drawn_tile {
 typedef struct camber_drawn_segment {
     camber_edge edge;
 #if !CAMBER_STROKE_PITCHED
-    camber_cell_bounds bounds; /* of the edge */
+    camber_cell_bounds bounds; /* bounds for cells, from the edge */
 #endif
     camber_eye eye;
 #if CAMBER_HAS_MASKS

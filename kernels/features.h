@@ -34,7 +34,7 @@ CAMBER_STRUCT(camber_extras) {
     float half_gap, blur;     /* blur below 0: it fades by a smooth step */
     float along, rate, total; /* arc length of A, px; arc length per px; the line's whole length, px */
     float trim_from, trim_to; /* px along the line */
-    float period, drawn;      /* of dashes: the period, in px; the fraction of it that is drawn */
+    float period, drawn;      /* the period of dashes, in px; the fraction of it that is drawn */
     camber_u32 dash_count, stop_count;
     camber_flag round_dashes;
 #ifndef CAMBER_GLSL

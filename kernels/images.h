@@ -23,7 +23,7 @@ CAMBER_STRUCT(camber_image_sampler) {
     float phase, rate, aside; /* in units of the image's size: the position at A, a px along the line, a px across it */
     float length, near;       /* the segment's length; how far from a join the image bends; in px */
     float tangent_a, tangent_b;
-    float left, top, across_x, across_y, down_x, down_y; /* of a fill */
+    float left, top, across_x, across_y, down_x, down_y; /* only for a fill: the image's layout, words 4 to 9 */
     float mean[4];
 #ifndef CAMBER_GLSL
     CAMBER_GLOBAL const float *side_table;

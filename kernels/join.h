@@ -38,7 +38,7 @@ CAMBER_FN float camber_half_shorter(float dx, float dy, float ex, float ey) {
  * 3e9 px, it still fits into a float. */
 CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey) {
     const float along = dx * ex + dy * ey, aside = dx * ey - dy * ex;
-    const float product = along * along + aside * aside; /* of the squared lengths */
+    const float product = along * along + aside * aside; /* product of the squared lengths */
     const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
     const float dot = along * scale, cross = aside * scale;
     /* The larger one of c and s is a root that loses no precision, and the smaller one follows from cross = 2 s c. */

@@ -93,7 +93,7 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_CORNER_TIP 5u      /* tip of a kite, where the outer edges meet */
 #define CAMBER_CORNER_IN_TIP 6u   /* tip of the first of two kites */
 #define CAMBER_CORNER_BISECTOR 7u /* between two kites */
-#define CAMBER_CORNER_OUT_TIP 8u  /* of the second */
+#define CAMBER_CORNER_OUT_TIP 8u  /* tip of the second of two kites */
 #define CAMBER_CORNER_FAN 63u
 
 /* A point's join word, which classify writes, and scan and emit read:

@@ -15,7 +15,7 @@ typedef struct camber_tile_grid {
 typedef struct camber_setup_args {
     camber_u32 first, end, slot_count; /* the range's slots [first, end), and how many the part has */
     camber_u32 has_arc_length, linear; /* has_arc_length: the part's slots have arc lengths */
-    camber_u32 makes_edges;            /* of rings, instead of segments */
+    camber_u32 makes_edges;            /* setup makes edges of rings instead of segments */
     camber_u32 among_edges;            /* whether there are edges of rings before and after them */
     /* where the range's segments begin, a multiple of 16, and where its table begins among all rows */
     camber_u32 base, first_row;

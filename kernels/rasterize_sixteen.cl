@@ -179,8 +179,8 @@ static inline ulong list_all(const batch_sets *sets, uint count, ulong shut, cel
 /* Everything that a list is drawn from. */
 typedef struct list_source {
     const positions *at;
-    const camber_edges *all; /* of sixteen segments */
-    const uint *ends;        /* of each */
+    const camber_edges *all; /* coefficients of sixteen segments */
+    const uint *ends;        /* class of each segment's ends */
 } list_source;
 
 static inline camber_real list_x(const list_source *d, int i) {

@@ -133,7 +133,7 @@ typedef struct outputs {
     global float *segments;
     global camber_u32 *boxes;
     global float *arc_lengths, *planes, *ends;
-    global camber_u32 *brushes; /* of edges */
+    global camber_u32 *brushes; /* brushes of edges */
 } outputs;
 
 /* A vector of points that may end segments, and those before them. */

@@ -32,7 +32,7 @@ typedef struct camber_form {
     float at, x, y;
 } camber_form;
 typedef struct camber_edge {
-    float by_cosine, fall; /* of the camera */
+    float by_cosine, fall; /* 1 / cosine of the camera's pitch, and its fall (camber_eye) */
     float ux, uy, half_width, length;
     float along_a, across_a; /* position of A along the segment's direction and across it, in px */
     float ca, sa, cb, sb;

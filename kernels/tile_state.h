@@ -48,7 +48,7 @@ typedef struct camber_area_state {
     int turns[CAMBER_TILE_CELLS + 1][CAMBER_TILE_CELLS + 1];
     camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
     int has_edges;    /* if false, nothing else is set */
-    int placed_count; /* of the tile */
+    int placed_count; /* edges of the brush in the tile */
     int kept_count;   /* edges that are here: only a cell's own, or all unless they are more than CAMBER_PLACED_MOST */
     float placed[CAMBER_PLACED_WORDS][CAMBER_KEPT_MOST + CAMBER_LANES];
 } camber_area_state;

@@ -171,8 +171,8 @@ typedef struct camber_polylines_desc {
 typedef struct camber_polylines_stats {
     size_t polylines;       /* as given */
     size_t points;          /* as given */
-    size_t kept_points;     /* that are tessellated */
-    size_t kept_segments;   /* that are tessellated */
+    size_t kept_points;     /* points that are tessellated */
+    size_t kept_segments;   /* segments that are tessellated */
     size_t rings;           /* closed polylines */
     size_t dots;            /* polylines with one distinct point, which round and square caps draw as a dot */
     size_t empty_polylines; /* polylines without a point */

@@ -70,7 +70,7 @@ typedef struct camber_camera {
     double x, y;            /* the picture's centre, world units */
     double scale_px;        /* px per world unit, above 0 */
     double bearing_deg;     /* clockwise: the direction that is up in the picture */
-    uint32_t width, height; /* of the picture, px */
+    uint32_t width, height; /* size of the picture, px */
     /* The simplification tolerance, 0 or more px: points whose camber_network_desc.importance is smaller are left out.
      * 0: no points are left out. */
     double simplify_px;

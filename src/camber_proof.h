@@ -45,8 +45,8 @@ typedef struct camber_vertex {
      * segment after B is its line's last. */
     uint16_t flags;
     int16_t turn_a; /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn); 0: a cap */
-    int16_t turn_b; /* the same at B */
-    uint32_t row;   /* of the polyline */
+    int16_t turn_b; /* tan(turn angle / 4) * 32767 at B */
+    uint32_t row;   /* row of the polyline */
 } camber_vertex;
 
 /* How the fragment shader draws beyond an end of a segment. */
@@ -186,7 +186,7 @@ typedef struct camber_index_range {
 } camber_index_range;
 
 typedef struct camber_overdraw_desc {
-    uint32_t width, height; /* of the picture, px */
+    uint32_t width, height; /* size of the picture, px */
     camber_mesh *mesh;
     /* paint_count of them; only widths are read. Rows at or past paint_count are not drawn */
     const camber_paint *paints;

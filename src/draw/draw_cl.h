@@ -29,7 +29,7 @@ camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame 
 
 /* An image in the side table. */
 typedef struct camber_cl_image {
-    camber_image image; /* of the caller */
+    camber_image image; /* the caller's image */
     camber_image_size size;
     size_t first; /* texel of the side table, which holds four texels of the image */
     bool is_opaque;
@@ -57,7 +57,7 @@ typedef struct camber_cl_tables {
     camber_context *context;
     float *rows;
     camber_brush *brushes;
-    camber_brush_ext *brush_ext; /* as many as brushes */
+    camber_brush_ext *brush_ext; /* one for each brush */
     camber_raster_input *inputs;
     size_t *changes; /* polylines at which the brush of polygons changes */
     size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity,
@@ -66,7 +66,7 @@ typedef struct camber_cl_tables {
     uint32_t fill;         /* brush of the last fill so far that is not part of the background. 0: none */
     bool is_rich;          /* a brush has features */
     camber_cl_images images;
-    uint32_t layers;     /* so far */
+    uint32_t layers;     /* layers that the scene has so far */
     float background[4]; /* premultiplied: the colour below the first input */
     float sky[4];        /* premultiplied: the colour above the horizon, where only colours are drawn */
 } camber_cl_tables;

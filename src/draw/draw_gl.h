@@ -50,7 +50,7 @@ typedef struct camber_batch_range {
 } camber_batch_range;
 
 typedef struct camber_batch {
-    camber_mesh *mesh; /* of all ranges */
+    camber_mesh *mesh; /* mesh of all ranges */
     size_t table_count;
     unsigned features; /* CAMBER_FEATURE_* of its commands */
     camber_batch_range *ranges;
@@ -64,7 +64,7 @@ typedef struct camber_batch {
 typedef struct camber_atlas_image {
     uint64_t hash; /* hash of its pixels */
     camber_image_size size;
-    GLint x, y; /* of its first texel */
+    GLint x, y; /* position of its first texel in the atlas */
 } camber_atlas_image;
 
 /* Images side by side in one texture, on shelves. */
@@ -90,7 +90,7 @@ typedef struct camber_gl_drawing {
 
 /* An area of the picture that is drawn at once. */
 typedef struct camber_gl_area {
-    uint32_t x, y, width, height; /* in the picture, px */
+    uint32_t x, y, width, height; /* position and size in the picture, px */
     int target;                   /* target that commands are drawn into */
     camber_coverage coverage;
     float thinnest_px; /* width of the thinnest line of the frame */

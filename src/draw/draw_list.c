@@ -215,7 +215,7 @@ static camber_status make_rows(row_maker *m) {
 
 typedef struct pass_lines {
     const camber_mesh *mesh;
-    const camber_row_paint *rows; /* of the pass */
+    const camber_row_paint *rows; /* rows of the pass */
     size_t first, end;            /* polylines of the pass */
     camber_overlap overlap;
 } pass_lines;
@@ -357,7 +357,7 @@ typedef struct command_maker {
     camber_draw_list *list;
     const camber_pass *pass;
     const pass_lines *lines;
-    size_t first_row; /* of the list */
+    size_t first_row; /* first row of the pass in the list */
     uint32_t group;   /* 0: none yet */
 } command_maker;
 

@@ -47,7 +47,7 @@ enum { CAMBER_NO_FILL = -1 };
 typedef struct camber_fill_paint {
     camber_color color; /* straight, with the pass's opacity in its alpha; with an image it is white */
     bool has_image;
-    size_t image_use, mean_use; /* of the list */
+    size_t image_use, mean_use; /* image uses of the list */
     float x_px, y_px;           /* the top left corner of one image, in the picture */
     double bearing_deg;
     camber_fill_rule rule;
@@ -56,12 +56,12 @@ typedef struct camber_fill_paint {
 /* Consecutive polygons with the same fill. */
 typedef struct camber_area_span {
     size_t first; /* polyline */
-    int32_t fill; /* of the list */
+    int32_t fill; /* a fill of the list */
 } camber_area_span;
 
 typedef struct camber_draw_command {
     camber_mesh *mesh;             /* NULL: a fill of the picture */
-    camber_fill_paint fill;        /* of the picture */
+    camber_fill_paint fill;        /* fill of the picture */
     size_t first_span, span_count; /* in the list, if composite is AREA: only its rows with a fill are drawn */
     size_t first, end;             /* polylines of the mesh */
     size_t first_row;              /* in the list's rows; every row of the mesh has one */

@@ -152,7 +152,7 @@ static camber_status draw_fill(camber_renderer *renderer, const camber_draw_comm
 static camber_status draw_areas(camber_renderer *renderer, const camber_draw_command *first,
                                 const camber_draw_command *end, const camber_gl_area *area) {
     const float whole[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-    camber_status status = camber_batch_draw(renderer, 0, area); /* it is below */
+    camber_status status = camber_batch_draw(renderer, 0, area); /* what is queued is below */
     if (status == CAMBER_OK)
         status = camber_target_bind(renderer, CAMBER_TARGET_LAYER, (GLsizei)area->width, (GLsizei)area->height);
     if (status == CAMBER_OK)
@@ -166,7 +166,7 @@ static camber_status draw_command(camber_renderer *renderer, const camber_draw_c
                                   const camber_gl_area *area) {
     if (command->mesh && command->composite == CAMBER_COMPOSITE_STRAIGHT)
         return camber_batch_add(renderer, command, area);
-    const camber_status status = camber_batch_draw(renderer, 0, area); /* it is below */
+    const camber_status status = camber_batch_draw(renderer, 0, area); /* what is queued is below */
     if (status != CAMBER_OK)
         return status;
     return command->mesh ? draw_layered(renderer, command, area) : draw_fill(renderer, command, area);

@@ -9,7 +9,7 @@ enum { CAMBER_IMAGE_TEXELS_MAX = 2046 }; /* along each side */
 
 /* An image at the size that a row or a fill draws it in. */
 typedef struct camber_image_use {
-    const camber_image *image;  /* of the caller */
+    const camber_image *image;  /* the caller's image */
     size_t number;              /* number of the image among all images of the frame */
     double width_px, height_px; /* 0: one texel, the image's mean */
     bool tiled;                 /* it repeats downwards too; else only to the right */

@@ -18,7 +18,7 @@ typedef struct camber_program {
 
 /* The source of a program, from which a back end makes it. */
 typedef struct camber_program_source {
-    const char *name; /* for people */
+    const char *name; /* name for the log */
     const char *text;
     size_t text_bytes;
     char options[256];

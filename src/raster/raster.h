@@ -109,7 +109,7 @@ typedef struct camber_raster_stages {
     /* one list per tile; if there are polygons, then one per row of tiles, with the edges that cross its top */
     size_t list_count;
     uint32_t *lists; /* starts[list_count] */
-    uint8_t *rgba;   /* of the area */
+    uint8_t *rgba;   /* pixels of the area */
 } camber_raster_stages;
 
 /* Reads the stages of the last drawn area: the last slice of its last band. */
@@ -140,7 +140,7 @@ typedef struct camber_range_list {
     camber_slot_range *ranges;
     uint32_t *changes; /* slots of a part at which the brush changes, ascending within a range */
     size_t count, capacity, segment_count, change_count, change_capacity;
-    camber_slot_finder finder;   /* for the part of the last query */
+    camber_slot_finder finder;   /* finder for the part of the last query */
     size_t first_edge, end_edge; /* all edges of rings are among these segments; 0 and 0: there are no polygons */
 } camber_range_list;
 

@@ -12,7 +12,7 @@ enum {
     BUFFER_CHANGES, /* slots at which the brush changes */
     BUFFER_SETUPS,  /* arguments of setup for the ranges of a part */
     BUFFER_SEGMENTS,
-    BUFFER_EDGES, /* of rings */
+    BUFFER_EDGES, /* edges of rings */
     BUFFER_BOXES,
     BUFFER_ARC_LENGTHS,
     BUFFER_PLANES,
@@ -54,7 +54,7 @@ struct camber_raster {
     camber_raster_area band;
     camber_buffer *given;                /* the caller's buffer for the pixels; NULL: the rasterizer's own */
     uint32_t columns;                    /* tiles */
-    size_t first_segment, segment_count; /* of the slice */
+    size_t first_segment, segment_count; /* segments of the slice */
     size_t first_edge, end_edge;         /* as in camber_range_list */
     size_t tile_count;
     size_t list_count; /* lists of tiles, then lists of rows of tiles if there are polygons */

@@ -77,7 +77,7 @@ typedef struct camber_mesh_output {
 /* A network that a mesh holds, its sections on the device, and its last projection. */
 struct camber_held_network {
     camber_network *network;
-    camber_projection projection; /* of the last tessellation */
+    camber_projection projection; /* projection of the last tessellation */
     camber_program *program;
     camber_section *sections;
     size_t section_count, section_capacity;
@@ -94,7 +94,7 @@ struct camber_mesh {
     const camber_shared_buffer_ops *ops;
     void *ops_user;
     unsigned buffer_copies;                  /* copies of each output buffer in memory: 2 if GL gets a copy */
-    camber_mesh *next;                       /* in the device's list */
+    camber_mesh *next;                       /* next mesh in the device's list */
     uint64_t held_bytes;                     /* without the bytes of its parts and sections */
     size_t remade_parts;                     /* since the last tessellation */
     const struct camber_mesh_output *output; /* NULL: its renderer draws points; output is made only on request */
@@ -106,7 +106,7 @@ struct camber_mesh {
     bool holds_polylines;
     /* Data about the source that was last tessellated. first_slots has polyline_count + 1 entries, which say where each
      * polyline begins; polyline_rows has polyline_count entries. */
-    uint64_t serial;                  /* of the polylines or the network; 0: none */
+    uint64_t serial;                  /* serial of the polylines or the network; 0: none */
     struct camber_held_network *held; /* NULL unless the source is a network, which has no first_slots */
     uint32_t *first_slots, *polyline_rows;
     size_t polyline_count, polyline_capacity, row_list_capacity;
@@ -128,7 +128,7 @@ struct camber_mesh {
     bool wide;          /* a row is so wide that joins may be flat */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
-    double pitch_deg;   /* of the network's camera */
+    double pitch_deg;   /* pitch of the network's camera */
     bool empty;         /* nothing to draw: not tessellated yet, failed, or without any point or vertex */
 };
 

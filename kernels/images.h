@@ -179,7 +179,7 @@ CAMBER_FN camber_real camber_before_joint(camber_real t, float tangent, camber_r
     return tangent == 0.0f ? t : t > near ? t : near * share;
 }
 
-/* Returns how many samples a pixel takes along a side on which it shows this many texels. */
+/* Returns how many samples are taken along a side of a pixel that spans this many texels. */
 CAMBER_FN camber_real camber_samples(camber_real texels) {
     const camber_real least = CAMBER_REAL(1.0f), most = CAMBER_REAL(CAMBER_SAMPLES_MAX), wanted = texels + 0.5f;
     const camber_real bounded = wanted > least ? wanted : least;

@@ -77,8 +77,8 @@ void camber_gl_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, 
         gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
 }
 
-/* Returns the number of vertices of a part as it is drawn: of its strips, or in a pitched view six per record, whatever
- * the method. */
+/* Returns the number of vertices drawn for a part: the vertices of its strips or, in a pitched view, six per record.
+ * The method makes no difference. */
 static size_t vertex_count(const camber_mesh *mesh, const camber_mesh_part *part, bool pitched) {
     const size_t records = mesh->mesh_info.strips ? part->index_count / 2 : part->slot_count;
     return pitched ? RECORD_VERTICES * records : part->index_count;

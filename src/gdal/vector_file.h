@@ -192,9 +192,9 @@ camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature,
                                    camber_geometry_kind kind, uint32_t *class_index);
 /* Computes a hash of the feature's id, which is the same in every tile. Returns false if it has none. */
 bool camber_columns_id(const camber_columns *columns, OGRFeatureH feature, uint64_t *id);
-/* OSM: whether a feature is a closed way with the key "area", or, if it is not a highway, with another key of areas.
- * The configuration makes the driver leave this decision to the reader, because the driver would take any closed
- * highway with such a key for an area. */
+/* OSM: whether a feature is a closed way that has the key "area" or, unless it is a highway, another key that implies
+ * an area. The configuration makes the driver leave this decision to the reader, because the driver would take any
+ * closed highway with such a key for an area. */
 bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, OGRGeometryH geometry);
 
 #endif

@@ -1,8 +1,8 @@
 /* Makes the forms of icons.
  *
- * Input: an item's icon, and how large the item shows it. Output: its image with a border, or the rings of its edge.
- * Main idea: an icon that is fitted to a text is stretched in the parts that its sprite lists, and its other parts keep
- * their size. A curve for each axis says where each px of the icon is drawn:
+ * Input: an item's icon, and the size at which the item shows it. Output: its image with a border, or the rings of its
+ * edge. Main idea: an icon that is fitted to a text is stretched in the parts that its sprite lists, and its other
+ * parts keep their size. A curve for each axis says where each px of the icon is drawn:
  *
  *     icon    |---|====|---|          - keeps its size
  *     form    |---|==========|---|    = is stretched */

@@ -168,7 +168,8 @@ static double sum_ranges(float (*ranges)[2], size_t count, double low, double hi
     return sum;
 }
 
-/* One axis of an image that is fitted to a text. fit turns the edges of its content into the edges of the whole image.
+/* One axis of an image that is fitted to a label's text. fit turns the edges of its content into the edges of the whole
+ * image.
  */
 typedef struct fit_axis {
     float (*ranges)[2];

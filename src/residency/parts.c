@@ -1,8 +1,9 @@
 /* Divides a mesh's source into parts.
  *
  * Input: polylines in slots, or sections of a network, and the limits of the device: its largest buffer, and shares of
- * the memory limit. Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided by their slots,
- * which are known, so that a part's input fits. A part whose points or output turn out too large is halved.
+ * the memory limit. Output: mesh->parts, each with buffers of its own. Main idea: slots are known in advance, so
+ * polylines are split by slot such that each part's input fits. A part whose points or output turn out too large is
+ * halved.
  *
  * A part is cut between polylines only. A single polyline that does not fit is an error that names it. */
 #include "residency/parts.h"

@@ -444,7 +444,7 @@ def test_merge():
     refused(("other.pmtiles differs in its style",), parts[0], parts[1], "other.pmtiles", parts[3])
     make("of5.pmtiles", count, "shard=3/5")
     refused(("of5.pmtiles is a shard of a run with another number of shards",), *parts, "of5.pmtiles")
-    refused(("whole.pmtiles is no part",), *parts, "whole.pmtiles")
+    refused(("whole.pmtiles is not a shard",), *parts, "whole.pmtiles")
     write("cut.pmtiles", read(parts[2])[:-5000])
     refused(("cut.pmtiles", "cut off"), parts[0], parts[1], "cut.pmtiles", parts[3])
 

@@ -108,7 +108,7 @@ def make_lines(path, count=60, reach=6.0):
 def render(source, center, size, zoom, *options):
     """A picture around a place in tiles."""
     longitude, latitude = place(*center)
-    camber("render", source, "-o", "large.png", "-f", "-q", "--center", f"{longitude:.15f},{latitude:.15f}",
+    camber("render", source, "-o", "large.png", "-f", "-q", "--no-labels", "--center", f"{longitude:.15f},{latitude:.15f}",
            "--zoom", zoom, "--size", f"{size}x{size}", *options)
     return decode(read("large.png"))
 

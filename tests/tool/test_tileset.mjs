@@ -112,7 +112,7 @@ if (served !== null) {
 
 // Lines are where camber draws them: of the pixels that it colours most are coloured, and few others.
 const drawing = join(folder, 'drawn.png');
-execFileSync(tool, ['render', input, '--center', center.join(), '--zoom', String(ZOOM), '--size',
+execFileSync(tool, ['render', input, '--no-labels', '--center', center.join(), '--zoom', String(ZOOM), '--size',
     `${SIZE.width}x${SIZE.height}`, '-q', '-o', drawing]);
 const counts = await tab.evaluate(async pictures => {
     const [a, b] = await Promise.all(pictures.map(async bytes => {

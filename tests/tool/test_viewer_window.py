@@ -163,7 +163,7 @@ class Window:
         while True:
             title = self.title()
             _, centre, _, zoom, _, bearing, _, pitch = title
-            subprocess.run([TOOL, "render", CITY, "-q", "-f", "-o", path, "--size", f"{len(self.shown[0]) // 4}x{len(self.shown)}",
+            subprocess.run([TOOL, "render", CITY, "-q", "--no-labels", "-f", "-o", path, "--size", f"{len(self.shown[0]) // 4}x{len(self.shown)}",
                             f"--center={centre}", "--zoom", zoom, f"--bearing={bearing}", "--pitch", pitch, *options], check=True)
             with open(path, "rb") as file:
                 share = share_beyond(self.shown, png_rows.decode(file.read()), MOST_LEVELS)

@@ -142,7 +142,7 @@ async function checkPictures(browser, blank) {
     for (const [style, zoom] of VIEWS) {
         const page = await openPage(browser, style, zoom), drawn = join(folder, 'drawn.png');
         const shown = await shoot(page, `${style}-${zoom}`);
-        execFileSync(tool, ['render', '-q', '-f', inputOf(style), '--style', styleOf(style), '--zoom', String(zoom),
+        execFileSync(tool, ['render', '-q', '--no-labels', '-f', inputOf(style), '--style', styleOf(style), '--zoom', String(zoom),
             '--center', CENTER.join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', drawn]);
         const found = await comparePictures(blank, shown, readFileSync(drawn));
         console.log(`# ${style}, zoom ${zoom}: mean ${found.mean.toFixed(3)} of 255, worst ${found.most}`);
@@ -203,7 +203,7 @@ async function checkPointer(browser) {
 async function checkDensity(browser, blank) {
     const drawn = join(folder, 'drawn.png');
     makeTiles('roads', join(folder, 'dense'), '--ratio', '2');
-    execFileSync(tool, ['render', '-q', '-f', input, '--style', 'roads', '--zoom', '14', '--ratio', '2', '--center',
+    execFileSync(tool, ['render', '-q', '--no-labels', '-f', input, '--style', 'roads', '--zoom', '14', '--ratio', '2', '--center',
         CENTER.join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', drawn]);
     for (const tiles of ['roads', 'dense']) {
         const page = await openPage(browser, tiles, 14, {deviceScaleFactor: 2});

@@ -162,7 +162,8 @@ typedef enum camber_merge_rule {
 
 /* If merges is set, merges the lines (not the areas) from first_polyline on. Then computes the importance of the
  * points, and drops lines outside the set's region. Measures the time of both steps. If the style depends on the
- * direction of lines, ANY becomes DIRECTED. Lines of labels are always merged, whatever their directions. */
+ * direction of lines, ANY becomes DIRECTED. Lines of labels are always merged: whatever their
+ * directions, unless icons show them. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule);
 /* Merges the lines from first_polyline on. */

@@ -341,11 +341,13 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
     return merge(features, first_polyline, rule, CAMBER_GEOMETRY_LINE);
 }
 
-/* Merges the lines of labels, which come last: a street's pieces of one name become one line. They are not counted. */
+/* Merges the lines of labels, which come last: a street's pieces of one name become one line. They are not counted. An
+ * icon that shows a line's direction, such as a one-way street's arrow, must not come onto a line that was turned. */
 static camber_status merge_labels(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
     const size_t counted = features->stats.merged_polylines;
     const camber_status status =
-        merge(features, camber_features_find_labels(features, first_polyline), rule, CAMBER_GEOMETRY_LABEL_LINE);
+        merge(features, camber_features_find_labels(features, first_polyline),
+              features->schema->labels_directed ? CAMBER_MERGE_DIRECTED : rule, CAMBER_GEOMETRY_LABEL_LINE);
     features->stats.merged_polylines = counted;
     return status;
 }

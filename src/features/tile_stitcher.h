@@ -40,7 +40,7 @@ camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const cam
 void camber_features_pin_borders(camber_features *features, size_t first_polyline, int zoom);
 /* Joins the lines and adds them to the set. If the style depends on directions, an end is joined only to a start. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
-/* Does so for labels, whatever the directions of their lines. Pieces that are joined are not counted. */
+/* Does so for labels, for which directions count only if icons show them. Pieces that are joined are not counted. */
 camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features);
 
 /* ---- Shared by the files of the stitcher ---- */

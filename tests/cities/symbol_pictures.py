@@ -48,7 +48,8 @@ EXCEPTIONS = {
         0.85, "the point of a polygon that is farthest from its edges is found within 16 px there, within 1 px here"),
     "symbol-spacing/line-far": (0.6, WAYS),
     "text-arabic/multi-paragraph": (
-        0.0, "U+001C ends a paragraph, and cuts lines there after they were chosen; here it ends a line, as newlines do"),
+        0.0, "U+001C ends a paragraph, and cuts lines there after they were chosen; here it ends a line, as "
+        "newlines do"),
     "text-keep-upright/line-placement-true": (0.35, CUT),
     "text-max-angle/literal": (0.35, CUT),
     "text-pitch-alignment/auto-text-rotation-alignment-map": (0.0, CIRCLES),
